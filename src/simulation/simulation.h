@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/run_context.h"
+#include "contact/compliance.h"
+#include "contact/contact_wheel.h"
+#include "heightfield/height_field.h"
+#include "removal/removal_law.h"
+#include "toolpath/tool_path.h"
+
+namespace beltgrinding {
+
+/// Something that the user must know, with its place on the path.
+struct Event {
+    std::string kind;  ///< "no_contact", "not_converged", "force_not_reached", "depth_exceeded"...
+    std::uint32_t pose = 0;  ///< programmed pose, from 0
+    int line = 0;            ///< of the source file; 0: unknown
+    double time = 0.0;       ///< s
+    double duration = 0.0;   ///< s that the condition lasted (consecutive steps are one event)
+    double value = 0.0;      ///< worst value, in the unit that the message names
+    std::string message;     ///< one sentence
+};
+
+/// One row of the time series.
+struct StepRecord {
+    double time = 0.0;  ///< s
+    std::uint32_t pose = 0;
+    float force = 0.0f;          ///< N
+    float approach = 0.0f;       ///< mm, the wheel's way from the programmed pose along z
+    float contact_area = 0.0f;   ///< mm2
+    float peak_pressure = 0.0f;  ///< MPa
+    float removal_rate = 0.0f;   ///< mm3/s
+    std::uint32_t segments = 0;  ///< found by localisation
+};
+
+struct SimulationOptions {
+    ContactWheel wheel;
+    bool force_control = true;
+    double force = 50.0;           ///< N, where the path has none
+    double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
+    double belt_speed = 20000.0;   ///< mm/s
+    double belt_wear = 1.0;        ///< k_t
+    double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
+    double contact_tolerance = 1e-3;  ///< relative error of the pressure field
+    SteppingOptions stepping;
+};
+
+struct SimulationResult {
+    std::vector<Event> events;
+    std::vector<StepRecord> steps;
+    double process_time = 0.0;     ///< s, what the robot takes
+    double removed_volume = 0.0;   ///< mm3, taken from the field
+    double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
+    /// s of wall time by phase
+    double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0;
+};
+
+/// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
+/// `field.height` changes. On cancel or error the field is left as it was before the call.
+/// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
+/// path, bad options) and Cancelled.
+SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOperator& compliance,
+                          const RemovalLaw& law, const SimulationOptions& options,
+                          const RunContext& context = {});
+
+}  // namespace beltgrinding

@@ -1,0 +1,165 @@
+#include "contact/gap_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace beltgrinding {
+namespace {
+
+// A surface steeper than this against the wheel is its flank or back, which the wheel cannot press.
+constexpr double kSteepest = 0.2;  // cosine of the angle between surface normal and wheel's radius
+constexpr int kGridQuantum = 8;    // grid lengths are multiples, so that warm starts mostly fit
+// Coverage from sums over samples carries their sampling noise; near full it is full.
+constexpr double kFullCoverage = 0.85;
+constexpr double kLeastCoverage = 0.05;
+constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
+
+}  // namespace
+
+GapMap::GapMap(const ContactWheel& wheel, double spacing) : wheel_(wheel), spacing_(spacing) {
+    grid_.ds = spacing;
+    grid_.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
+    grid_.dy = wheel.width / grid_.ny;
+}
+
+void GapMap::fit_grid(double half_length) {
+    const int half = static_cast<int>(std::ceil(half_length / grid_.ds)) + 1;
+    grid_.nx = 2 * ((half + kGridQuantum - 1) / kGridQuantum * kGridQuantum) + 1;
+    const Eigen::Index n = grid_.cells();
+    nearest_ = Eigen::ArrayXd::Constant(n, kNone);
+    gap_ = weight_ = Eigen::ArrayXd::Zero(n);
+    coverage_ = Eigen::ArrayXd::Zero(n);
+    at_boundary_.assign(static_cast<std::size_t>(n), 0);
+}
+
+std::array<GapMap::Corner, 4> GapMap::corners(const Footprint& f) const {
+    const double u = f.s / grid_.ds + 0.5 * (grid_.nx - 1);
+    const double v = f.y / grid_.dy + 0.5 * (grid_.ny - 1);
+    const int i = static_cast<int>(std::floor(u));
+    const int j = static_cast<int>(std::floor(v));
+    std::array<Corner, 4> result;
+    for (int b = 0; b < 2; ++b) {
+        for (int a = 0; a < 2; ++a) {
+            // Beyond the outermost centres all weight goes to the outermost cell.
+            const int ci = std::clamp(i + a, 0, grid_.nx - 1);
+            const int cj = std::clamp(j + b, 0, grid_.ny - 1);
+            const double wu = a == 0 ? 1.0 - (u - i) : u - i;
+            const double wv = b == 0 ? 1.0 - (v - j) : v - j;
+            result[static_cast<std::size_t>(2 * b + a)] = {cj * grid_.nx + ci, wu * wv,
+                                                           grid_.s(ci) - f.s, grid_.y(cj) - f.y};
+        }
+    }
+    return result;
+}
+
+void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hits,
+                    const Frame& work_from_contact, double reach) {
+    const Frame contact_from_work = work_from_contact.inverse();
+    const Eigen::Matrix3d rotation = contact_from_work.linear();
+    const double radius = wheel_.radius;
+    footprints_.clear();
+    double half_length = 0.0;
+    for (const std::uint32_t sample : hits) {
+        if ((field.flags[sample] & kMissed) != 0) continue;
+        const Vec3 top = contact_from_work * field.top(sample);
+        if (std::abs(top.y()) > 0.5 * wheel_.width) continue;
+        const double along = top.z() + radius;  // from the wheel's axis towards the work
+        const double r = std::hypot(top.x(), along);
+        if (along <= 0.0) continue;
+        const Vec3 normal = rotation * field.normal[sample].cast<double>();
+        const double sine = top.x() / r;
+        const double cosine = along / r;
+        const double n_radial = normal.x() * sine + normal.z() * cosine;
+        if (n_radial > -kSteepest) continue;
+        const double gap = r - (radius - wheel_.drop(top.y()));
+        if (gap > reach) continue;
+        const double n_tangential = normal.x() * cosine - normal.z() * sine;
+        Footprint f;
+        f.sample = sample;
+        f.s = radius * std::atan2(sine, cosine);
+        f.y = top.y();
+        f.gap = gap;
+        f.slope_s = -n_tangential / n_radial * (r / radius);
+        f.slope_y = -normal.y() / n_radial + wheel_.drop_slope(top.y());
+        f.area = field.area[sample];
+        f.projected_area = static_cast<float>(-n_radial * field.area[sample] * radius / r);
+        f.boundary = (field.flags[sample] & kOnBoundary) != 0;
+        footprints_.push_back(f);
+        half_length = std::max(half_length, std::abs(f.s));
+    }
+    fit_grid(half_length);
+
+    const auto carried = [](const Footprint& f, const Corner& c) {
+        return f.gap + f.slope_s * c.ds + f.slope_y * c.dy;
+    };
+    for (const Footprint& f : footprints_) {
+        for (const Corner& c : corners(f)) {
+            if (c.weight > 0.0) nearest_[c.cell] = std::min(nearest_[c.cell], carried(f, c));
+        }
+    }
+    const double layer = kLayer * std::max(grid_.ds, grid_.dy);
+    for (Footprint& f : footprints_) {
+        double behind = 0.0;
+        for (const Corner& c : corners(f)) {
+            behind += c.weight * std::min(carried(f, c) - nearest_[c.cell], 2.0 * layer);
+        }
+        f.nearest = behind <= layer;
+        if (!f.nearest) continue;
+        for (const Corner& c : corners(f)) {
+            const double weight = c.weight * f.projected_area;
+            gap_[c.cell] += weight * carried(f, c);
+            weight_[c.cell] += weight;
+            if (f.boundary && c.weight > 0.0) at_boundary_[static_cast<std::size_t>(c.cell)] = 1;
+        }
+    }
+    for (Eigen::Index cell = 0; cell < gap_.size(); ++cell) {
+        double share = weight_[cell] / grid_.cell_area();
+        if (share < kLeastCoverage) {
+            gap_[cell] = kNone;
+            continue;
+        }
+        if (at_boundary_[static_cast<std::size_t>(cell)] == 0 || share > kFullCoverage) share = 1.0;
+        gap_[cell] /= weight_[cell];
+        coverage_[cell] = share;
+    }
+}
+
+double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
+                      std::vector<std::uint32_t>& changed) {
+    const double volume = (rate * coverage_).sum() * grid_.cell_area() * duration;
+    if (!(volume > 0.0)) return 0.0;
+    lowering_.assign(footprints_.size(), 0.0);
+    double unscaled = 0.0;
+    for (std::size_t k = 0; k < footprints_.size(); ++k) {
+        const Footprint& f = footprints_[k];
+        if (!f.nearest) continue;
+        double lowering = 0.0;
+        for (const Corner& c : corners(f)) lowering += c.weight * rate[c.cell];
+        lowering_[k] = lowering * duration;
+        unscaled += lowering_[k] * f.area;
+    }
+    if (!(unscaled > 0.0)) return 0.0;
+    const double scale = volume / unscaled;
+    for (std::size_t k = 0; k < footprints_.size(); ++k) {
+        if (lowering_[k] <= 0.0) continue;
+        field.height[footprints_[k].sample] -= scale * lowering_[k];
+        changed.push_back(footprints_[k].sample);
+    }
+    return volume;
+}
+
+Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
+                        const ContactGrid& to) {
+    if (from == to) return values;
+    Eigen::ArrayXd result = Eigen::ArrayXd::Zero(to.cells());
+    if (values.size() != from.cells() || from.ny != to.ny) return result;
+    const int shift = (to.nx - from.nx) / 2;
+    for (int j = 0; j < to.ny; ++j) {
+        for (int i = std::max(0, shift); i < std::min(to.nx, from.nx + shift); ++i) {
+            result[j * to.nx + i] = values[j * from.nx + i - shift];
+        }
+    }
+    return result;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "contact/compliance.h"
+#include "contact/contact_wheel.h"
+#include "heightfield/height_field.h"
+
+namespace beltgrinding {
+
+/// The current surface seen from the wheel, on the wheel's own regular grid, and the way back from
+/// the grid to the samples.
+///
+/// Each sample's top is put into the wheel's cylinder coordinates (arc length s = R theta, axial y,
+/// radius r); its gap is r - (R - drop(y)), radial. The gap of a cell is the weighted mean over the
+/// samples around it (cloud-in-cell weights), each carried to the cell's centre along its own
+/// tangent plane, so that a plane is reproduced exactly whatever the sampling. Where several layers
+/// of the surface lie over each other, only the one nearest to the wheel counts.
+///
+/// The cells must not be finer than the samples: `ContactGrid` spacing >= 1.5 x field spacing.
+class GapMap {
+  public:
+    /// `spacing`: wanted cell, mm; the axial one is adjusted to divide the wheel's width.
+    GapMap(const ContactWheel& wheel, double spacing);
+
+    /// Maps the samples `hits` for the wheel at `work_from_contact`. Samples that face away, that
+    /// were missed by the stock's rays or that lie beyond the gap `reach` (mm) are left out.
+    void update(const HeightField& field, std::span<const std::uint32_t> hits,
+                const Frame& work_from_contact, double reach);
+
+    /// Grid of the last update; its length follows the samples in reach.
+    const ContactGrid& grid() const { return grid_; }
+    const Eigen::ArrayXd& gap() const { return gap_; }            ///< mm; +inf: no surface
+    const Eigen::ArrayXd& coverage() const { return coverage_; }  ///< [0, 1]
+    bool empty() const { return footprints_.empty(); }
+    /// Smallest gap, mm; +inf when empty.
+    double lowest() const { return gap_.size() > 0 ? gap_.minCoeff() : kNone; }
+
+    /// Lowers `field.height` by the removal of `rate` (mm/s per cell) over `duration` s: the rate
+    /// is interpolated at each sample, then scaled so that the samples' volume equals the cells'
+    /// (rate x coverage x cell area x duration) to rounding. Appends the samples it lowered to
+    /// `changed`. Returns the volume, mm3.
+    double remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
+                  std::vector<std::uint32_t>& changed);
+
+  private:
+    static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+    /// A sample on the grid: lower left cell of the four that it belongs to, and where between
+    /// them.
+    struct Footprint {
+        std::uint32_t sample;
+        double s, y;  // mm
+        double gap;   // mm, at (s, y)
+        double slope_s, slope_y;
+        float area;            // mm2, of the design surface
+        float projected_area;  // mm2, on the wheel
+        bool boundary;
+        bool nearest = true;  // belongs to the layer nearest to the wheel
+    };
+    struct Corner {
+        int cell;
+        double weight;
+        double ds, dy;  // from the sample to the cell's centre, mm
+    };
+    std::array<Corner, 4> corners(const Footprint& f) const;
+    void fit_grid(double half_length);
+
+    ContactWheel wheel_;
+    double spacing_;
+    ContactGrid grid_;
+    Eigen::ArrayXd gap_, coverage_, nearest_, weight_;
+    std::vector<std::uint8_t> at_boundary_;
+    std::vector<Footprint> footprints_;
+    std::vector<double> lowering_;
+};
+
+/// Carries a pressure field from one grid to another of the same cells and another length (both are
+/// centred); cells without a counterpart get 0.
+Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
+                        const ContactGrid& to);
+
+}  // namespace beltgrinding

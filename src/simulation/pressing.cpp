@@ -1,0 +1,136 @@
+#include "simulation/pressing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/stopwatch.h"
+
+namespace beltgrinding {
+namespace {
+
+// mm beyond the wheel's surface in which the gap is mapped: more than the approach may change
+// between two placements of the wheel, and enough for whole cells around the contact.
+constexpr double kMargin = 0.5;
+// mm: below this change of approach the radial gap need not be mapped anew (it would change by
+// the approach times 1 - cos of the contact's half angle, 0.4 % at 5 degrees).
+constexpr double kPlacement = 0.05;
+constexpr int kMaxPlacements = 12;
+// Share of the radius ahead of the wheel's centre: what lies behind cannot be in the contact.
+constexpr double kAhead = 0.5;
+
+}  // namespace
+
+Pressing::Pressing(const SimulationOptions& options, double spacing, ComplianceOperator& compliance)
+    : options_(options), compliance_(compliance), map_(options.wheel, spacing) {}
+
+Frame Pressing::placed_frame() const {
+    return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
+}
+
+void Pressing::localise(const HeightField& field, const SegmentTree& tree, double margin,
+                        SimulationResult& result) {
+    const Stopwatch watch(result.localise_s);
+    const Frame frame = placed_frame();
+    WheelReach reach;
+    reach.centre = frame * Vec3(0.0, 0.0, -options_.wheel.radius);
+    reach.axis = frame.linear().col(1);
+    reach.direction = frame.linear().col(2);
+    reach.radius = options_.wheel.radius + margin;
+    reach.half_width = 0.5 * options_.wheel.width;
+    reach.min_along = kAhead * options_.wheel.radius;
+    tree.query(field, reach, hits_);
+}
+
+void Pressing::map_gap(const HeightField& field, double reach, SimulationResult& result) {
+    const Stopwatch watch(result.gap_s);
+    map_.update(field, hits_, placed_frame(), reach);
+}
+
+void Pressing::solve(bool force_control, double force, SimulationResult& result) {
+    const Stopwatch watch(result.contact_s);
+    compliance_.set_grid(map_.grid());
+    ContactProblem problem;
+    problem.grid = map_.grid();
+    problem.gap = map_.gap();
+    problem.coverage = map_.coverage();
+    problem.force_control = force_control;
+    problem.force = force;
+    problem.approach = 0.0;
+    problem.tolerance = options_.contact_tolerance;
+    Eigen::ArrayXd start;
+    if (warm_) start = recentre(solution_.pressure, solution_grid_, problem.grid);
+    solution_ = solve_contact(problem, compliance_, warm_ ? &start : nullptr);
+    solution_grid_ = problem.grid;
+    warm_ = solution_.force > 0.0;
+}
+
+bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree,
+                          SimulationResult& result) {
+    const double travel = options_.force_travel;
+    placed_ = 0.0;
+    localise(field, tree, travel + kMargin, result);
+    map_gap(field, travel + kMargin, result);
+    if (map_.empty() || !(map_.lowest() <= travel)) return false;
+    placed_ = std::clamp(map_.lowest(), -travel, travel);
+    return true;
+}
+
+Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tree,
+                                const Frame& work_from_contact, double force,
+                                SimulationResult& result) {
+    programmed_ = work_from_contact;
+    if (!options_.force_control) {
+        placed_ = 0.0;
+        localise(field, tree, kMargin, result);
+        map_gap(field, kMargin, result);
+        solve(false, 0.0, result);
+        return solution_.force > 0.0 ? State::kPressed : State::kNoContact;
+    }
+    const auto nothing = [&] {
+        warm_ = false;
+        placed_ = 0.0;
+        solution_ = ContactSolution{};
+        return State::kNoContact;
+    };
+    if (force <= 0.0) return nothing();
+    bool searched = false;
+    if (!warm_) {
+        if (!find_touch(field, tree, result)) return nothing();
+        searched = true;
+    }
+    for (int i = 0; i < kMaxPlacements; ++i) {
+        localise(field, tree, kMargin, result);
+        map_gap(field, kMargin, result);
+        if (map_.empty()) {
+            // The surface fell away from where it was at the last pose.
+            if (searched || !find_touch(field, tree, result)) return nothing();
+            searched = true;
+            continue;
+        }
+        solve(true, force, result);
+        const double wanted = placed_ + solution_.approach;
+        if (std::abs(wanted) > options_.force_travel) {
+            const double stop = std::copysign(options_.force_travel, wanted);
+            if (std::abs(placed_ - stop) < 1e-9) {
+                solve(false, 0.0, result);
+                return solution_.force > 0.0 ? State::kBeyondTravel : nothing();
+            }
+            placed_ = stop;
+            continue;
+        }
+        if (std::abs(solution_.approach) <= kPlacement) return State::kPressed;
+        placed_ = wanted;
+    }
+    // The last placement is off by its remaining approach, which still lies within the margin or
+    // was flagged by the solver.
+    return State::kPressed;
+}
+
+Pressing::State Pressing::press_again(const HeightField& field, double force,
+                                      SimulationResult& result) {
+    map_gap(field, kMargin, result);
+    solve(options_.force_control, force, result);
+    return solution_.force > 0.0 ? State::kPressed : State::kNoContact;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contact/contact_solver.h"
+#include "contact/gap_map.h"
+#include "heightfield/kdop_tree.h"
+#include "simulation/simulation.h"
+
+namespace beltgrinding {
+
+/// Presses the wheel on the current surface at one pose: localises, maps the gap, solves the
+/// contact. Keeps the approach and the pressure of the last pose to start the next one from.
+class Pressing {
+  public:
+    Pressing(const SimulationOptions& options, double spacing, ComplianceOperator& compliance);
+
+    /// What pressing ended in. `kBeyondTravel`: force control met its end stop, the force is what
+    /// the wheel has there.
+    enum class State { kNoContact, kPressed, kBeyondTravel };
+
+    /// Presses at the programmed pose. Adds its wall time to `result`'s phases.
+    State press(const HeightField& field, const SegmentTree& tree, const Frame& work_from_contact,
+                double force, SimulationResult& result);
+    /// Solves again at the same place after the surface was lowered (no new localisation).
+    State press_again(const HeightField& field, double force, SimulationResult& result);
+
+    const ContactSolution& solution() const { return solution_; }
+    /// mm along z from the programmed pose to the wheel as pressed.
+    double approach() const { return placed_ + solution_.approach; }
+    GapMap& map() { return map_; }
+    std::size_t localised() const { return hits_.size(); }
+
+  private:
+    Frame placed_frame() const;
+    void localise(const HeightField& field, const SegmentTree& tree, double margin,
+                  SimulationResult& result);
+    void map_gap(const HeightField& field, double reach, SimulationResult& result);
+    void solve(bool force_control, double force, SimulationResult& result);
+    bool find_touch(const HeightField& field, const SegmentTree& tree, SimulationResult& result);
+
+    const SimulationOptions& options_;
+    ComplianceOperator& compliance_;
+    GapMap map_;
+    ContactSolution solution_;
+    ContactGrid solution_grid_;
+    std::vector<std::uint32_t> hits_;
+    Frame programmed_ = Frame::Identity();
+    double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap
+    bool warm_ = false;
+};
+
+}  // namespace beltgrinding

@@ -1,0 +1,194 @@
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "heightfield/kdop_tree.h"
+#include "simulation/event_log.h"
+#include "simulation/pressing.h"
+
+namespace beltgrinding {
+namespace {
+
+// Explicit integration in time: in one go the surface may recede by this share of the wheel's
+// indentation, so that the pressure follows the removal.
+constexpr double kRecession = 0.1;
+constexpr int kMaxParts = 200;  // of a step
+// The wheel's cells must each hold samples: never finer than this many sample spacings.
+constexpr double kSamplesPerCell = 1.5;
+constexpr std::size_t kReportEvery = 16;  // steps between two looks at progress and cancel
+
+void validate(const HeightField& field, const SimulationOptions& options) {
+    options.wheel.validate();
+    if (field.size() == 0)
+        throw InputError("the height field is empty; select a face with an area");
+    const auto positive = [](double value, const char* name) {
+        if (!std::isfinite(value) || value <= 0.0) {
+            throw InputError(std::string(name) + " must be positive and finite");
+        }
+    };
+    positive(options.belt_speed, "the belt speed");
+    positive(options.contact_spacing, "the contact grid's spacing");
+    positive(options.contact_tolerance, "the contact tolerance");
+    if (options.force_control) positive(options.force_travel, "the travel of the force control");
+    if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
+        throw InputError("the belt's wear factor must be zero or positive");
+    }
+}
+
+std::string newtons(const char* before, double force, const char* after) {
+    std::ostringstream text;
+    text.precision(3);
+    text << before << force << after;
+    return text.str();
+}
+
+/// Restores the heights unless told to keep them: a cancelled or failed run leaves no trace.
+class HeightGuard {
+  public:
+    explicit HeightGuard(HeightField& field) : field_(field), before_(field.height) {}
+    ~HeightGuard() {
+        if (!kept_) field_.height.swap(before_);
+    }
+    HeightGuard(const HeightGuard&) = delete;
+    HeightGuard& operator=(const HeightGuard&) = delete;
+    void keep() { kept_ = true; }
+    const std::vector<double>& before() const { return before_; }
+
+  private:
+    HeightField& field_;
+    std::vector<double> before_;
+    bool kept_ = false;
+};
+
+/// Removes what the law says for the pressed wheel during one step, in as many parts as the
+/// pressure needs to follow. Returns the volume, mm3.
+double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, const PathStep& step,
+             const SimulationOptions& options, const ComplianceOperator& compliance,
+             std::vector<std::uint32_t>& changed, SimulationResult& result) {
+    double volume = 0.0;
+    double left = step.duration;
+    Eigen::ArrayXd rate;
+    while (left > 0.0) {
+        double part = left;
+        {
+            const Stopwatch watch(result.removal_s);
+            const ContactSolution& contact = pressing.solution();
+            const ProcessState state{options.belt_speed, options.belt_wear, step.feed,
+                                     contact.force, contact.area};
+            law.rate(contact.pressure, state, rate);
+            const double fastest = rate.maxCoeff();
+            const double indentation = contact.peak_pressure * compliance.diagonal();
+            if (fastest > 0.0) {
+                part =
+                    std::clamp(kRecession * indentation / fastest, step.duration / kMaxParts, left);
+            }
+            volume += pressing.map().remove(field, rate, part, changed);
+            result.integrated_rate +=
+                (rate * pressing.map().coverage()).sum() * pressing.map().grid().cell_area() * part;
+        }
+        left -= part;
+        if (left <= 1e-12 * step.duration) break;
+        if (pressing.press_again(field, step.force, result) == Pressing::State::kNoContact) break;
+    }
+    return volume;
+}
+
+}  // namespace
+
+SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOperator& compliance,
+                          const RemovalLaw& law, const SimulationOptions& options,
+                          const RunContext& context) {
+    validate(field, options);
+    SteppingOptions stepping = options.stepping;
+    stepping.default_force = options.force;
+    const std::vector<PathStep> steps = path.steps(stepping);
+    if (steps.empty()) {
+        throw InputError(
+            "the path has no motion that grinds: it needs at least two poses, and other "
+            "motions than rapid ones");
+    }
+
+    SimulationResult result;
+    result.process_time = path.duration();
+    result.steps.reserve(steps.size());
+    HeightGuard guard(field);
+    EventLog events(path);
+    std::unique_ptr<SegmentTree> tree;
+    {
+        const Stopwatch watch(result.build_s);
+        tree = std::make_unique<SegmentTree>(field, context);
+    }
+    const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
+    Pressing pressing(options, cell, compliance);
+    std::vector<std::uint32_t> changed;
+    bool touched = false;
+
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (i % kReportEvery == 0) {
+            context.throw_if_cancelled();
+            context.report(static_cast<double>(i) / static_cast<double>(steps.size()));
+        }
+        const PathStep& step = steps[i];
+        StepRecord record;
+        record.time = step.time;
+        record.pose = step.pose;
+
+        const auto state = pressing.press(field, *tree, step.work_from_contact, step.force, result);
+        record.segments = static_cast<std::uint32_t>(pressing.localised());
+        if (state != Pressing::State::kNoContact) {
+            touched = true;
+            const ContactSolution contact = pressing.solution();
+            record.force = static_cast<float>(contact.force);
+            record.approach = static_cast<float>(pressing.approach());
+            record.contact_area = static_cast<float>(contact.area);
+            record.peak_pressure = static_cast<float>(contact.peak_pressure);
+            if (!contact.converged) {
+                events.note("not_converged", i, step, contact.iterations,
+                            "the contact did not converge; refine the contact grid or raise the "
+                            "tolerance");
+            }
+            if (state == Pressing::State::kBeyondTravel) {
+                const bool low = contact.force < step.force;
+                events.note(low ? "force_not_reached" : "force_exceeded", i, step, contact.force,
+                            newtons("the force control ran to the end of its travel at ",
+                                    contact.force, " N; correct the pose or enlarge the travel"),
+                            !low);
+            }
+            changed.clear();
+            const double volume =
+                grind(field, pressing, law, step, options, compliance, changed, result);
+            result.removed_volume += volume;
+            record.removal_rate = static_cast<float>(volume / step.duration);
+            const Stopwatch watch(result.refit_s);
+            std::sort(changed.begin(), changed.end());
+            changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+            double deepest = 0.0;
+            for (const std::uint32_t s : changed) deepest = std::min(deepest, field.height[s]);
+            if (deepest < -field.depth) {
+                events.note("depth_exceeded", i, step, deepest,
+                            newtons("ground ", -deepest,
+                                    " mm below the design, deeper than the "
+                                    "segments reach"),
+                            false);
+            }
+            tree->refit(field, changed);
+        }
+        result.steps.push_back(record);
+    }
+    if (!touched) {
+        throw InputError(
+            "the wheel never touches the stock on this path; check the frames of the "
+            "cell (tool in hand or part in hand), the unit and the travel of the force "
+            "control");
+    }
+    context.report(1.0);
+    result.events = events.take();
+    guard.keep();
+    return result;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,143 @@
+#include "toolpath/tool_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kRotationFeed = 1.0;          // rad/s, for motions that only turn
+constexpr double kRotationTolerance = 1e-6;    // of R^T R from the identity
+constexpr std::size_t kMaxSteps = 50'000'000;  // more is a mistake in feed or step, not a job
+
+std::string place(const PathPose& pose, std::size_t index) {
+    std::string text = "pose " + std::to_string(index + 1);
+    if (pose.line > 0) text += " (line " + std::to_string(pose.line) + ")";
+    return text;
+}
+
+void validate(const PathPose& pose, std::size_t index) {
+    const auto matrix = pose.base_from_tcp.matrix();
+    if (!matrix.allFinite()) {
+        throw InputError(place(pose, index) + ": the pose is not finite; give six real numbers");
+    }
+    const Eigen::Matrix3d r = pose.base_from_tcp.linear();
+    const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (error > kRotationTolerance || r.determinant() < 0.0) {
+        throw InputError(place(pose, index) + ": the orientation is no rotation (off by " +
+                         std::to_string(error) + "); give a unit quaternion");
+    }
+    if (!std::isfinite(pose.feed) || pose.feed <= 0.0) {
+        throw InputError(place(pose, index) + ": feed is " + std::to_string(pose.feed) +
+                         " mm/s; give a positive one");
+    }
+    if (!std::isfinite(pose.force)) {
+        throw InputError(place(pose, index) + ": force is not finite; give newtons");
+    }
+}
+
+double angle_between(const Frame& a, const Frame& b) {
+    return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+/// Linear in position, slerp in orientation, in the program's frame; t in [0, 1].
+Frame interpolate(const Frame& a, const Frame& b, double t) {
+    const Eigen::Quaterniond q =
+        Eigen::Quaterniond(a.linear()).slerp(t, Eigen::Quaterniond(b.linear()));
+    Frame f = Frame::Identity();
+    f.linear() = q.normalized().toRotationMatrix();
+    f.translation() = (1.0 - t) * a.translation() + t * b.translation();
+    return f;
+}
+
+double motion_duration(const PathPose& from, const PathPose& to) {
+    const double travel =
+        (to.base_from_tcp.translation() - from.base_from_tcp.translation()).norm();
+    const double angle = angle_between(from.base_from_tcp, to.base_from_tcp);
+    return travel > 0.0 ? travel / to.feed : angle / kRotationFeed;
+}
+
+}  // namespace
+
+Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
+    if (holding == Holding::kToolInHand) {
+        return base_from_work.inverse() * base_from_tcp * tcp_from_contact;
+    }
+    return (base_from_tcp * tcp_from_work).inverse() * base_from_contact;
+}
+
+ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames)
+    : poses_(std::move(poses)), frames_(frames) {
+    if (poses_.empty()) {
+        throw InputError("the path has no pose; the program needs at least one Cartesian target");
+    }
+    for (std::size_t i = 0; i < poses_.size(); ++i) validate(poses_[i], i);
+    for (const Frame* f : {&frames_.base_from_work, &frames_.tcp_from_contact,
+                           &frames_.tcp_from_work, &frames_.base_from_contact}) {
+        if (!f->matrix().allFinite()) {
+            throw InputError("a frame of the cell is not finite; check the belt machine's set-up");
+        }
+    }
+}
+
+double ToolPath::duration() const {
+    double time = 0.0;
+    for (std::size_t i = 1; i < poses_.size(); ++i)
+        time += motion_duration(poses_[i - 1], poses_[i]);
+    return time;
+}
+
+std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
+    if (!(options.max_travel > 0.0) || !(options.max_angle > 0.0)) {
+        throw InputError(
+            "the largest step of the simulation must be positive (travel in mm and "
+            "angle in degrees)");
+    }
+    std::vector<PathStep> steps;
+    double time = 0.0;
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+        const PathPose& from = poses_[i - 1];
+        const PathPose& to = poses_[i];
+        const double duration = motion_duration(from, to);
+        if (!to.rapid && duration > 0.0) {
+            const Frame start = frames_.work_from_contact(from.base_from_tcp);
+            const Frame end = frames_.work_from_contact(to.base_from_tcp);
+            // With the part in hand the contact's way over the work is no straight line: measure it
+            // at the robot's own travel as well as at its ends.
+            const double travel = std::max(
+                (end.translation() - start.translation()).norm(),
+                (to.base_from_tcp.translation() - from.base_from_tcp.translation()).norm());
+            const double angle = angle_between(start, end);
+            const double wanted = std::max({1.0, std::ceil(travel / options.max_travel),
+                                            std::ceil(angle / options.max_angle)});
+            if (wanted + static_cast<double>(steps.size()) > static_cast<double>(kMaxSteps)) {
+                throw InputError(place(to, i) + ": the path needs more than " +
+                                 std::to_string(kMaxSteps) + " steps; enlarge the step");
+            }
+            const int parts = static_cast<int>(wanted);
+            const double force = to.force >= 0.0 ? to.force : options.default_force;
+            Frame previous = start;
+            for (int k = 0; k < parts; ++k) {
+                PathStep step;
+                step.work_from_contact = frames_.work_from_contact(
+                    interpolate(from.base_from_tcp, to.base_from_tcp, (k + 0.5) / parts));
+                const Frame next = frames_.work_from_contact(
+                    interpolate(from.base_from_tcp, to.base_from_tcp, (k + 1.0) / parts));
+                step.duration = duration / parts;
+                step.time = time + (k + 0.5) * step.duration;
+                step.feed = (next.translation() - previous.translation()).norm() / step.duration;
+                step.force = force;
+                step.pose = static_cast<std::uint32_t>(i);
+                steps.push_back(step);
+                previous = next;
+            }
+        }
+        time += duration;
+    }
+    return steps;
+}
+
+}  // namespace beltgrinding

@@ -161,7 +161,6 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
             changed.clear();
             const double volume =
                 grind(field, pressing, law, step, options, compliance, changed, result);
-            result.removed_volume += volume;
             record.removal_rate = static_cast<float>(volume / step.duration);
             const Stopwatch watch(result.refit_s);
             std::sort(changed.begin(), changed.end());
@@ -184,6 +183,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
             "the wheel never touches the stock on this path; check the frames of the "
             "cell (tool in hand or part in hand), the unit and the travel of the force "
             "control");
+    }
+    for (std::size_t s = 0; s < field.size(); ++s) {
+        result.removed_volume += field.area[s] * (guard.before()[s] - field.height[s]);
     }
     context.report(1.0);
     result.events = events.take();

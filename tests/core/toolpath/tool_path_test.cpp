@@ -1,0 +1,114 @@
+#include "toolpath/tool_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace beltgrinding {
+namespace {
+
+PathPose pose_at(double x, double y, double z, double feed = 10.0, double angle = 0.0) {
+    PathPose pose;
+    pose.base_from_tcp =
+        Eigen::Translation3d(x, y, z) * Eigen::AngleAxisd(angle, Vec3(1, 2, 2).normalized());
+    pose.feed = feed;
+    return pose;
+}
+
+TEST(ToolPath, TakesTheProgrammedTime) {
+    const ToolPath path({pose_at(0, 0, 0), pose_at(30, 40, 0, 10.0), pose_at(30, 40, 20, 5.0)}, {});
+    EXPECT_NEAR(path.duration(), 5.0 + 4.0, 1e-12);
+    double sum = 0.0;
+    for (const PathStep& step : path.steps({})) sum += step.duration;
+    EXPECT_NEAR(sum, path.duration(), 1e-9);
+}
+
+TEST(ToolPath, InterpolatesPositionLinearlyAndOrientationBySlerp) {
+    const ToolPath path({pose_at(0, 0, 0), pose_at(10, 0, 0, 10.0, 1.0)}, {});
+    const auto steps = path.steps({1.0, 0.5, 50.0});
+    ASSERT_EQ(steps.size(), 10u);
+    for (const PathStep& step : steps) {
+        const double t = step.time;  // 1 s in all
+        EXPECT_NEAR(step.work_from_contact.translation().x(), 10.0 * t, 1e-9);
+        const Eigen::AngleAxisd turned(step.work_from_contact.linear());
+        EXPECT_NEAR(turned.angle(), t, 1e-9);
+        EXPECT_NEAR(turned.axis().dot(Vec3(1, 2, 2).normalized()), 1.0, 1e-9);
+        EXPECT_NEAR(step.feed, 10.0, 1e-9);
+    }
+}
+
+TEST(ToolPath, StepsAreNeverLongerThanAsked) {
+    const ToolPath path({pose_at(0, 0, 0), pose_at(7.3, 0, 0, 10.0, 0.3), pose_at(7.3, 9, 0)}, {});
+    const auto steps = path.steps({0.5, 0.01, 50.0});
+    for (const PathStep& step : steps) EXPECT_LE(step.feed * step.duration, 0.5 + 1e-9);
+    EXPECT_GE(steps.size(), 30u + 30u);  // 0.3 rad each way by 0.01
+}
+
+TEST(ToolPath, RapidMotionsGrindNothingButTakeTime) {
+    auto poses = std::vector<PathPose>{pose_at(0, 0, 0), pose_at(10, 0, 0), pose_at(20, 0, 0)};
+    poses[1].rapid = true;
+    const ToolPath path(poses, {});
+    for (const PathStep& step : path.steps({})) EXPECT_EQ(step.pose, 2u);
+    EXPECT_NEAR(path.duration(), 2.0, 1e-12);
+    EXPECT_GT(path.steps({}).front().time, 1.0);
+}
+
+TEST(ToolPath, ForceComesFromThePoseOrTheJob) {
+    auto poses = std::vector<PathPose>{pose_at(0, 0, 0), pose_at(1, 0, 0), pose_at(2, 0, 0)};
+    poses[1].force = 12.0;
+    const auto steps = ToolPath(poses, {}).steps({1.0, 1.0, 77.0});
+    ASSERT_EQ(steps.size(), 2u);
+    EXPECT_EQ(steps[0].force, 12.0);
+    EXPECT_EQ(steps[1].force, 77.0);
+}
+
+// The same relative motion of wheel and work, described once with the tool in hand and once with
+// the part in hand, gives the same contact frames.
+TEST(CellFrames, ToolInHandAndPartInHandAgree) {
+    const Frame work_from_contact =
+        Eigen::Translation3d(10, -20, 30) * Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized());
+    const Frame base_from_work =
+        Eigen::Translation3d(500, 100, 50) * Eigen::AngleAxisd(1.1, Vec3::UnitX());
+    const Frame tcp_from_contact =
+        Eigen::Translation3d(0, 5, 80) * Eigen::AngleAxisd(-0.4, Vec3::UnitY());
+    CellFrames tool;
+    tool.base_from_work = base_from_work;
+    tool.tcp_from_contact = tcp_from_contact;
+    const Frame tool_pose = base_from_work * work_from_contact * tcp_from_contact.inverse();
+    EXPECT_TRUE(tool.work_from_contact(tool_pose).isApprox(work_from_contact, 1e-12));
+
+    CellFrames part;
+    part.holding = Holding::kPartInHand;
+    part.tcp_from_work = base_from_work;
+    part.base_from_contact = tcp_from_contact;
+    const Frame part_pose =
+        tcp_from_contact * work_from_contact.inverse() * base_from_work.inverse();
+    EXPECT_TRUE(part.work_from_contact(part_pose).isApprox(work_from_contact, 1e-12));
+}
+
+std::string error_of(std::vector<PathPose> poses) {
+    try {
+        ToolPath(std::move(poses), {});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(ToolPath, NamesTheWrongPose) {
+    EXPECT_NE(error_of({}).find("no pose"), std::string::npos);
+    auto bad = pose_at(0, 0, 0);
+    bad.line = 17;
+    bad.base_from_tcp.translation().x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(error_of({pose_at(0, 0, 0), bad}).find("pose 2 (line 17)"), std::string::npos);
+    auto skew = pose_at(0, 0, 0);
+    skew.base_from_tcp.linear() *= 1.01;
+    EXPECT_NE(error_of({skew}).find("pose 1: the orientation"), std::string::npos);
+    EXPECT_NE(error_of({pose_at(0, 0, 0, 0.0)}).find("feed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace beltgrinding

@@ -62,7 +62,10 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
     for (const std::uint32_t sample : hits) {
         if ((field.flags[sample] & kMissed) != 0) continue;
         const Vec3 top = contact_from_work * field.top(sample);
-        if (std::abs(top.y()) > 0.5 * wheel_.width) continue;
+        // A sample at the wheel's edge stands for a strip that the wheel covers in part.
+        const double inside =
+            std::clamp((0.5 * wheel_.width - std::abs(top.y())) / field.spacing + 0.5, 0.0, 1.0);
+        if (inside <= 0.0) continue;
         const double along = top.z() + radius;  // from the wheel's axis towards the work
         const double r = std::hypot(top.x(), along);
         if (along <= 0.0) continue;
@@ -71,7 +74,8 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
         const double cosine = along / r;
         const double n_radial = normal.x() * sine + normal.z() * cosine;
         if (n_radial > -kSteepest) continue;
-        const double gap = r - (radius - wheel_.drop(top.y()));
+        const double y = std::clamp(top.y(), -0.5 * wheel_.width, 0.5 * wheel_.width);
+        const double gap = r - (radius - wheel_.drop(y));
         if (gap > reach) continue;
         const double n_tangential = normal.x() * cosine - normal.z() * sine;
         Footprint f;
@@ -80,9 +84,10 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
         f.y = top.y();
         f.gap = gap;
         f.slope_s = -n_tangential / n_radial * (r / radius);
-        f.slope_y = -normal.y() / n_radial + wheel_.drop_slope(top.y());
+        f.slope_y = -normal.y() / n_radial + wheel_.drop_slope(y);
+        f.inside = inside;
         f.area = field.area[sample];
-        f.projected_area = static_cast<float>(-n_radial * field.area[sample] * radius / r);
+        f.projected_area = static_cast<float>(-n_radial * inside * field.area[sample] * radius / r);
         f.boundary = (field.flags[sample] & kOnBoundary) != 0;
         footprints_.push_back(f);
         half_length = std::max(half_length, std::abs(f.s));
@@ -135,7 +140,7 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
         if (!f.nearest) continue;
         double lowering = 0.0;
         for (const Corner& c : corners(f)) lowering += c.weight * rate[c.cell];
-        lowering_[k] = lowering * duration;
+        lowering_[k] = f.inside * lowering * duration;
         unscaled += lowering_[k] * f.area;
     }
     if (!(unscaled > 0.0)) return 0.0;

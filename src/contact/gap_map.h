@@ -58,6 +58,7 @@ class GapMap {
         double s, y;  // mm
         double gap;   // mm, at (s, y)
         double slope_s, slope_y;
+        double inside;         // share of the sample's extent that lies within the wheel's width
         float area;            // mm2, of the design surface
         float projected_area;  // mm2, on the wheel
         bool boundary;

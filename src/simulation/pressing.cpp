@@ -36,7 +36,7 @@ void Pressing::localise(const HeightField& field, const SegmentTree& tree, doubl
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
     reach.radius = options_.wheel.radius + margin;
-    reach.half_width = 0.5 * options_.wheel.width;
+    reach.half_width = 0.5 * (options_.wheel.width + field.spacing);
     reach.min_along = kAhead * options_.wheel.radius;
     tree.query(field, reach, hits_);
 }

@@ -1,0 +1,126 @@
+#include "contact/gap_map.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "support/synthetic_field.h"
+
+namespace beltgrinding {
+namespace {
+
+/// The wheel above (x, y, z), its axis turned by `angle` about the vertical, pressing down.
+Frame above(double x, double y, double z, double angle = 0.0) {
+    Frame frame = Frame::Identity();
+    frame.linear() =
+        (Eigen::AngleAxisd(angle, Vec3::UnitZ()) * Eigen::AngleAxisd(M_PI, Vec3::UnitX()))
+            .toRotationMatrix();
+    frame.translation() = Vec3(x, y, z);
+    return frame;
+}
+
+std::vector<std::uint32_t> all_of(const HeightField& field) {
+    std::vector<std::uint32_t> hits(field.size());
+    std::iota(hits.begin(), hits.end(), 0U);
+    return hits;
+}
+
+TEST(GapMap, GivesTheRadialGapOfAPlateAtAnyAngle) {
+    const ContactWheel wheel{80.0, 20.0, 0.0};
+    const HeightField field = testing::plate(80.0, 80.0, 0.5, 0.2);
+    const double lift = 0.15;  // of the wheel above the stock
+    for (const double angle : {0.0, 0.3, 0.785, 1.2}) {
+        GapMap map(wheel, 1.0);
+        map.update(field, all_of(field), above(40.0, 40.0, 0.2 + lift, angle), 1.0);
+        const ContactGrid& grid = map.grid();
+        int seen = 0;
+        for (int j = 0; j < grid.ny; ++j) {
+            for (int i = 0; i < grid.nx; ++i) {
+                const double theta = grid.s(i) / wheel.radius;
+                if (std::abs(grid.s(i)) > 10.0) continue;
+                const double exact = (wheel.radius + lift) / std::cos(theta) - wheel.radius;
+                EXPECT_NEAR(map.gap()[j * grid.nx + i], exact, 2.0e-3);
+                EXPECT_EQ(map.coverage()[j * grid.nx + i], 1.0);
+                ++seen;
+            }
+        }
+        EXPECT_GT(seen, 300);
+    }
+}
+
+TEST(GapMap, CrownOpensTheGapTowardsTheEdges) {
+    const ContactWheel wheel{80.0, 20.0, 60.0};
+    const HeightField field = testing::plate(60.0, 60.0, 0.4);
+    GapMap map(wheel, 1.0);
+    map.update(field, all_of(field), above(30.0, 30.0, 0.0), 3.0);
+    const ContactGrid& grid = map.grid();
+    for (int j = 0; j < grid.ny; ++j) {
+        EXPECT_NEAR(map.gap()[j * grid.nx + grid.nx / 2], wheel.drop(grid.y(j)), 5e-3);
+    }
+}
+
+TEST(GapMap, CoverageEndsWhereTheFaceEnds) {
+    const ContactWheel wheel{80.0, 20.0, 0.0};
+    const HeightField field = testing::plate(60.0, 60.0, 0.5);
+    GapMap map(wheel, 1.0);
+    // Half of the wheel's width hangs over the edge y = 0; cells are halved there.
+    map.update(field, all_of(field), above(30.0, 0.0, 0.0), 0.5);
+    const ContactGrid& grid = map.grid();
+    double covered = 0.0;
+    for (int j = 0; j < grid.ny; ++j)
+        covered += map.coverage()[j * grid.nx + grid.nx / 2] * grid.dy;
+    EXPECT_NEAR(covered, 10.0, 0.3);
+}
+
+TEST(GapMap, SeesOnlyTheNearestLayer) {
+    HeightField field = testing::plate(40.0, 40.0, 0.5);
+    const HeightField below = testing::plate(40.0, 40.0, 0.5);
+    const std::size_t n = field.size();
+    field.resize(2 * n);
+    for (std::size_t i = 0; i < n; ++i) {
+        field.point[n + i] = below.point[i] - Vec3(0, 0, 2.0);
+        field.normal[n + i] = below.normal[i];
+        field.area[n + i] = below.area[i];
+    }
+    GapMap map({60.0, 20.0, 0.0}, 1.0);
+    map.update(field, all_of(field), above(20.0, 20.0, 0.0), 5.0);
+    EXPECT_NEAR(map.lowest(), 0.0, 2e-3);
+    std::vector<std::uint32_t> changed;
+    Eigen::ArrayXd rate = (map.gap() < 0.2).select(Eigen::ArrayXd::Ones(map.gap().size()), 0.0);
+    map.remove(field, rate, 0.01, changed);
+    for (const std::uint32_t s : changed) EXPECT_LT(s, n);
+    EXPECT_FALSE(changed.empty());
+}
+
+TEST(GapMap, RemovesTheVolumeOfTheCells) {
+    for (const double spacing : {0.2, 0.37, 0.66}) {
+        HeightField field = testing::cylinder(45.0, 60.0, 40.0, spacing, 0.5);
+        const std::vector<double> before = field.height;
+        GapMap map({50.0, 15.0, 0.0}, 1.0);
+        map.update(field, all_of(field), above(0.0, 20.0, 0.2, 0.4), 1.0);
+        const Eigen::ArrayXd rate = (-map.gap()).max(0.0);
+        std::vector<std::uint32_t> changed;
+        const double volume = map.remove(field, rate, 0.5, changed);
+        EXPECT_NEAR(volume, (rate * map.coverage()).sum() * map.grid().cell_area() * 0.5, 1e-12);
+        double removed = 0.0;
+        for (std::size_t i = 0; i < field.size(); ++i) {
+            removed += field.area[i] * (before[i] - field.height[i]);
+        }
+        EXPECT_NEAR(removed, volume, 1e-9 * volume);
+    }
+}
+
+TEST(GapMap, LeavesOutWhatFacesAwayOrWasMissed) {
+    HeightField field = testing::plate(20.0, 20.0, 0.5);
+    for (auto& n : field.normal) n = -n;
+    GapMap map({60.0, 20.0, 0.0}, 1.0);
+    map.update(field, all_of(field), above(10.0, 10.0, 0.0), 5.0);
+    EXPECT_TRUE(map.empty());
+    field = testing::plate(20.0, 20.0, 0.5);
+    for (auto& f : field.flags) f |= kMissed;
+    map.update(field, all_of(field), above(10.0, 10.0, 0.0), 5.0);
+    EXPECT_TRUE(map.empty());
+}
+
+}  // namespace
+}  // namespace beltgrinding

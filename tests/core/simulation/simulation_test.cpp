@@ -1,0 +1,167 @@
+#include "simulation/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "base/error.h"
+#include "support/synthetic_field.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kCoefficient = 1e-4;  // mm2/N
+
+PathPose pressing_down(double x, double y, double z, double feed, double turn = 0.0) {
+    PathPose pose;
+    pose.base_from_tcp = Eigen::Translation3d(x, y, z) * Eigen::AngleAxisd(turn, Vec3::UnitZ()) *
+                         Eigen::AngleAxisd(M_PI, Vec3::UnitX());
+    pose.feed = feed;
+    return pose;
+}
+
+SimulationOptions options() {
+    SimulationOptions o;
+    o.wheel = {60.0, 20.0, 0.0};
+    o.force = 40.0;
+    o.belt_speed = 20000.0;
+    return o;
+}
+
+/// Mean removal over the samples of the plate's middle third in x, on the lines |y - centre| <=
+/// half.
+double mean_removal(const HeightField& field, double centre, double half) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const Vec3& p = field.point[i];
+        if (p.x() < 45.0 || p.x() > 75.0 || std::abs(p.y() - centre) > half) continue;
+        sum += field.stock_height[i] - field.height[i];
+        ++count;
+    }
+    return sum / count;
+}
+
+TEST(Simulation, APassOverAPlateRemovesHammannsDepthByBothLaws) {
+    const double feed = 40.0;
+    const ToolPath path({pressing_down(10, 30, 0.5, feed), pressing_down(110, 30, 0.5, feed)}, {});
+    const double depth = hammann_depth(kCoefficient, 1.0, 20000.0, 40.0, feed, 20.0);
+    for (const double spacing : {0.3, 0.5, 0.8}) {
+        for (const bool global : {false, true}) {
+            HeightField field = testing::plate(120.0, 60.0, spacing, 0.5);
+            ElasticFoundation foundation(0.5);
+            const std::unique_ptr<RemovalLaw> law =
+                global ? std::unique_ptr<RemovalLaw>(std::make_unique<HammannLaw>(kCoefficient))
+                       : std::make_unique<LocalLinearLaw>(kCoefficient);
+            const SimulationResult result = simulate(field, path, foundation, *law, options());
+            EXPECT_NEAR(mean_removal(field, 30.0, 8.0), depth, 0.01 * depth) << spacing << global;
+            EXPECT_NEAR(result.removed_volume, result.integrated_rate,
+                        0.01 * result.removed_volume);
+            const double whole = kCoefficient * 20000.0 * 40.0 * 100.0 / feed;  // K V_b F t
+            EXPECT_NEAR(result.removed_volume, whole, 0.01 * whole);
+        }
+    }
+}
+
+TEST(Simulation, HalvingTheStepsChangesTheResultByLessThanOnePercent) {
+    const double feed = 30.0;
+    const ToolPath path(
+        {pressing_down(5, 20, 0.4, feed, 0.5), pressing_down(30, 22, 0.4, feed, 0.2),
+         pressing_down(50, 18, 0.4, feed, -0.3)},
+        {});
+    std::vector<HeightField> ground;
+    for (const double travel : {1.0, 0.5}) {
+        HeightField field = testing::plate(60.0, 40.0, 0.4, 0.4);
+        ElasticFoundation foundation(0.5);
+        SimulationOptions o = options();
+        o.stepping.max_travel = travel;
+        simulate(field, path, foundation, LocalLinearLaw(kCoefficient), o);
+        ground.push_back(std::move(field));
+    }
+    double difference = 0.0, removed = 0.0;
+    for (std::size_t i = 0; i < ground[0].size(); ++i) {
+        difference += std::abs(ground[0].height[i] - ground[1].height[i]) * ground[0].area[i];
+        removed += (0.4 - ground[1].height[i]) * ground[0].area[i];
+    }
+    EXPECT_LT(difference, 0.01 * removed);
+}
+
+TEST(Simulation, PositionControlStopsAtTheWheelsEnvelope) {
+    // Standing still for long: the foundation relaxes, until the surface is the wheel's own.
+    HeightField field = testing::plate(40.0, 40.0, 0.4, 0.3);
+    ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.force_control = false;
+    const ToolPath path({pressing_down(20, 20, 0.0, 1e-3), pressing_down(20.0, 20.001, 0.0, 1e-4)},
+                        {});
+    simulate(field, path, foundation, LocalLinearLaw(1e-3), o);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const Vec3& p = field.point[i];
+        // A cell within the edge, where cells are covered in part.
+        if (std::abs(p.y() - 20.0) > 8.5 || std::abs(p.x() - 20.0) > 4.0) continue;
+        const double envelope = 60.0 - std::sqrt(3600.0 - std::pow(p.x() - 20.0, 2));
+        EXPECT_NEAR(field.height[i], std::min(0.3, envelope), 0.01);
+    }
+}
+
+TEST(Simulation, ForceIsHeldAndTimeIsTheRobots) {
+    HeightField field = testing::cylinder(70.0, 80.0, 40.0, 0.5, 0.3);
+    ElasticFoundation foundation(0.5);
+    // Over the crown of the cylinder, 1 mm off the surface at the ends: the force control follows.
+    const ToolPath path({pressing_down(-10, 20, 0.3, 20.0), pressing_down(10, 20, 0.3, 20.0)}, {});
+    const SimulationResult result =
+        simulate(field, path, foundation, LocalLinearLaw(kCoefficient), options());
+    EXPECT_NEAR(result.process_time, 1.0, 1e-12);
+    for (const StepRecord& step : result.steps) {
+        EXPECT_NEAR(step.force, 40.0, 0.1);
+        EXPECT_GT(step.contact_area, 20.0);
+    }
+    EXPECT_TRUE(result.events.empty());
+}
+
+TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
+    HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
+    ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.force_travel = 0.2;
+    const ToolPath path({pressing_down(10, 20, 0.15, 20.0), pressing_down(30, 20, 0.15, 20.0)}, {});
+    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    ASSERT_EQ(result.events.size(), 1u);
+    EXPECT_EQ(result.events[0].kind, "force_not_reached");
+    EXPECT_LT(result.events[0].value, 40.0);
+    EXPECT_NEAR(result.events[0].duration, 1.0, 1e-6);
+}
+
+TEST(Simulation, RefusesAPathThatNeverTouchesAndLeavesTheField) {
+    HeightField field = testing::plate(20.0, 20.0, 0.5, 0.3);
+    const std::vector<double> before = field.height;
+    ElasticFoundation foundation(0.5);
+    const ToolPath far({pressing_down(0, 0, 100.0, 20.0), pressing_down(9, 0, 100.0, 20.0)}, {});
+    EXPECT_THROW(simulate(field, far, foundation, LocalLinearLaw(1e-4), options()), InputError);
+    EXPECT_EQ(field.height, before);
+    EXPECT_THROW(simulate(field, ToolPath({pressing_down(0, 0, 0, 1)}, {}), foundation,
+                          LocalLinearLaw(1e-4), options()),
+                 InputError);
+}
+
+TEST(Simulation, CancelLeavesTheFieldAsItWas) {
+    HeightField field = testing::plate(100.0, 60.0, 0.4, 0.4);
+    const std::vector<double> before = field.height;
+    ElasticFoundation foundation(0.5);
+    const ToolPath path({pressing_down(10, 30, 0.4, 0.1), pressing_down(90, 30, 0.4, 0.1)}, {});
+    SimulationOptions o = options();
+    o.stepping.max_travel = 0.001;
+    const RunContext context;
+    std::thread other([&] {
+        while (context.progress() <= 0.0) std::this_thread::yield();
+        context.cancel();
+    });
+    EXPECT_THROW(simulate(field, path, foundation, LocalLinearLaw(kCoefficient), o, context),
+                 Cancelled);
+    other.join();
+    EXPECT_EQ(field.height, before);
+}
+
+}  // namespace
+}  // namespace beltgrinding

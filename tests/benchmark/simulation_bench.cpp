@@ -1,0 +1,60 @@
+// What a step costs: localise, gap, contact, removal, refit, on plates of 0.25, 1 and 4 million
+// samples at the same spacing. The counters are microseconds a step by phase; a step must cost what
+// the contact costs, so they should hardly change with the size of the field.
+#include <benchmark/benchmark.h>
+
+#include "simulation/simulation.h"
+#include "support/synthetic_field.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kSpacing = 0.2;  // mm
+
+void step_cost(benchmark::State& state) {
+    const double side = kSpacing * std::sqrt(static_cast<double>(state.range(0)));
+    HeightField field = testing::plate(side, side, kSpacing, 0.3);
+    ElasticFoundation foundation(0.5);
+    const LocalLinearLaw law(1e-5);
+    SimulationOptions options;
+    options.wheel = {100.0, 50.0, 0.0};
+    options.force = 100.0;
+    std::vector<PathPose> poses(2);
+    for (std::size_t k = 0; k < 2; ++k) {
+        poses[k].base_from_tcp =
+            Eigen::Translation3d(k == 0 ? 20.0 : side - 20.0, 0.5 * side, 0.3) *
+            Eigen::AngleAxisd(M_PI, Vec3::UnitX());
+    }
+    const ToolPath path(poses, {});
+    SimulationResult result;
+    double steps = 0, localise = 0, gap = 0, contact = 0, removal = 0, refit = 0, segments = 0;
+    for (auto _ : state) {
+        result = simulate(field, path, foundation, law, options);
+        steps += static_cast<double>(result.steps.size());
+        localise += result.localise_s;
+        gap += result.gap_s;
+        contact += result.contact_s;
+        removal += result.removal_s;
+        refit += result.refit_s;
+        for (const StepRecord& step : result.steps) segments += step.segments;
+        // The tree's build is no part of a step.
+        state.SetIterationTime(result.localise_s + result.gap_s + result.contact_s +
+                               result.removal_s + result.refit_s);
+    }
+    state.counters["segments"] = segments / steps;
+    state.counters["step_us"] = 1e6 * (localise + gap + contact + removal + refit) / steps;
+    state.counters["localise_us"] = 1e6 * localise / steps;
+    state.counters["gap_us"] = 1e6 * gap / steps;
+    state.counters["contact_us"] = 1e6 * contact / steps;
+    state.counters["removal_us"] = 1e6 * removal / steps;
+    state.counters["refit_us"] = 1e6 * refit / steps;
+}
+BENCHMARK(step_cost)
+    ->Arg(250'000)
+    ->Arg(1'000'000)
+    ->Arg(4'000'000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+
+}  // namespace
+}  // namespace beltgrinding

@@ -49,4 +49,8 @@ std::vector<std::uint32_t> deviation_colours(const HeightField& field, const Col
 /// colours (red green blue alpha) and the float property `deviation` (mm; NaN where missed).
 std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground);
 
+/// Binary PLY with nothing but vertices and triangles, as FreeCAD's Mesh reads it fastest; vertex i
+/// is sample i.
+std::string mesh_ply(const HeightField& field, bool ground);
+
 }  // namespace beltgrinding

@@ -1,0 +1,126 @@
+#include "inspection/deviation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace beltgrinding {
+namespace {
+
+struct Colour {
+    double r, g, b;
+};
+
+// Brown above, blue below: the two ends of ColorBrewer's BrBG and RdYlBu families are told apart in
+// every common colour vision deficiency, because they differ in blue against yellow, not in red
+// against green. Ramps darken with the distance, so that they also read in grey.
+constexpr Colour kGood{0.80, 0.84, 0.80};
+constexpr std::array<Colour, 3> kAbove{
+    {{0.99, 0.80, 0.35}, {0.90, 0.45, 0.05}, {0.45, 0.15, 0.02}}};
+constexpr std::array<Colour, 3> kBelow{
+    {{0.55, 0.78, 0.98}, {0.15, 0.40, 0.85}, {0.10, 0.08, 0.40}}};
+constexpr std::uint32_t kMissedColour = 0x707070FF;
+
+std::uint32_t pack(const Colour& c) {
+    const auto byte = [](double v) {
+        return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+    };
+    return byte(c.r) << 24U | byte(c.g) << 16U | byte(c.b) << 8U | 255U;
+}
+
+std::uint32_t ramp(const std::array<Colour, 3>& stops, double t) {
+    const double u = 2.0 * std::clamp(t, 0.0, 1.0);
+    const std::size_t k = u < 1.0 ? 0 : 1;
+    const double w = u - static_cast<double>(k);
+    const Colour &a = stops[k], &b = stops[k + 1];
+    return pack({a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)});
+}
+
+void validate(const Tolerance& tolerance) {
+    if (!std::isfinite(tolerance.lower) || !std::isfinite(tolerance.upper) ||
+        tolerance.lower > tolerance.upper) {
+        throw InputError("tolerance: the lower limit must not lie above the upper one");
+    }
+}
+
+}  // namespace
+
+DeviationStatistics deviation_statistics(const HeightField& field, const Tolerance& tolerance) {
+    validate(tolerance);
+    DeviationStatistics s;
+    s.samples = field.size();
+    std::vector<std::uint32_t> inspected;
+    inspected.reserve(field.size());
+    double area = 0.0, sum = 0.0, squares = 0.0, good = 0.0, above = 0.0, below = 0.0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const double a = field.area[i], h = field.height[i];
+        s.design_area += a;
+        if ((field.flags[i] & kDefective) != 0) ++s.defective;
+        if ((field.flags[i] & kMissed) != 0) {
+            ++s.missed;
+            continue;
+        }
+        s.stock_volume += a * std::max(static_cast<double>(field.stock_height[i]), 0.0);
+        s.removed_volume += a * (field.stock_height[i] - h);
+        inspected.push_back(static_cast<std::uint32_t>(i));
+        area += a;
+        sum += a * h;
+        squares += a * h * h;
+        (h > tolerance.upper ? above : h < tolerance.lower ? below : good) += a;
+    }
+    if (inspected.empty() || area <= 0.0) return s;
+    s.mean = sum / area;
+    s.rms = std::sqrt(squares / area);
+    s.in_tolerance_share = good / area;
+    s.above_share = above / area;
+    s.below_share = below / area;
+    std::sort(inspected.begin(), inspected.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return field.height[a] != field.height[b] ? field.height[a] < field.height[b] : a < b;
+    });
+    s.min = field.height[inspected.front()];
+    s.max = field.height[inspected.back()];
+    s.p05 = s.p50 = s.p95 = s.max;
+    const std::array<std::pair<double, double*>, 3> wanted{
+        {{0.05, &s.p05}, {0.50, &s.p50}, {0.95, &s.p95}}};
+    std::size_t next = 0;
+    double so_far = 0.0;
+    for (const std::uint32_t i : inspected) {
+        so_far += field.area[i];
+        while (next < wanted.size() && so_far >= wanted[next].first * area) {
+            *wanted[next++].second = field.height[i];
+        }
+    }
+    return s;
+}
+
+std::uint32_t ColourScale::colour(double deviation) const {
+    if (!std::isfinite(deviation)) return missed_colour();
+    if (deviation > tolerance.upper) {
+        return ramp(kAbove,
+                    (deviation - tolerance.upper) / std::max(limit - tolerance.upper, 1e-9));
+    }
+    if (deviation < tolerance.lower) {
+        return ramp(kBelow,
+                    (tolerance.lower - deviation) / std::max(limit + tolerance.lower, 1e-9));
+    }
+    return pack(kGood);
+}
+
+std::uint32_t ColourScale::missed_colour() const {
+    return kMissedColour;
+}
+
+std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale) {
+    validate(scale.tolerance);
+    std::vector<std::uint32_t> colours(field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        colours[i] =
+            (field.flags[i] & kMissed) != 0 ? scale.missed_colour() : scale.colour(field.height[i]);
+    }
+    return colours;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,228 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "stock/stock.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr std::size_t kBlock = 4096;  // rays per task
+constexpr int kMaxLayers = 16;        // surfaces crossed by one ray before it gives up
+constexpr float kAdvance = 1e-4F;     // mm beyond a hit from which the ray goes on
+// mm: outward surfaces closer together than this are one surface scanned twice; the outer counts.
+constexpr float kDoubleSurface = 0.05F;
+
+struct DeviceDeleter {
+    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+};
+
+/// The stock's triangles in Embree. The mesh must outlive it.
+class RayScene {
+  public:
+    explicit RayScene(const TriangleMesh& mesh) : device_(rtcNewDevice("threads=0")) {
+        if (!device_)
+            throw InputError("Embree could not be started; is the processor without SSE2?");
+        scene_.reset(rtcNewScene(device_.get()));
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+        RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Vec3f), mesh.vertices.size());
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    sizeof(Triangle), mesh.triangles.size());
+        if (vertices == nullptr || indices == nullptr) {
+            rtcReleaseGeometry(geometry);
+            throw InputError("stock: the mesh does not fit in memory");
+        }
+        std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+        std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene_.get());
+    }
+
+    struct Hit {
+        float distance = -1.0F;  // negative: none
+        bool leaving = false;    // the ray leaves material here
+    };
+
+    Hit first(const Vec3f& origin, const Vec3f& direction, float near, float far) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        RTCRayHit ray{};
+        ray.ray.org_x = origin.x();
+        ray.ray.org_y = origin.y();
+        ray.ray.org_z = origin.z();
+        ray.ray.dir_x = direction.x();
+        ray.ray.dir_y = direction.y();
+        ray.ray.dir_z = direction.z();
+        ray.ray.tnear = near;
+        ray.ray.tfar = far;
+        ray.ray.mask = ~0U;
+        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene_.get(), &context, &ray);
+        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+        const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+        return {ray.ray.tfar, normal.dot(direction) > 0.0F};
+    }
+
+  private:
+    std::unique_ptr<RTCDeviceTy, DeviceDeleter> device_;
+    std::unique_ptr<RTCSceneTy, SceneDeleter> scene_;
+};
+
+/// Height of the stock over one sample, or NaN for a miss. See `apply_mesh` for the rule.
+float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& normal,
+                   const StockOptions& options) {
+    const auto above = static_cast<float>(options.search_above);
+    const auto below = static_cast<float>(options.search_below);
+    // Outward: the first surface through which the ray leaves material; one entered before it means
+    // that the design point itself lies outside of the stock, under a gap.
+    bool entered = false;
+    float best = std::nanf("");
+    float near = 0.0F;
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+        const RayScene::Hit hit = scene.first(point, normal, near, above);
+        if (hit.distance < 0.0F) break;
+        if (hit.leaving) {
+            if (std::isnan(best)) {
+                best = hit.distance;
+            } else if (hit.distance - best <= kDoubleSurface) {
+                best = hit.distance;
+            } else {
+                break;
+            }
+        } else if (std::isnan(best)) {
+            entered = true;
+        }
+        near = hit.distance + kAdvance;
+    }
+    if (!std::isnan(best) && !entered) return best;
+    // Inward: the surface from which the material begins, met from outside.
+    const RayScene::Hit inward = scene.first(point, -normal, 0.0F, below);
+    if (inward.distance >= 0.0F && !inward.leaving) return -inward.distance;
+    return std::nanf("");
+}
+
+std::string number(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.4g", value);
+    return text.data();
+}
+
+void validate(const HeightField& field, const TriangleMesh& mesh, const StockOptions& options) {
+    if (mesh.vertices.empty() || mesh.triangles.empty()) {
+        throw InputError("stock: the mesh has no triangle");
+    }
+    if (!(options.search_above > 0.0) || !(options.search_below >= 0.0)) {
+        throw InputError("stock: the search distances must be positive, in millimetres");
+    }
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (!mesh.vertices[i].allFinite()) {
+            throw InputError("stock: vertex " + std::to_string(i) + " of the mesh is not finite");
+        }
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const std::uint32_t v : mesh.triangles[i]) {
+            if (v >= mesh.vertices.size()) {
+                throw InputError("stock: triangle " + std::to_string(i) +
+                                 " of the mesh names a vertex that is not there");
+            }
+        }
+    }
+    if (field.size() == 0) throw InputError("stock: the height field is empty");
+}
+
+/// What is wrong when hardly a ray hits: a unit, or a frame.
+[[noreturn]] void explain_misses(const HeightField& field, const TriangleMesh& mesh) {
+    Box design, stock;
+    for (const Vec3& p : field.point) design.extend(p);
+    for (const Vec3f& v : mesh.vertices) stock.extend(v.cast<double>());
+    const double ratio = design.diagonal().norm() / std::max(stock.diagonal().norm(), 1e-12);
+    const std::string sizes = " (the design is " + number(design.diagonal().norm()) +
+                              " mm across, the stock " + number(stock.diagonal().norm()) + " mm)";
+    for (const auto& [factor, unit] : {std::pair{1000.0, "metres"},
+                                       {25.4, "inches"},
+                                       {10.0, "centimetres"},
+                                       {0.001, "micrometres"}}) {
+        if (ratio > factor / 2.0 && ratio < factor * 2.0) {
+            throw InputError("stock: no ray meets the mesh; it seems to be in " +
+                             std::string(unit) + sizes + "; set its unit to " + number(factor) +
+                             " mm");
+        }
+    }
+    throw InputError("stock: no ray meets the mesh within the search distance" + sizes +
+                     ", their centres are " + number((design.center() - stock.center()).norm()) +
+                     " mm apart; check the stock's placement and unit, or search farther");
+}
+
+}  // namespace
+
+StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const StockOptions& options,
+                       const RunContext& context) {
+    validate(field, mesh, options);
+    // Rays in single precision: keep the origin close, so that a part far from zero loses nothing.
+    const Vec3 origin = field.point.front();
+    TriangleMesh local = mesh;
+    for (Vec3f& v : local.vertices) v = (v.cast<double>() - origin).cast<float>();
+    const RayScene scene(local);
+    context.throw_if_cancelled();
+
+    std::vector<float> found(field.size());
+    std::atomic<std::size_t> done{0};
+    parallel_blocks(field.size(), kBlock, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3f point = (field.point[i] - origin).cast<float>();
+            found[i] = stock_height(scene, point, field.normal[i], options);
+        }
+        context.report(static_cast<double>(done += end - begin) /
+                       static_cast<double>(field.size()));
+    });
+
+    StockReport report;
+    report.missed = static_cast<std::size_t>(
+        std::count_if(found.begin(), found.end(), [](float h) { return std::isnan(h); }));
+    if (report.missed == field.size()) explain_misses(field, mesh);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        auto flags = static_cast<std::uint8_t>(field.flags[i] & ~(kMissed | kDefective));
+        float height = found[i];
+        if (std::isnan(height)) {
+            flags |= kMissed;
+            height = 0.0F;
+        } else if (height < 0.0F) {
+            flags |= kDefective;
+            ++report.defective;
+        }
+        field.flags[i] = flags;
+        field.height[i] = height;
+        field.stock_height[i] = height;
+        report.volume += field.area[i] * std::max(height, 0.0F);
+    }
+    if (report.missed > 0) {
+        report.warnings.push_back(std::to_string(report.missed) + " of " +
+                                  std::to_string(field.size()) +
+                                  " rays meet no stock within the search distance");
+    }
+    if (report.defective > 0) {
+        report.warnings.push_back("the stock lies below the design at " +
+                                  std::to_string(report.defective) + " samples");
+    }
+    return report;
+}
+
+}  // namespace beltgrinding

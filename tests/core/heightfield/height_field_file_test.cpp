@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "base/error.h"
+#include "heightfield/height_field.h"
+#include "support/synthetic_field.h"
+
+namespace beltgrinding {
+namespace {
+
+class HeightFieldFile : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("beltgrinding-test-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+        path_ = (folder_ / "field.h5").string();
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::string bytes() const {
+        std::ifstream in(path_, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void overwrite(const std::string& content) const {
+        std::ofstream(path_, std::ios::binary | std::ios::trunc) << content;
+    }
+
+    std::filesystem::path folder_;
+    std::string path_;
+};
+
+TEST_F(HeightFieldFile, ComesBackAsItWas) {
+    HeightField field = testing::cylinder(30.0, 20.0, 15.0, 0.7, 0.25);
+    field.height[5] = -0.125;
+    field.flags[7] |= kMissed;
+    field.face[9] = 3;
+    field.depth = 1.5;
+    write_hdf5(field, path_, "{\"a\": 1}");
+    std::string attributes;
+    const HeightField back = read_hdf5(path_, &attributes);
+    EXPECT_EQ(attributes, "{\"a\": 1}");
+    EXPECT_EQ(back.point, field.point);
+    EXPECT_EQ(back.normal, field.normal);
+    EXPECT_EQ(back.area, field.area);
+    EXPECT_EQ(back.height, field.height);
+    EXPECT_EQ(back.stock_height, field.stock_height);
+    EXPECT_EQ(back.face, field.face);
+    EXPECT_EQ(back.flags, field.flags);
+    EXPECT_EQ(back.triangles, field.triangles);
+    EXPECT_EQ(back.spacing, field.spacing);
+    EXPECT_EQ(back.depth, field.depth);
+}
+
+TEST_F(HeightFieldFile, AFailedWriteNamesThePathAndLeavesTheOldFile) {
+    const HeightField field = testing::plate(2.0, 2.0, 1.0);
+    write_hdf5(field, path_, "");
+    const std::string before = bytes();
+    try {
+        write_hdf5(field, (folder_ / "no" / "such" / "x.h5").string(), "");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("x.h5"), std::string::npos);
+    }
+    EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(HeightFieldFile, RefusesAnythingElse) {
+    EXPECT_THROW(read_hdf5((folder_ / "absent.h5").string()), InputError);
+    overwrite("no HDF5 at all");
+    EXPECT_THROW(read_hdf5(path_), InputError);
+    HeightField field = testing::plate(2.0, 2.0, 1.0);
+    field.triangles[0][0] = 1000;
+    write_hdf5(field, path_, "");
+    EXPECT_THROW(read_hdf5(path_), InputError);
+    field = testing::plate(2.0, 2.0, 1.0);
+    field.area.pop_back();
+    write_hdf5(field, path_, "");
+    EXPECT_THROW(read_hdf5(path_), InputError);
+}
+
+TEST_F(HeightFieldFile, DamagedBytesAreRefusedOrReadButNeverCrash) {
+    write_hdf5(testing::plate(3.0, 3.0, 1.0, 0.2), path_, "{}");
+    const std::string good = bytes();
+    std::mt19937 random(1);
+    int refused = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        std::string bad = good;
+        if (trial % 3 == 0) {
+            bad.resize(random() % bad.size());
+        } else {
+            for (int k = 0; k < 8; ++k) bad[random() % 2048] = static_cast<char>(random());
+        }
+        overwrite(bad);
+        try {
+            const HeightField field = read_hdf5(path_);
+            EXPECT_EQ(field.height.size(), field.size());
+        } catch (const InputError&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace beltgrinding

@@ -1,0 +1,191 @@
+#include "stock/stock.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "support/synthetic_field.h"
+
+namespace beltgrinding {
+namespace {
+
+/// An axis-parallel box, outward.
+TriangleMesh box(const Vec3f& low, const Vec3f& high) {
+    TriangleMesh mesh;
+    for (int k = 0; k < 8; ++k) {
+        mesh.vertices.push_back({(k & 1) != 0 ? high.x() : low.x(),
+                                 (k & 2) != 0 ? high.y() : low.y(),
+                                 (k & 4) != 0 ? high.z() : low.z()});
+    }
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
+HeightField plate_at(double z) {
+    HeightField field = testing::plate(20.0, 10.0, 0.5);
+    for (Vec3& p : field.point) p += Vec3(5.0, 5.0, z);
+    return field;
+}
+
+std::string error_of(HeightField field, const TriangleMesh& mesh) {
+    try {
+        apply_mesh(field, mesh, {});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Stock, AllowanceIsEverywhere) {
+    HeightField field = testing::plate(10.0, 10.0, 1.0);
+    const StockReport report = apply_allowance(field, 0.4);
+    EXPECT_NEAR(report.volume, 40.0, 1e-5);
+    for (const double h : field.height) EXPECT_EQ(h, 0.4);
+    EXPECT_EQ(apply_allowance(field, -0.1).defective, field.size());
+    EXPECT_THROW(apply_allowance(field, std::nan("")), InputError);
+}
+
+TEST(Stock, SealedSolidGivesExactHeights) {
+    HeightField field = plate_at(9.4);
+    const StockReport report = apply_mesh(field, box({0, 0, 0}, {30, 20, 10}), {});
+    EXPECT_EQ(report.missed, 0u);
+    EXPECT_EQ(report.defective, 0u);
+    for (const double h : field.height) EXPECT_NEAR(h, 0.6, 1e-5);
+    EXPECT_NEAR(report.volume, 0.6 * 200.0, 1e-2);
+}
+
+TEST(Stock, StockBelowTheDesignIsDefective) {
+    HeightField field = plate_at(10.3);
+    const StockReport report = apply_mesh(field, box({0, 0, 0}, {30, 20, 10}), {});
+    EXPECT_EQ(report.defective, field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        EXPECT_NEAR(field.height[i], -0.3, 1e-5);
+        EXPECT_TRUE(field.flags[i] & kDefective);
+    }
+}
+
+// A box that lies above the design with a gap below it is no stock of this surface.
+TEST(Stock, MaterialBeyondAGapDoesNotCount) {
+    HeightField field = plate_at(-2.0);
+    TriangleMesh mesh = box({0, 0, 0}, {30, 20, 10});
+    EXPECT_NE(error_of(field, mesh).find("no ray meets"), std::string::npos);
+    const TriangleMesh below = box({0, 0, -10}, {30, 20, -2.5});
+    for (Triangle t : below.triangles) {
+        for (auto& v : t) v += 8;
+        mesh.triangles.push_back(t);
+    }
+    mesh.vertices.insert(mesh.vertices.end(), below.vertices.begin(), below.vertices.end());
+    apply_mesh(field, mesh, {});
+    for (const double h : field.height) EXPECT_NEAR(h, -0.5, 1e-5);
+}
+
+TEST(Stock, AScanWithAHoleAndDoubledSurfaceIsSound) {
+    TriangleMesh scan;  // an open sheet at z = 10 over x < 15, scanned twice, 0.02 mm apart
+    for (const float z : {10.0F, 10.02F}) {
+        const auto base = static_cast<std::uint32_t>(scan.vertices.size());
+        scan.vertices.insert(scan.vertices.end(), {{0, 0, z}, {15, 0, z}, {15, 20, z}, {0, 20, z}});
+        scan.triangles.push_back({base, base + 1, base + 2});
+        scan.triangles.push_back({base, base + 2, base + 3});
+    }
+    HeightField field = plate_at(9.5);
+    const StockReport report = apply_mesh(field, scan, {});
+    std::size_t missed = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        if (field.point[i].x() > 15.01) {
+            EXPECT_TRUE(field.flags[i] & kMissed);
+            EXPECT_EQ(field.height[i], 0.0);
+            ++missed;
+        } else if (field.point[i].x() < 14.99) {
+            EXPECT_NEAR(field.height[i], 0.52, 1e-5);
+        }
+    }
+    EXPECT_GE(report.missed, missed);
+    EXPECT_FALSE(report.warnings.empty());
+}
+
+TEST(Stock, SearchDistancesLimitTheRays) {
+    HeightField field = plate_at(2.0);
+    StockOptions options;
+    options.search_above = 5.0;
+    TriangleMesh mesh = box({0, 0, 0}, {30, 20, 10});
+    EXPECT_THROW(apply_mesh(field, mesh, options), InputError);
+    options.search_above = 9.0;
+    EXPECT_EQ(apply_mesh(field, mesh, options).missed, 0u);
+}
+
+TEST(Stock, FarFromTheOriginNothingIsLost) {
+    HeightField field = plate_at(9.4);
+    const Vec3 shift(123456.0, -65432.0, 0.0);
+    TriangleMesh mesh = box({0, 0, 0}, {30, 20, 10});
+    for (Vec3& p : field.point) p += shift;
+    for (Vec3f& v : mesh.vertices) v += shift.cast<float>();
+    apply_mesh(field, mesh, {});
+    for (const double h : field.height) EXPECT_NEAR(h, 0.6, 1e-5);
+}
+
+TEST(Stock, SaysWhichUnitWouldFit) {
+    TriangleMesh metres = box({0, 0, 0}, {30, 20, 10});
+    for (Vec3f& v : metres.vertices) v *= 0.001F;
+    EXPECT_NE(error_of(plate_at(9.4), metres).find("metres"), std::string::npos);
+    EXPECT_NE(error_of(plate_at(9.4), box({500, 0, 0}, {530, 20, 10})).find("apart"),
+              std::string::npos);
+}
+
+TEST(Stock, RefusesBrokenMeshes) {
+    const HeightField field = plate_at(9.0);
+    EXPECT_NE(error_of(field, {}).find("no triangle"), std::string::npos);
+    TriangleMesh mesh = box({0, 0, 0}, {30, 20, 10});
+    mesh.vertices[3].x() = std::nanf("");
+    EXPECT_NE(error_of(field, mesh).find("vertex 3"), std::string::npos);
+    mesh = box({0, 0, 0}, {30, 20, 10});
+    mesh.triangles[2][1] = 99;
+    EXPECT_NE(error_of(field, mesh).find("triangle 2"), std::string::npos);
+}
+
+std::filesystem::path shared(const char* file) {
+    const char* root = std::getenv("BELTGRINDING_SHARED");
+    return std::filesystem::path(root != nullptr ? root : "../shared") / "data" / file;
+}
+
+TEST(MeshReader, ReadsARealScanInMetres) {
+    const auto path = shared("mesh/DAC_580813_scan.ply");
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data: " << path;
+    const TriangleMesh mesh = read_mesh(path.string(), 1000.0);
+    EXPECT_EQ(mesh.triangles.size(), 179041u);
+    Box extents;
+    for (const Vec3f& v : mesh.vertices) extents.extend(v.cast<double>());
+    EXPECT_NEAR(extents.sizes().x(), 757.9, 0.2);
+}
+
+TEST(MeshReader, WeldsAnStl) {
+    const auto path = shared("mesh/DAC_580813_cad.stl");
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data: " << path;
+    const TriangleMesh mesh = read_mesh(path.string(), 1000.0);
+    EXPECT_EQ(mesh.triangles.size(), 34596u);
+    EXPECT_EQ(mesh.vertices.size(), 17298u);
+}
+
+TEST(MeshReader, NamesTheFileThatIsNoMesh) {
+    const auto path = std::filesystem::temp_directory_path() /
+                      ("beltgrinding-" + std::to_string(::getpid()) + ".stl");
+    for (const char* content : {"", "solid", "solid x\nfacet normal 0 0", "\x80\x01garbage"}) {
+        std::ofstream(path, std::ios::binary | std::ios::trunc) << content;
+        try {
+            read_mesh(path.string());
+            ADD_FAILURE() << content;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
+        }
+    }
+    std::filesystem::remove(path);
+    EXPECT_THROW(read_mesh("absent.stl"), InputError);
+}
+
+}  // namespace
+}  // namespace beltgrinding

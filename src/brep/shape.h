@@ -24,6 +24,8 @@ class Shape {
     /// Reads the text that `BRepTools::Write` and FreeCAD's `exportBrepToString` make.
     /// `name` stands for the shape in messages.
     static Shape from_brep(const std::string& text, const std::string& name = "shape");
+    /// The text that `from_brep` reads, without triangulation.
+    std::string write_brep() const;
     std::size_t face_count() const;
     /// True if the face bounds a solid (its normal then points out of it); else it is loose.
     bool bounds_solid(std::size_t face) const;
@@ -38,9 +40,10 @@ class Shape {
     std::vector<std::string> warnings() const;
 
     const Impl& impl() const { return *impl_; }
+    /// For this room: a shape around OpenCASCADE's data.
+    explicit Shape(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
   private:
-    explicit Shape(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
     std::shared_ptr<const Impl> impl_;
 };
 

@@ -1,0 +1,64 @@
+#pragma once
+
+// Private to this room: the regular grid of samples inside a face.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/run_context.h"
+#include "brep/face_surface.h"
+#include "brep/face_trim.h"
+
+namespace beltgrinding {
+
+/// Rows of constant t at equal distance, each with nodes at equal arc length. Node k of n lies at
+/// share k / n of its row's arc length, so neighbouring rows of the same n form quads ("cells").
+/// Only nodes inside the border and not too near to it are alive.
+class FaceLattice {
+  public:
+    /// Lays the rows, evaluates the nodes inside the border, drops those near it. `row_count`
+    /// intervals of equal height. In parallel over rows; throws Standard_Failure.
+    FaceLattice(const FaceSurface& surface, const SurfaceMetric& metric, const PlaneGrid& grid,
+                const Boundary& boundary, double spacing, std::size_t row_count,
+                const RunContext& context);
+
+    std::size_t size() const { return points_.size(); }
+    const SurfacePoint& at(std::uint32_t node) const { return points_[node]; }
+    double s(std::uint32_t node) const { return s_[node]; }
+    double t(std::size_t row) const { return rows_[row].t; }
+    bool alive(std::uint32_t node) const { return !(state_[node] & kDead); }
+    /// True if all four corners of the cell above-right of the node are alive and no border passes
+    /// through it: it becomes two triangles as it is.
+    bool whole(std::uint32_t node) const { return state_[node] & kWhole; }
+
+    struct Run {
+        int begin = 0, end = 0;   ///< columns [begin, end)
+        std::uint32_t first = 0;  ///< node of column `begin`
+    };
+    struct Row {
+        double t = 0, y = 0;
+        int n = 0;  ///< intervals of the whole row
+        std::vector<Run> runs;
+    };
+    const std::vector<Row>& rows() const { return rows_; }
+    /// Node of a column, kNone if outside.
+    std::uint32_t find(std::size_t row, int column) const;
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    /// True if the point of the grid lies in a whole cell.
+    bool in_whole_cell(double grid_x, double grid_y, const PlaneGrid& grid) const;
+
+  private:
+    enum : std::uint8_t { kDead = 1, kCrossed = 2, kWhole = 4 };
+    void lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid, const Boundary& boundary,
+                  double spacing, std::size_t row_count);
+    void clear_border(const PlaneGrid& grid, const Boundary& boundary, double spacing);
+    void find_whole_cells(const RunContext& context);
+
+    std::vector<Row> rows_;
+    std::vector<SurfacePoint> points_;
+    std::vector<double> s_;
+    std::vector<std::uint8_t> state_;
+    double row_height_ = 1;
+};
+
+}  // namespace beltgrinding

@@ -1,0 +1,387 @@
+#include "brep/face_sampler.h"
+
+#include <BRep_Tool.hxx>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "brep/delaunay.h"
+#include "brep/face_lattice.h"
+#include "brep/face_surface.h"
+#include "brep/face_trim.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kSingularJacobian = 1e-6;  // of the face's mean: no normal can be told
+constexpr int kImprovePasses = 6;
+constexpr int kNormalRounds = 4;  // singular samples beside singular ones
+constexpr std::size_t kMergeBlock = 1 << 14;
+
+/// Builds one face step by step; each step reads what the ones before it made.
+class FaceSampler {
+  public:
+    FaceSampler(const FaceRequest& request, const RunContext& context)
+        : request_(request), context_(context) {}
+
+    FaceSamples run() {
+        const TrimCurves trim = collect_trim_curves(request_.face);
+        surface_.surface = BRep_Tool::Surface(request_.face);
+        surface_.s0 = trim.u0, surface_.s1 = trim.u1;
+        surface_.t0 = trim.v0, surface_.t1 = trim.v1;
+        if (!(trim.u1 > trim.u0) || !(trim.v1 > trim.v0))
+            throw std::runtime_error("its trimming edges enclose nothing");
+        const SurfaceMetric metric(surface_, request_.spacing);
+        if (!std::isfinite(metric.max_length() + metric.height()))
+            throw std::runtime_error("its surface evaluates to NaN");
+        if (!(metric.max_length() > 0) || !(metric.height() > 0))
+            throw std::runtime_error("its surface has no extent");
+        singular_ = kSingularJacobian * metric.mean_jacobian();
+        const double largest = std::max(metric.mean_length(), metric.height());
+        grid_.x_scale = std::max(4.0, kGridHalf * (metric.mean_length() / largest));
+        grid_.y_scale = std::max(4.0, kGridHalf * (metric.height() / largest)) / metric.height();
+        boundary_ = sample_boundary(trim, surface_, metric, grid_, request_.spacing);
+        const auto rows =
+            static_cast<std::size_t>(std::max(1.0, std::round(metric.height() / request_.spacing)));
+        FaceLattice lattice(surface_, metric, grid_, boundary_, request_.spacing, rows, context_);
+        lattice_ = &lattice;
+        sign_ = (surface_.swap != request_.reverse) ? -1.0 : 1.0;
+        gather_samples();
+        add_cells();
+        add_band();
+        fix_singular_normals();
+        return finish();
+    }
+
+  private:
+    std::uint32_t lattice_sample(std::uint32_t node) const { return lattice_base_ + node; }
+
+    void gather_samples() {
+        lattice_base_ = static_cast<std::uint32_t>(boundary_.samples.size());
+        const std::size_t n = lattice_base_ + lattice_->size();
+        point_.resize(n);
+        cross_.resize(n);
+        normal_.resize(n);
+        area_.assign(n, 0.0);
+        flags_.assign(n, 0);
+        const auto put = [&](std::size_t i, const Vec3& point, const Vec3& cross, bool singular) {
+            point_[i] = point;
+            const double jacobian = cross.norm();
+            if (!std::isfinite(jacobian + point.sum()))
+                throw std::runtime_error("its surface evaluates to NaN");
+            cross_[i] = singular ? 0.0 : jacobian;
+            if (singular || jacobian <= singular_) {
+                flags_[i] |= kDegenerate;
+                normal_[i] = Vec3f::Zero();
+            } else {
+                normal_[i] = (cross * (sign_ / jacobian)).cast<float>();
+            }
+        };
+        for (std::uint32_t i = 0; i < lattice_base_; ++i) {
+            const RawSample& s = boundary_.samples[i];
+            put(i, s.point, s.cross, s.singular);
+            if (s.on_boundary) flags_[i] |= kOnBoundary;
+        }
+        parallel_blocks(lattice_->size(), kMergeBlock, context_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                const SurfacePoint& p = lattice_->at(static_cast<std::uint32_t>(i));
+                                put(lattice_base_ + i, p.point, p.ds.cross(p.dt), p.singular);
+                            }
+                        });
+    }
+
+    /// One triangle, counter-clockwise in (s, t), with its area in (s, t).
+    void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, double parameter_area) {
+        const double third = std::abs(parameter_area) * (cross_[a] + cross_[b] + cross_[c]) / 9.0;
+        area_[a] += third;
+        area_[b] += third;
+        area_[c] += third;
+        if (a == b || b == c || c == a) return;  // a corner at a pole
+        if (sign_ < 0)
+            triangles_.push_back({a, c, b});
+        else
+            triangles_.push_back({a, b, c});
+    }
+
+    /// The cells that are whole, as two triangles each, cut along the shorter diagonal.
+    void add_cells() {
+        triangles_.reserve(2 * lattice_->size() + 4 * boundary_.samples.size());
+        const auto& rows = lattice_->rows();
+        for (std::size_t j = 0; j + 1 < rows.size(); ++j) {
+            if (j % 64 == 0) context_.throw_if_cancelled();
+            const double dt = rows[j + 1].t - rows[j].t;
+            for (const auto& run : rows[j].runs) {
+                std::uint32_t ahead = FaceLattice::kNone;
+                for (int k = run.begin; k + 1 < run.end; ++k) {
+                    const std::uint32_t a = run.first + static_cast<std::uint32_t>(k - run.begin);
+                    if (!lattice_->whole(a)) {
+                        ahead = FaceLattice::kNone;
+                        continue;
+                    }
+                    ahead = ahead == FaceLattice::kNone ? lattice_->find(j + 1, k) : ahead + 1;
+                    const std::uint32_t d = ahead;
+                    const double low = 0.5 * dt * (lattice_->s(a + 1) - lattice_->s(a));
+                    const double high = 0.5 * dt * (lattice_->s(d + 1) - lattice_->s(d));
+                    const std::uint32_t sa = lattice_sample(a), sd = lattice_sample(d);
+                    if ((point_[sa] - point_[sd + 1]).squaredNorm() <=
+                        (point_[sa + 1] - point_[sd]).squaredNorm()) {
+                        add_triangle(sa, sa + 1, sd + 1, low);
+                        add_triangle(sa, sd + 1, sd, high);
+                    } else {
+                        add_triangle(sa, sa + 1, sd, low);
+                        add_triangle(sa + 1, sd + 1, sd, high);
+                    }
+                }
+            }
+        }
+    }
+
+    struct BandNode {
+        std::uint32_t sample;
+        double s, t;
+    };
+
+    /// What lies between the border and the whole cells: a constrained Delaunay triangulation.
+    void add_band() {
+        std::vector<GridPoint> points;
+        std::vector<BandNode> nodes;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> chains;
+        for (const auto& n : boundary_.nodes) {
+            points.push_back(n.grid);
+            nodes.push_back({n.sample, n.s, n.t});
+        }
+        for (const auto& s : boundary_.segments) chains.push_back({s.a, s.b});
+        add_lattice_border(points, nodes, chains);
+        context_.throw_if_cancelled();
+
+        Delaunay delaunay(points);
+        bool sound = true;
+        for (const auto& [a, b] : chains) sound &= delaunay.constrain(a, b);
+        const std::vector<char> inside = classify(delaunay, points, sound);
+        improve(delaunay, nodes, inside);
+        const auto& faces = delaunay.faces();
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            if (!inside[f]) continue;
+            const BandNode &a = nodes[Delaunay::point(faces[f], 0)],
+                           &b = nodes[Delaunay::point(faces[f], 1)],
+                           &c = nodes[Delaunay::point(faces[f], 2)];
+            add_triangle(a.sample, b.sample, c.sample,
+                         0.5 * ((b.s - a.s) * (c.t - a.t) - (b.t - a.t) * (c.s - a.s)));
+        }
+    }
+
+    void add_lattice_border(std::vector<GridPoint>& points, std::vector<BandNode>& nodes,
+                            std::vector<std::pair<std::uint32_t, std::uint32_t>>& chains) const {
+        const auto& rows = lattice_->rows();
+        constexpr std::uint32_t none = FaceLattice::kNone;
+        std::vector<std::uint32_t> band(lattice_->size(), none);
+        const auto whole = [&](std::size_t j, int k) {
+            if (j + 1 >= rows.size()) return false;
+            const std::uint32_t node = lattice_->find(j, k);
+            return node != none && lattice_->whole(node);
+        };
+        for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
+            const auto& row = rows[j];
+            for (const auto& run : row.runs) {
+                bool left_above = whole(j, run.begin - 1), left_below = whole(j - 1, run.begin - 1);
+                // Rows of another n have no cells between them, whatever their columns are.
+                left_below = left_below && rows[j - 1].n == row.n;
+                for (int k = run.begin; k < run.end; ++k) {
+                    const std::uint32_t node =
+                        run.first + static_cast<std::uint32_t>(k - run.begin);
+                    const bool above = lattice_->whole(node);
+                    const bool below = rows[j - 1].n == row.n && whole(j - 1, k);
+                    if (lattice_->alive(node) && !(above && below && left_above && left_below)) {
+                        band[node] = static_cast<std::uint32_t>(points.size());
+                        points.push_back(grid_.point(double(k) / row.n, row.y));
+                        nodes.push_back({lattice_sample(node), lattice_->s(node), row.t});
+                    }
+                    left_above = above;
+                    left_below = below;
+                }
+            }
+        }
+        for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
+            const bool joined_below = rows[j - 1].n == rows[j].n;
+            for (const auto& run : rows[j].runs) {
+                for (int k = run.begin; k < run.end; ++k) {
+                    const std::uint32_t node =
+                        run.first + static_cast<std::uint32_t>(k - run.begin);
+                    if (band[node] == none) continue;
+                    const bool above = lattice_->whole(node);
+                    if (above != (joined_below && whole(j - 1, k)))
+                        chains.push_back({band[node], band[node + 1]});
+                    if (above != whole(j, k - 1))
+                        chains.push_back({band[node], band[lattice_->find(j + 1, k)]});
+                }
+            }
+        }
+    }
+
+    /// For each triangle: inside the border and not in a whole cell.
+    std::vector<char> classify(const Delaunay& delaunay, const std::vector<GridPoint>& points,
+                               bool sound) const {
+        const auto& faces = delaunay.faces();
+        const std::size_t bins = std::max<std::size_t>(lattice_->rows().size(), 16);
+        const TrimScan scan(boundary_, kGridHalf, bins);
+        const auto wanted = [&](const Delaunay::Face& f) {
+            double x = 0, y = 0;
+            for (int i = 0; i < 3; ++i) {
+                const GridPoint& p = points[Delaunay::point(f, i)];
+                x += p.x / 3.0;
+                y += p.y / 3.0;
+            }
+            return scan.inside(x, y) && !lattice_->in_whole_cell(x, y, grid_);
+        };
+        std::vector<char> result(faces.size(), 0), seen(faces.size(), 0);
+        std::vector<Delaunay::Index> region;
+        for (Delaunay::Index seed = 0; seed < faces.size(); ++seed) {
+            if (seen[seed]) continue;
+            // A region between constraints is inside or outside as a whole: ask its largest
+            // triangle, the safest one.
+            region.assign(1, seed);
+            seen[seed] = 1;
+            bool outer = false;
+            std::int64_t largest = 0;
+            Delaunay::Index representative = seed;
+            for (std::size_t i = 0; i < region.size(); ++i) {
+                const auto& f = faces[region[i]];
+                if (!Delaunay::inner(f)) {
+                    outer = true;
+                } else {
+                    const std::int64_t size =
+                        orient(points[Delaunay::point(f, 0)], points[Delaunay::point(f, 1)],
+                               points[Delaunay::point(f, 2)]);
+                    if (size > largest) largest = size, representative = region[i];
+                }
+                for (std::size_t k = 0; sound && k < 3; ++k) {
+                    if (f.n[k] == Delaunay::kNone || (f.fixed >> k & 1) || seen[f.n[k]]) continue;
+                    seen[f.n[k]] = 1;
+                    region.push_back(f.n[k]);
+                }
+            }
+            if (outer || !wanted(faces[representative])) continue;
+            for (const Delaunay::Index f : region) result[f] = 1;
+        }
+        return result;
+    }
+
+    /// The plane is only nearly isometric: flip to what is Delaunay on the surface itself.
+    void improve(Delaunay& delaunay, const std::vector<BandNode>& nodes,
+                 const std::vector<char>& inside) const {
+        const auto* first = delaunay.faces().data();
+        const auto usable = [&](const Delaunay::Face& f) { return inside[&f - first] != 0; };
+        const auto better = [&](Delaunay::Index ia, Delaunay::Index ib, Delaunay::Index ic,
+                                Delaunay::Index id) {
+            const std::uint32_t sa = nodes[ia].sample, sb = nodes[ib].sample, sc = nodes[ic].sample,
+                                sd = nodes[id].sample;
+            if (sa == sb || sa == sc || sa == sd || sb == sc || sb == sd || sc == sd) return false;
+            const Vec3 &a = point_[sa], &b = point_[sb], &c = point_[sc], &d = point_[sd];
+            const Vec3 normal =
+                sign_ * (normal_[sa] + normal_[sb] + normal_[sc] + normal_[sd]).cast<double>();
+            // a, c, b, d run counter-clockwise.
+            const auto up = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+                return (q - p).cross(r - p).dot(normal);
+            };
+            const double now = std::min(up(a, c, b), up(a, b, d));
+            const double then = std::min(up(c, d, a), up(d, c, b));
+            if (then <= 0 || now <= 0) return then > now;
+            const auto cotangent = [](const Vec3& p, const Vec3& q, const Vec3& apex) {
+                const Vec3 u = p - apex, v = q - apex;
+                return u.dot(v) / std::max(u.cross(v).norm(), 1e-300);
+            };
+            // Delaunay: the angles opposite to a-b sum to at most pi. The margin keeps squares.
+            return cotangent(a, b, c) + cotangent(a, b, d) < -1e-3;
+        };
+        delaunay.improve(usable, better, kImprovePasses);
+    }
+
+    void fix_singular_normals() {
+        std::vector<std::uint32_t> left;
+        for (std::uint32_t i = 0; i < flags_.size(); ++i)
+            if (flags_[i] & kDegenerate) left.push_back(i);
+        for (int round = 0; round < kNormalRounds && !left.empty(); ++round) {
+            std::vector<Vec3> sum(flags_.size() > 0 ? point_.size() : 0, Vec3::Zero());
+            for (const Triangle& t : triangles_)
+                for (std::size_t i = 0; i < 3; ++i)
+                    if ((flags_[t[i]] & kDegenerate) && normal_[t[i]].isZero())
+                        sum[t[i]] +=
+                            (normal_[t[(i + 1) % 3]] + normal_[t[(i + 2) % 3]]).cast<double>();
+            for (const std::uint32_t i : left)
+                if (normal_[i].isZero() && sum[i].norm() > 1e-9)
+                    normal_[i] = sum[i].normalized().cast<float>();
+            std::erase_if(left, [&](std::uint32_t i) { return !normal_[i].isZero(); });
+        }
+        // Nothing but singular samples about it: the triangles' own normals, or any unit vector.
+        if (left.empty()) return;
+        std::vector<Vec3> sum(point_.size(), Vec3::Zero());
+        for (const Triangle& t : triangles_)
+            for (std::size_t i = 0; i < 3; ++i)
+                sum[t[i]] += (point_[t[1]] - point_[t[0]]).cross(point_[t[2]] - point_[t[0]]);
+        for (const std::uint32_t i : left)
+            normal_[i] = sum[i].norm() > 0 ? Vec3f(sum[i].normalized().cast<float>())
+                                           : Vec3f(Vec3f::UnitZ());
+    }
+
+    /// Keeps the samples that carry area, scales to the exact area.
+    FaceSamples finish() {
+        FaceSamples out;
+        std::vector<std::uint32_t> index(point_.size(), FaceLattice::kNone);
+        std::vector<char> used(point_.size(), 0);
+        for (const Triangle& t : triangles_) used[t[0]] = used[t[1]] = used[t[2]] = 1;
+        double total = 0;
+        std::size_t count = 0;
+        if (triangles_.empty()) {
+            // Smaller than its samples' resolution: the border's samples share the area.
+            for (std::uint32_t i = 0; i < lattice_base_; ++i) used[i] = 1, area_[i] = 1.0;
+        }
+        for (std::uint32_t i = 0; i < point_.size(); ++i) {
+            if (!used[i]) continue;
+            index[i] = static_cast<std::uint32_t>(count++);
+            total += area_[i];
+        }
+        out.sampled_area = triangles_.empty() ? request_.area : total;
+        if (!(total > 0)) throw std::runtime_error("its trimming edges enclose nothing");
+        out.point.resize(count);
+        out.normal.resize(count);
+        out.area.resize(count);
+        out.flags.resize(count);
+        const double scale = request_.area / total;
+        for (std::uint32_t i = 0; i < point_.size(); ++i) {
+            const std::uint32_t k = index[i];
+            if (k == FaceLattice::kNone) continue;
+            out.point[k] = point_[i];
+            out.normal[k] = normal_[i];
+            out.area[k] = static_cast<float>(area_[i] * scale);
+            out.flags[k] = flags_[i];
+        }
+        for (Triangle& t : triangles_)
+            for (std::uint32_t& v : t) v = index[v];
+        out.triangles = std::move(triangles_);
+        return out;
+    }
+
+    const FaceRequest& request_;
+    const RunContext& context_;
+    FaceSurface surface_;
+    PlaneGrid grid_;
+    Boundary boundary_;
+    const FaceLattice* lattice_ = nullptr;
+    double sign_ = 1, singular_ = 0;
+    std::uint32_t lattice_base_ = 0;
+    std::vector<Vec3> point_;
+    std::vector<Vec3f> normal_;
+    std::vector<double> cross_, area_;  ///< Jacobian; area before scaling
+    std::vector<std::uint8_t> flags_;
+    std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+FaceSamples sample_face(const FaceRequest& request, const RunContext& context) {
+    return FaceSampler(request, context).run();
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,33 @@
+#pragma once
+
+// Private to this room: one face.
+
+#include <TopoDS_Face.hxx>
+
+#include "base/run_context.h"
+#include "heightfield/height_field.h"
+
+namespace beltgrinding {
+
+struct FaceRequest {
+    TopoDS_Face face;
+    double spacing = 0;    ///< mm
+    double area = 0;       ///< mm2, exact; the samples' areas are scaled to it
+    bool reverse = false;  ///< the normal points against the surface's own
+};
+
+/// Samples and triangles of one face; the indices count from 0.
+struct FaceSamples {
+    std::vector<Vec3> point;
+    std::vector<Vec3f> normal;
+    std::vector<float> area;
+    std::vector<std::uint8_t> flags;
+    std::vector<Triangle> triangles;
+    double sampled_area = 0;  ///< mm2, before scaling
+};
+
+/// Throws std::runtime_error with the rest of a sentence that begins with the face's name, or
+/// Standard_Failure.
+FaceSamples sample_face(const FaceRequest& request, const RunContext& context);
+
+}  // namespace beltgrinding

@@ -1,0 +1,74 @@
+#pragma once
+
+// Private to this room: a face's surface in the sampler's own parameters (s along rows, t across).
+
+#include <GeomAdaptor_Surface.hxx>
+#include <Geom_Surface.hxx>
+#include <vector>
+
+#include "base/geometry.h"
+
+namespace beltgrinding {
+
+struct SurfacePoint {
+    Vec3 point;             ///< mm
+    Vec3 ds;                ///< derivative along s
+    Vec3 dt;                ///< derivative along t
+    bool singular = false;  ///< the derivatives are undefined here and were taken beside it
+};
+
+/// The surface over a rectangle of its parameters. s is u and t is v, or the reverse if `swap`.
+struct FaceSurface {
+    Handle(Geom_Surface) surface;
+    double s0 = 0, s1 = 0, t0 = 0, t1 = 0;
+    bool swap = false;
+
+    void swap_parameters() {
+        std::swap(s0, t0);
+        std::swap(s1, t1);
+        swap = !swap;
+    }
+    /// An evaluator for one thread: adaptors cache the last span and are not thread-safe.
+    GeomAdaptor_Surface evaluator() const { return GeomAdaptor_Surface(surface); }
+    /// Exact point and first derivatives. Throws Standard_Failure.
+    SurfacePoint at(const GeomAdaptor_Surface& evaluator, double s, double t) const;
+    /// Parameters along s (or t) between which the surface is smooth, the rectangle's own included.
+    std::vector<double> knots(bool along_s) const;
+};
+
+/// The map from the rectangle to the sampler's plane: x in [0, 1] is the share of arc length along
+/// a row of constant t, y is in mean arc length across the rows, mm. Made from a table of first
+/// derivatives; any strictly monotone map is right, a good one makes spacing even.
+class SurfaceMetric {
+  public:
+    /// Chooses the direction of the rows (may swap `surface`): that in which neighbouring rows
+    /// keep the evener distance. `spacing` sets how fine a table is worth while. Throws
+    /// Standard_Failure; returns non-finite lengths if the surface gives NaN.
+    SurfaceMetric(FaceSurface& surface, double spacing);
+
+    double height() const { return y_.back(); }          ///< mm, across the rows
+    double mean_length() const { return mean_length_; }  ///< mm, of a row
+    double max_length() const { return max_length_; }
+    double mean_jacobian() const { return mean_jacobian_; }  ///< mm2 per unit of parameters' area
+
+    double y_of(double t) const;
+    double t_of(double y) const;
+
+    /// Arc length along the row at `t`: at each of `columns()`, cumulative, mm.
+    struct Row {
+        std::vector<double> length;
+        double total() const { return length.back(); }
+    };
+    Row row(double t) const;
+    double x_of(const Row& row, double s) const;
+    double s_of(const Row& row, double x) const;
+    double x_of(double s, double t) const;
+
+  private:
+    std::vector<double> s_, t_;       ///< table's parameters
+    std::vector<double> cumulative_;  ///< [t][s], mm
+    std::vector<double> y_;           ///< at t_, mm
+    double mean_length_ = 0, max_length_ = 0, mean_jacobian_ = 0;
+};
+
+}  // namespace beltgrinding

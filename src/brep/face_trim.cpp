@@ -1,0 +1,423 @@
+#include "brep/face_trim.h"
+
+#include <BRep_Tool.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace beltgrinding {
+namespace {
+
+constexpr int kLooksPerSpan = 16;  // points at which a trimming curve is looked at
+constexpr int kFewestLooks = 32;
+constexpr int kMostLooks = 4000;
+constexpr double kZeroLength = 1e-7;   // mm, OpenCASCADE's confusion: an edge without length
+constexpr std::size_t kPoleNodes = 8;  // intervals of an edge without length
+constexpr double kMostTurn = 1.0472;   // rad, between neighbouring samples of an edge
+constexpr double kFinestShare = 0.1;   // of the spacing: turning makes no denser samples than this
+constexpr double kMergeShare = 1e-3;   // of the spacing: ends of chains that are one node
+constexpr int kRefinements = 7;        // halvings of chords that cross
+
+int looks(const TrimCurve& c) {
+    int spans = 1;
+    try {
+        spans = Geom2dAdaptor_Curve(c.curve, c.first, c.last).NbIntervals(GeomAbs_C2);
+    } catch (const Standard_Failure&) {
+        // One span it is.
+    }
+    return std::clamp(kLooksPerSpan * spans, kFewestLooks, kMostLooks);
+}
+
+/// Parameters at equal arc length along one use of an edge.
+std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surface,
+                                    const GeomAdaptor_Surface& evaluator, double spacing,
+                                    bool& degenerate) {
+    const auto even = [&](std::size_t n) {
+        std::vector<double> p(n + 1);
+        for (std::size_t i = 0; i <= n; ++i)
+            p[i] = c.first + (c.last - c.first) * double(i) / double(n);
+        return p;
+    };
+    if (degenerate) return even(kPoleNodes);
+    std::vector<double> at = even(static_cast<std::size_t>(looks(c)));
+    std::vector<double> length;
+    double turn = 0;
+    std::size_t intervals = 1;
+    for (int round = 0; round < 2; ++round) {
+        length.assign(at.size(), 0.0);
+        turn = 0;
+        Vec3 last = Vec3::Zero(), direction = Vec3::Zero();
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const gp_Pnt2d uv = c.curve->Value(at[i]);
+            const Vec3 p =
+                surface
+                    .at(evaluator, surface.swap ? uv.Y() : uv.X(), surface.swap ? uv.X() : uv.Y())
+                    .point;
+            if (i > 0) {
+                const Vec3 step = p - last;
+                length[i] = length[i - 1] + step.norm();
+                if (step.norm() > kZeroLength) {
+                    const Vec3 d = step.normalized();
+                    if (direction != Vec3::Zero())
+                        turn += std::atan2(direction.cross(d).norm(), direction.dot(d));
+                    direction = d;
+                }
+            }
+            last = p;
+        }
+        const double total = length.back();
+        if (!std::isfinite(total)) throw std::runtime_error("an edge of it evaluates to NaN");
+        if (total < kZeroLength) {
+            degenerate = true;
+            return even(kPoleNodes);
+        }
+        const double by_turn = std::min(std::ceil(turn / kMostTurn - 0.01),
+                                        std::ceil(total / (kFinestShare * spacing)));
+        double wanted = std::max({1.0, std::round(total / spacing), by_turn});
+        if (c.vertex_first == c.vertex_last) wanted = std::max(wanted, 3.0);
+        intervals = static_cast<std::size_t>(wanted);
+        if (2 * intervals <= at.size()) break;
+        if (round == 0) at = even(2 * intervals);
+    }
+    std::vector<double> parameters(intervals + 1);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i <= intervals; ++i) {
+        const double l = length.back() * double(i) / double(intervals);
+        while (k + 2 < length.size() && length[k + 1] < l) ++k;
+        const double step = length[k + 1] - length[k];
+        const double w = step > 0 ? std::clamp((l - length[k]) / step, 0.0, 1.0) : 0.0;
+        parameters[i] = at[k] + w * (at[k + 1] - at[k]);
+    }
+    parameters.front() = c.first;
+    parameters.back() = c.last;
+    return parameters;
+}
+
+/// Adds samples and nodes for the given parameters of each edge.
+class BoundaryBuilder {
+  public:
+    BoundaryBuilder(const TrimCurves& trim, const FaceSurface& surface, const SurfaceMetric& metric,
+                    const PlaneGrid& grid, double spacing)
+        : trim_(trim),
+          surface_(surface),
+          metric_(metric),
+          grid_(grid),
+          spacing_(spacing),
+          evaluator_(surface.evaluator()) {}
+
+    Boundary build(const std::vector<std::vector<double>>& parameters,
+                   const std::vector<char>& degenerate) {
+        boundary_ = {};
+        vertex_sample_.assign(static_cast<std::size_t>(trim_.vertices), kNone);
+        vertex_nodes_.assign(static_cast<std::size_t>(trim_.vertices), {});
+        edge_samples_.assign(trim_.uses.size(), {});
+        for (const TrimCurve& c : trim_.curves) {
+            const auto edge = static_cast<std::size_t>(c.edge);
+            add(c, parameters[edge], degenerate[edge] != 0, trim_.uses[edge] > 1);
+        }
+        cancel_doubles();
+        bridge_gaps();
+        return std::move(boundary_);
+    }
+
+  private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+
+    void add(const TrimCurve& c, const std::vector<double>& parameters, bool degenerate,
+             bool seam) {
+        auto& shared = edge_samples_[static_cast<std::size_t>(c.edge)];
+        const bool first_use = shared.empty();
+        if (first_use) shared.assign(parameters.size(), kNone);
+        std::uint32_t previous = kNone;
+        for (std::size_t i = 0; i < parameters.size(); ++i) {
+            const bool end = i == 0 || i + 1 == parameters.size();
+            const int vertex = i == 0 ? c.vertex_first : c.vertex_last;
+            const gp_Pnt2d uv = c.curve->Value(parameters[i]);
+            Boundary::Node node;
+            node.s = surface_.swap ? uv.Y() : uv.X();
+            node.t = surface_.swap ? uv.X() : uv.Y();
+            node.x = metric_.x_of(node.s, node.t);
+            node.y = metric_.y_of(node.t);
+            node.grid = grid_.point(node.x, node.y);
+            std::uint32_t& sample =
+                end || degenerate ? vertex_sample_[static_cast<std::size_t>(vertex)] : shared[i];
+            if (sample == kNone) sample = new_sample(node);
+            if (!seam && !degenerate) boundary_.samples[sample].on_boundary = true;
+            if (degenerate) boundary_.samples[sample].singular = true;
+            node.sample = sample;
+            std::uint32_t id = end ? near_node(node, vertex, c.tolerance) : kNone;
+            if (id == kNone) {
+                id = static_cast<std::uint32_t>(boundary_.nodes.size());
+                boundary_.nodes.push_back(node);
+                if (end) vertex_nodes_[static_cast<std::size_t>(vertex)].push_back(id);
+            }
+            if (previous != kNone && previous != id)
+                boundary_.segments.push_back({previous, id, c.edge, i - 1});
+            previous = id;
+        }
+    }
+
+    std::uint32_t new_sample(const Boundary::Node& node) {
+        const SurfacePoint p = surface_.at(evaluator_, node.s, node.t);
+        boundary_.samples.push_back({p.point, p.ds.cross(p.dt), false, p.singular});
+        return static_cast<std::uint32_t>(boundary_.samples.size() - 1);
+    }
+
+    double distance(const Boundary::Node& a, const Boundary::Node& b) const {
+        return std::hypot((a.x - b.x) * metric_.mean_length(), a.y - b.y);
+    }
+
+    std::uint32_t near_node(const Boundary::Node& node, int vertex, double tolerance) const {
+        const double reach = std::max(kMergeShare * spacing_, std::min(2 * tolerance, spacing_));
+        for (const std::uint32_t id : vertex_nodes_[static_cast<std::size_t>(vertex)])
+            if (node.grid == boundary_.nodes[id].grid ||
+                distance(node, boundary_.nodes[id]) < reach)
+                return id;
+        return kNone;
+    }
+
+    /// A slit, run to and fro, bounds nothing.
+    void cancel_doubles() {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
+        const auto key = [](const Boundary::Segment& s) {
+            return std::pair(std::min(s.a, s.b), std::max(s.a, s.b));
+        };
+        for (const auto& s : boundary_.segments) ++count[key(s)];
+        std::erase_if(boundary_.segments, [&](const auto& s) { return count[key(s)] % 2 == 0; });
+    }
+
+    /// Joins chain ends that meet no other end (a gap in the trimming loop), nearest first.
+    void bridge_gaps() {
+        std::vector<int> degree(boundary_.nodes.size(), 0);
+        for (const auto& s : boundary_.segments) ++degree[s.a], ++degree[s.b];
+        std::vector<std::uint32_t> loose;
+        for (std::uint32_t i = 0; i < degree.size(); ++i)
+            if (degree[i] % 2) loose.push_back(i);
+        while (loose.size() > 1) {
+            std::size_t best_a = 0, best_b = 1;
+            double best = INFINITY;
+            for (std::size_t a = 0; a < loose.size(); ++a)
+                for (std::size_t b = a + 1; b < loose.size(); ++b) {
+                    const double d = distance(boundary_.nodes[loose[a]], boundary_.nodes[loose[b]]);
+                    if (d < best) best = d, best_a = a, best_b = b;
+                }
+            boundary_.segments.push_back({loose[best_a], loose[best_b], -1, 0});
+            loose.erase(loose.begin() + static_cast<std::ptrdiff_t>(best_b));
+            loose.erase(loose.begin() + static_cast<std::ptrdiff_t>(best_a));
+        }
+    }
+
+    const TrimCurves& trim_;
+    const FaceSurface& surface_;
+    const SurfaceMetric& metric_;
+    const PlaneGrid& grid_;
+    double spacing_;
+    GeomAdaptor_Surface evaluator_;
+    Boundary boundary_;
+    std::vector<std::uint32_t> vertex_sample_;
+    std::vector<std::vector<std::uint32_t>> vertex_nodes_;
+    std::vector<std::vector<std::uint32_t>> edge_samples_;
+};
+
+/// Segments that cross another one properly.
+std::vector<std::size_t> crossing_segments(const Boundary& boundary) {
+    const auto& segments = boundary.segments;
+    struct Extent {
+        std::int32_t x0, x1, y0, y1;
+    };
+    std::vector<Extent> box(segments.size());
+    std::vector<std::size_t> order(segments.size());
+    const auto grid = [&](std::uint32_t node) { return boundary.nodes[node].grid; };
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const GridPoint a = grid(segments[i].a), b = grid(segments[i].b);
+        box[i] = {std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)};
+        order[i] = i;
+    }
+    // A sweep along x would compare whole columns of a long upright border: sweep over both.
+    std::vector<char> hit(segments.size(), 0);
+    const auto cross = [&](std::size_t i, std::size_t j) {
+        const auto &s = segments[i], &r = segments[j];
+        if (s.a == r.a || s.a == r.b || s.b == r.a || s.b == r.b) return false;
+        const GridPoint a = grid(s.a), b = grid(s.b), c = grid(r.a), d = grid(r.b);
+        const std::int64_t o1 = orient(a, b, c), o2 = orient(a, b, d);
+        const std::int64_t o3 = orient(c, d, a), o4 = orient(c, d, b);
+        return ((o1 < 0 && o2 > 0) || (o1 > 0 && o2 < 0)) &&
+               ((o3 < 0 && o4 > 0) || (o3 > 0 && o4 < 0));
+    };
+    constexpr std::size_t kLeaf = 16;
+    const auto visit = [&](auto&& self, std::vector<std::size_t>& set, int depth) -> void {
+        if (set.size() <= kLeaf || depth > 24) {
+            for (std::size_t i = 0; i < set.size(); ++i)
+                for (std::size_t j = i + 1; j < set.size(); ++j)
+                    if (cross(set[i], set[j])) hit[set[i]] = hit[set[j]] = 1;
+            return;
+        }
+        const bool by_x = depth % 2 == 0;
+        std::vector<std::int32_t> middles;
+        for (const std::size_t i : set)
+            middles.push_back(by_x ? box[i].x0 / 2 + box[i].x1 / 2 : box[i].y0 / 2 + box[i].y1 / 2);
+        std::nth_element(middles.begin(),
+                         middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2),
+                         middles.end());
+        const std::int32_t cut = middles[middles.size() / 2];
+        std::vector<std::size_t> low, high;
+        for (const std::size_t i : set) {
+            if ((by_x ? box[i].x0 : box[i].y0) <= cut) low.push_back(i);
+            if ((by_x ? box[i].x1 : box[i].y1) >= cut) high.push_back(i);
+        }
+        self(self, low, depth + 1);
+        self(self, high, depth + 1);
+    };
+    visit(visit, order, 0);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < hit.size(); ++i)
+        if (hit[i]) found.push_back(i);
+    return found;
+}
+
+}  // namespace
+
+TrimCurves collect_trim_curves(const TopoDS_Face& oriented) {
+    const TopoDS_Face face = TopoDS::Face(oriented.Oriented(TopAbs_FORWARD));
+    TrimCurves result;
+    TopTools_IndexedMapOfShape edges, vertices;
+    bool any = false;
+    for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+        const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
+        if (edge.Orientation() == TopAbs_INTERNAL || edge.Orientation() == TopAbs_EXTERNAL)
+            continue;
+        TrimCurve c;
+        c.curve = BRep_Tool::CurveOnSurface(edge, face, c.first, c.last);
+        if (c.curve.IsNull()) throw std::runtime_error("an edge has no curve on the surface");
+        c.edge = edges.Add(edge) - 1;
+        result.uses.resize(static_cast<std::size_t>(edges.Extent()), 0);
+        ++result.uses[static_cast<std::size_t>(c.edge)];
+        const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
+        const TopoDS_Vertex from = TopExp::FirstVertex(forward), to = TopExp::LastVertex(forward);
+        if (from.IsNull() || to.IsNull()) throw std::runtime_error("an edge has no vertices");
+        c.vertex_first = vertices.Add(from) - 1;
+        c.vertex_last = vertices.Add(to) - 1;
+        c.tolerance = std::max(BRep_Tool::Tolerance(from), BRep_Tool::Tolerance(to));
+        c.degenerate = BRep_Tool::Degenerated(edge);
+        const int n = looks(c);
+        for (int i = 0; i <= n; ++i) {
+            const gp_Pnt2d p = c.curve->Value(c.first + (c.last - c.first) * i / n);
+            if (!std::isfinite(p.X()) || !std::isfinite(p.Y()))
+                throw std::runtime_error("an edge's curve on the surface evaluates to NaN");
+            if (!any) {
+                result.u0 = result.u1 = p.X();
+                result.v0 = result.v1 = p.Y();
+                any = true;
+            }
+            result.u0 = std::min(result.u0, p.X());
+            result.u1 = std::max(result.u1, p.X());
+            result.v0 = std::min(result.v0, p.Y());
+            result.v1 = std::max(result.v1, p.Y());
+        }
+        result.curves.push_back(c);
+    }
+    if (!any) throw std::runtime_error("it has no edges");
+    result.vertices = vertices.Extent();
+    return result;
+}
+
+GridPoint PlaneGrid::point(double x, double y) const {
+    return {static_cast<std::int32_t>(std::lround(x * x_scale)),
+            static_cast<std::int32_t>(std::lround(y * y_scale))};
+}
+
+Boundary sample_boundary(const TrimCurves& trim, const FaceSurface& surface,
+                         const SurfaceMetric& metric, const PlaneGrid& grid, double spacing) {
+    std::vector<std::vector<double>> parameters(trim.uses.size());
+    std::vector<char> degenerate(trim.uses.size(), 0);
+    const GeomAdaptor_Surface evaluator = surface.evaluator();
+    for (const TrimCurve& c : trim.curves) {
+        const auto edge = static_cast<std::size_t>(c.edge);
+        if (!parameters[edge].empty()) continue;
+        bool pole = c.degenerate;
+        parameters[edge] = edge_parameters(c, surface, evaluator, spacing, pole);
+        degenerate[edge] = pole;
+    }
+    BoundaryBuilder builder(trim, surface, metric, grid, spacing);
+    Boundary boundary = builder.build(parameters, degenerate);
+    for (int round = 0; round < kRefinements; ++round) {
+        std::vector<std::vector<std::size_t>> halve(parameters.size());
+        for (const std::size_t i : crossing_segments(boundary)) {
+            const auto& s = boundary.segments[i];
+            if (s.edge >= 0) halve[static_cast<std::size_t>(s.edge)].push_back(s.interval);
+        }
+        bool changed = false;
+        for (std::size_t e = 0; e < halve.size(); ++e) {
+            std::sort(halve[e].begin(), halve[e].end());
+            halve[e].erase(std::unique(halve[e].begin(), halve[e].end()), halve[e].end());
+            for (std::size_t k = halve[e].size(); k-- > 0;) {
+                const std::size_t i = halve[e][k];
+                parameters[e].insert(parameters[e].begin() + static_cast<std::ptrdiff_t>(i + 1),
+                                     0.5 * (parameters[e][i] + parameters[e][i + 1]));
+                changed = true;
+            }
+        }
+        if (!changed) break;
+        boundary = builder.build(parameters, degenerate);
+    }
+    return boundary;
+}
+
+TrimScan::TrimScan(const Boundary& boundary, double top, std::size_t bins)
+    : start_(std::max<std::size_t>(1, bins) + 1, 0),
+      bin_height_(top / double(std::max<std::size_t>(1, bins))) {
+    for (const auto& s : boundary.segments) {
+        const GridPoint a = boundary.nodes[s.a].grid, b = boundary.nodes[s.b].grid;
+        if (a.y == b.y) continue;  // crosses no horizontal line
+        chords_.push_back({double(a.x), double(a.y), double(b.x), double(b.y)});
+    }
+    for (int fill = 0; fill < 2; ++fill) {
+        std::vector<std::uint32_t> at(start_.begin(), start_.end() - 1);
+        for (std::uint32_t i = 0; i < chords_.size(); ++i) {
+            const std::size_t low = bin(std::min(chords_[i].ya, chords_[i].yb));
+            const std::size_t high = bin(std::max(chords_[i].ya, chords_[i].yb));
+            for (std::size_t b = low; b <= high; ++b) {
+                if (fill)
+                    index_[at[b]++] = i;
+                else
+                    ++start_[b + 1];
+            }
+        }
+        if (!fill) {
+            for (std::size_t b = 1; b < start_.size(); ++b) start_[b] += start_[b - 1];
+            index_.resize(start_.back());
+        }
+    }
+}
+
+std::size_t TrimScan::bin(double y) const {
+    const double b = std::floor(y / bin_height_);
+    return b > 0 ? std::min(static_cast<std::size_t>(b), start_.size() - 2) : 0;
+}
+
+std::vector<double> TrimScan::crossings(double y) const {
+    std::vector<double> found;
+    const std::size_t b = bin(y);
+    for (std::uint32_t k = start_[b]; k < start_[b + 1]; ++k) {
+        const Chord& c = chords_[index_[k]];
+        if ((c.ya <= y) == (c.yb <= y)) continue;
+        found.push_back(c.xa + (y - c.ya) / (c.yb - c.ya) * (c.xb - c.xa));
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+bool TrimScan::inside(double x, double y) const {
+    const std::vector<double> at = crossings(y);
+    return (at.end() - std::upper_bound(at.begin(), at.end(), x)) % 2 != 0;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,204 @@
+#include <unistd.h>
+#include <BRepGProp.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "brep/face_sampler.h"
+#include "brep/shape.h"
+#include "brep/shape_impl.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kZeroArea = 1e-9;  // mm2
+// Held while sampling: the field's arrays with two triangles a sample, and the face's own before
+// they are copied into it.
+constexpr double kBytesPerSample = 2 * (57 + 2 * sizeof(Triangle)) + 110;
+constexpr double kFitMargin = 1.02;        // the spacing that is proposed must really fit
+constexpr double kAreaDisagreement = 0.1;  // between integration and samples: worth a warning
+constexpr std::size_t kEnoughSamples = 200;
+
+double machine_bytes() {
+    return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+}
+
+double perimeter(const TopoDS_Face& face) {
+    try {
+        GProp_GProps p;
+        BRepGProp::LinearProperties(face, p);
+        return std::abs(p.Mass());
+    } catch (const Standard_Failure&) {
+        return 0;
+    }
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+void refuse_if_too_large(double area, double length, double spacing, std::size_t max_bytes) {
+    const double limit = max_bytes > 0 ? double(max_bytes) : 0.5 * machine_bytes();
+    const auto bytes = [&](double h) {
+        return (area / (h * h) + 2 * length / h) * kBytesPerSample;
+    };
+    const double most_samples = 4e9;  // indices are 32 bits wide
+    const auto fits = [&](double h) {
+        return bytes(h) <= limit && area / (h * h) + 2 * length / h < most_samples;
+    };
+    if (fits(spacing)) return;
+    double fitting = spacing;
+    while (!fits(fitting)) fitting *= kFitMargin;
+    // Rounded up to two digits.
+    const double unit = std::pow(10.0, std::floor(std::log10(fitting)) - 1);
+    fitting = std::ceil(fitting / unit) * unit;
+    throw InputError("a spacing of " + number(spacing) + " mm needs about " +
+                     number(bytes(spacing) / 1e9) + " GB of memory, more than the " +
+                     number(limit / 1e9) + " GB allowed; a spacing of " + number(fitting) +
+                     " mm would fit");
+}
+
+struct Job {
+    std::size_t face = 0;
+    double area = 0;
+    FaceSamples samples;
+    std::string warning;
+};
+
+void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& context) {
+    std::vector<std::size_t> first(jobs.size() + 1, 0), first_triangle(jobs.size() + 1, 0);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        first[i + 1] = first[i] + jobs[i].samples.point.size();
+        first_triangle[i + 1] = first_triangle[i] + jobs[i].samples.triangles.size();
+    }
+    const std::size_t n = first.back();
+    field.point.resize(n);
+    field.normal.resize(n);
+    field.area.resize(n);
+    field.face.resize(n);
+    field.flags.resize(n);
+    field.stock_height.assign(n, 0.0f);
+    field.height.assign(n, 0.0);
+    field.triangles.resize(first_triangle.back());
+    parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            FaceSamples& s = jobs[i].samples;
+            const auto at = static_cast<std::ptrdiff_t>(first[i]);
+            std::copy(s.point.begin(), s.point.end(), field.point.begin() + at);
+            std::copy(s.normal.begin(), s.normal.end(), field.normal.begin() + at);
+            std::copy(s.area.begin(), s.area.end(), field.area.begin() + at);
+            std::copy(s.flags.begin(), s.flags.end(), field.flags.begin() + at);
+            std::fill_n(field.face.begin() + at, s.point.size(),
+                        static_cast<std::uint32_t>(jobs[i].face));
+            const auto base = static_cast<std::uint32_t>(first[i]);
+            Triangle* out = field.triangles.data() + first_triangle[i];
+            for (const Triangle& t : s.triangles) *out++ = {t[0] + base, t[1] + base, t[2] + base};
+            s = {};
+        }
+    });
+}
+
+}  // namespace
+
+HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
+                         const SamplingOptions& options, const RunContext& context,
+                         SamplingReport* report) {
+    const Shape::Impl& impl = shape.impl();
+    if (!(options.spacing > 0) || !std::isfinite(options.spacing))
+        throw InputError("the spacing must be above 0 mm, not " + number(options.spacing));
+    if (!(options.depth > 0) || !std::isfinite(options.depth))
+        throw InputError("the depth must be above 0 mm, not " + number(options.depth));
+    if (faces.empty())
+        for (std::size_t i = 0; i < shape.face_count(); ++i) faces.push_back(i);
+    std::vector<char> chosen(shape.face_count(), 0);
+    for (const std::size_t f : faces) {
+        if (f >= shape.face_count())
+            throw InputError(impl.name + " has no face " + std::to_string(f + 1) + "; it has " +
+                             std::to_string(shape.face_count()) + " faces");
+        if (chosen[f]++)
+            throw InputError("face " + std::to_string(f + 1) + " is chosen twice; once is enough");
+    }
+
+    std::vector<Job> jobs(faces.size());
+    std::vector<double> length(faces.size(), 0.0);
+    parallel_blocks(faces.size(), 1, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            jobs[i].face = faces[i];
+            jobs[i].area = shape.face_area(faces[i]);
+            length[i] = perimeter(impl.face(faces[i]));
+        }
+    });
+    double area = 0, border = 0;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (!std::isfinite(jobs[i].area))
+            throw InputError(face_name(impl, jobs[i].face) +
+                             " has an area that is not a number: its surface evaluates to NaN; "
+                             "repair the shape or leave the face out");
+        area += jobs[i].area;
+        border += length[i];
+    }
+    refuse_if_too_large(area, border, options.spacing, options.max_bytes);
+    context.report(0.05);
+
+    std::atomic<std::size_t> done{0};
+    parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Job& job = jobs[i];
+            const std::string name = face_name(impl, job.face);
+            if (job.area < kZeroArea) {
+                job.warning = name + " has no area and is left out";
+                continue;
+            }
+            try {
+                FaceRequest request;
+                request.face = impl.face(job.face);
+                request.spacing = options.spacing;
+                request.area = job.area;
+                const bool loose = !shape.bounds_solid(job.face);
+                request.reverse = (request.face.Orientation() == TopAbs_REVERSED) !=
+                                  (loose ? options.flip_normals : impl.inside_out(job.face));
+                job.samples = sample_face(request, context);
+                if (job.samples.point.size() > kEnoughSamples &&
+                    std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)
+                    job.warning = name + " has an area of " + number(job.area) +
+                                  " mm2 by integration, " + number(job.samples.sampled_area) +
+                                  " mm2 by its samples: check the shape";
+            } catch (const Standard_Failure& failure) {
+                throw InputError(name + " cannot be sampled: " + failure.GetMessageString() +
+                                 "; repair the shape or leave the face out");
+            } catch (const Cancelled&) {
+                throw;
+            } catch (const std::runtime_error& error) {
+                throw InputError(name + " cannot be sampled: " + error.what() +
+                                 "; repair the shape or leave the face out");
+            }
+            context.report(0.05 + 0.9 * double(++done) / double(jobs.size()));
+        }
+    });
+
+    HeightField field;
+    field.spacing = options.spacing;
+    field.depth = options.depth;
+    append_all(jobs, field, context);
+    if (field.size() == 0) throw InputError(impl.name + ": none of the chosen faces has an area");
+    if (report) {
+        for (const Job& job : jobs) {
+            report->face_area.push_back(job.area);
+            if (!job.warning.empty()) report->warnings.push_back(job.warning);
+        }
+    }
+    context.report(1.0);
+    return field;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,220 @@
+#include "brep/shape.h"
+
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <ShapeFix_Edge.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <cmath>
+
+#include "base/error.h"
+#include "brep/shape_impl.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kLargestExtent = 10e3;   // mm; beyond it a wrong unit is likelier than a part
+constexpr double kSmallestExtent = 0.1;   // mm
+constexpr double kZeroArea = 1e-9;        // mm2
+constexpr double kExtentsChord = 2e-3;    // chord error over the pole box's diagonal
+constexpr double kAreaTolerance = 1e-6;   // relative, of the adaptive Gauss integration
+constexpr double kRelativeVolume = 1e-9;  // of the box: below it a volume has no sign
+
+std::string length_text(double mm) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g mm", mm);
+    return text;
+}
+
+}  // namespace
+
+std::string face_name(const Shape::Impl& impl, std::size_t face) {
+    return "face " + std::to_string(face + 1) + " of " + impl.name;
+}
+
+Shape make_shape(const TopoDS_Shape& shape, const std::string& name) {
+    if (shape.IsNull())
+        throw InputError(name + ": the file gives no shape (null shape); export the part again");
+    auto impl = std::make_shared<Shape::Impl>();
+    impl->shape = shape;
+    impl->name = name;
+    TopExp::MapShapes(shape, TopAbs_FACE, impl->faces);
+    if (impl->faces.IsEmpty())
+        throw InputError(name + ": the shape has no faces; a solid, shell or face is needed");
+    impl->solid_of_face.assign(static_cast<std::size_t>(impl->faces.Extent()), -1);
+    for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
+        for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next()) {
+            const int index = impl->faces.FindIndex(face.Current());
+            if (index > 0)
+                impl->solid_of_face[static_cast<std::size_t>(index - 1)] =
+                    static_cast<int>(impl->solids.size());
+        }
+        impl->solids.push_back(solid.Current());
+    }
+    impl->solid_sign.assign(impl->solids.size(), 0);
+    // Sampling walks the trimming curves in the surface's parameters; on any surface but a plane
+    // they must be stored. Adding them changes the shared edge, so it is done here, once.
+    for (int i = 1; i <= impl->faces.Extent(); ++i) {
+        const TopoDS_Face face = TopoDS::Face(impl->faces(i));
+        for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+            const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
+            double first = 0, last = 0;
+            try {
+                if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull() &&
+                    !BRep_Tool::Surface(face).IsNull())
+                    ShapeFix_Edge().FixAddPCurve(edge, face, false);
+            } catch (const Standard_Failure&) {
+                // The sampler names the face when it finds the curve missing.
+            }
+        }
+    }
+    return Shape(std::move(impl));
+}
+
+bool Shape::Impl::inside_out(std::size_t face) const {
+    const int solid = solid_of_face[face];
+    if (solid < 0) return false;
+    const std::lock_guard<std::mutex> lock(mutex);
+    signed char& sign = solid_sign[static_cast<std::size_t>(solid)];
+    if (sign == 0) {
+        sign = 1;
+        try {
+            GProp_GProps volume;
+            const TopoDS_Shape& s = solids[static_cast<std::size_t>(solid)];
+            BRepGProp::VolumeProperties(s, volume);
+            Bnd_Box box;
+            BRepBndLib::Add(s, box);
+            const double diagonal = box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+            if (volume.Mass() < -kRelativeVolume * std::pow(diagonal, 3)) sign = -1;
+        } catch (const Standard_Failure&) {
+            // No volume can be told: the faces' own orientation stands.
+        }
+    }
+    return sign < 0;
+}
+
+std::size_t Shape::face_count() const {
+    return impl_->solid_of_face.size();
+}
+
+bool Shape::bounds_solid(std::size_t face) const {
+    return impl_->solid_of_face.at(face) >= 0;
+}
+
+double Shape::face_area(std::size_t face) const {
+    if (face >= face_count())
+        throw InputError(impl_->name + " has no face " + std::to_string(face + 1) + "; it has " +
+                         std::to_string(face_count()));
+    try {
+        // The integration's sign follows the face's orientation: measured on the forward one.
+        const TopoDS_Shape forward = impl_->face(face).Oriented(TopAbs_FORWARD);
+        if (BRep_Tool::Surface(TopoDS::Face(forward)).IsNull()) return 0;
+        GProp_GProps properties;
+        BRepGProp::SurfaceProperties(forward, properties, kAreaTolerance);
+        return std::abs(properties.Mass());
+    } catch (const Standard_Failure& failure) {
+        throw InputError(face_name(*impl_, face) + ": its area cannot be found: " +
+                         failure.GetMessageString() + "; repair the shape");
+    }
+}
+
+std::string Shape::surface_type(std::size_t face) const {
+    if (face >= face_count())
+        throw InputError(impl_->name + " has no face " + std::to_string(face + 1));
+    if (BRep_Tool::Surface(impl_->face(face)).IsNull()) return "none";
+    switch (BRepAdaptor_Surface(impl_->face(face), false).GetType()) {
+        case GeomAbs_Plane:
+            return "plane";
+        case GeomAbs_Cylinder:
+            return "cylinder";
+        case GeomAbs_Cone:
+            return "cone";
+        case GeomAbs_Sphere:
+            return "sphere";
+        case GeomAbs_Torus:
+            return "torus";
+        case GeomAbs_BezierSurface:
+            return "bezier";
+        case GeomAbs_BSplineSurface:
+            return "bspline";
+        case GeomAbs_SurfaceOfRevolution:
+            return "revolution";
+        case GeomAbs_SurfaceOfExtrusion:
+            return "extrusion";
+        case GeomAbs_OffsetSurface:
+            return "offset";
+        default:
+            return "other";
+    }
+}
+
+Box Shape::extents() const {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    if (!impl_->extents) {
+        Bnd_Box poles;  // may be several times too large: only sets the chord error
+        BRepBndLib::Add(impl_->shape, poles, false);
+        const double diagonal = poles.IsVoid() ? 1.0 : std::sqrt(poles.SquareExtent());
+        Box box;
+        for (const Vec3f& v :
+             mesh_of(impl_->shape, kExtentsChord * diagonal, false, RunContext()).vertices)
+            box.extend(v.cast<double>());
+        impl_->extents = std::make_unique<Box>(box);
+    }
+    return *impl_->extents;
+}
+
+std::vector<std::string> Shape::warnings() const {
+    const Box box = extents();
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    if (impl_->warnings) return *impl_->warnings;
+    std::vector<std::string> found;
+    const std::string& name = impl_->name;
+    if (!box.isEmpty()) {
+        const double size = box.sizes().maxCoeff();
+        if (size > kLargestExtent)
+            found.push_back(name + " is " + length_text(size) +
+                            " large, more than 10 m: check its unit");
+        if (size < kSmallestExtent)
+            found.push_back(name + " is only " + length_text(size) +
+                            " large, less than 0.1 mm: check its unit");
+    }
+    try {
+        if (!BRepCheck_Analyzer(impl_->shape).IsValid())
+            found.push_back(name +
+                            " is not a valid shape by OpenCASCADE's check: results near its faults "
+                            "may be wrong");
+    } catch (const Standard_Failure&) {
+        found.push_back(name + " cannot be checked for validity");
+    }
+    for (TopExp_Explorer s(impl_->shape, TopAbs_SHELL); s.More(); s.Next()) {
+        if (!BRep_Tool::IsClosed(s.Current())) {
+            found.push_back(name +
+                            " has an open shell: its normals follow the faces' orientation, "
+                            "flip them if they point into the part");
+            break;
+        }
+    }
+    std::size_t loose = 0;
+    for (std::size_t i = 0; i < face_count(); ++i) {
+        loose += impl_->solid_of_face[i] < 0;
+        try {
+            if (face_area(i) < kZeroArea)
+                found.push_back(face_name(*impl_, i) + " has no area and is left out");
+        } catch (const InputError& error) {
+            found.push_back(error.what());
+        }
+    }
+    if (loose > 0 && loose < face_count())
+        found.push_back(name + ": " + std::to_string(loose) +
+                        " of its faces belong to no solid; their normals follow their orientation");
+    impl_->warnings = std::make_unique<std::vector<std::string>>(found);
+    return found;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,50 @@
+#pragma once
+
+// Private to this room: what a Shape holds. Includes OpenCASCADE.
+
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "brep/shape.h"
+
+namespace beltgrinding {
+
+struct Shape::Impl {
+    TopoDS_Shape shape;
+    TopTools_IndexedMapOfShape faces;  ///< in FreeCAD's order, from 1
+    std::string name;                  ///< for messages
+    std::vector<int> solid_of_face;    ///< index into `solids`, -1 for a loose face
+    std::vector<TopoDS_Shape> solids;
+
+    /// Face `i` from 0, as oriented in its shell.
+    const TopoDS_Face& face(std::size_t i) const {
+        return TopoDS::Face(faces(static_cast<int>(i) + 1));
+    }
+    /// True if the face's solid has a negative volume: its normals all point inwards.
+    bool inside_out(std::size_t face) const;
+
+    // Costly facts, found once when first asked for.
+    mutable std::mutex mutex;
+    mutable std::vector<signed char> solid_sign;  ///< 0: not yet known
+    mutable std::unique_ptr<Box> extents;
+    mutable std::unique_ptr<std::vector<std::string>> warnings;
+};
+
+/// Takes `shape` in: numbers its faces, adds missing curves on surfaces. Throws InputError naming
+/// `name` if it is null or has no faces.
+Shape make_shape(const TopoDS_Shape& shape, const std::string& name);
+
+/// "face 3 of blade.step": faces are counted from 1 at the user's eye.
+std::string face_name(const Shape::Impl& impl, std::size_t face);
+
+/// Triangulates `shape` (a copy: the original is shared with other threads); cancellable.
+TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative,
+                     const RunContext& context);
+
+}  // namespace beltgrinding

@@ -1,0 +1,123 @@
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Reader.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <sstream>
+
+#include "base/error.h"
+#include "brep/shape.h"
+#include "brep/shape_impl.h"
+
+namespace beltgrinding {
+namespace {
+
+// Value of OpenCASCADE's "read.surfacecurve.mode" that FreeCAD sets: faces must come in its order.
+constexpr int kFreecadIgesCurveMode = 3;
+
+// OpenCASCADE's readers share static parameters and print to the standard output.
+std::mutex& reader_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+class QuietMessenger {
+  public:
+    QuietMessenger() : printers_(Message::DefaultMessenger()->Printers()) {
+        Message::DefaultMessenger()->ChangePrinters().Clear();
+    }
+    ~QuietMessenger() { Message::DefaultMessenger()->ChangePrinters() = printers_; }
+    QuietMessenger(const QuietMessenger&) = delete;
+    QuietMessenger& operator=(const QuietMessenger&) = delete;
+
+  private:
+    Message_SequenceOfPrinters printers_;
+};
+
+template <class Reader>
+TopoDS_Shape read_exchange(const std::string& path, const std::string& format) {
+    Reader reader;
+    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+        throw InputError(path + ": not a readable " + format +
+                         " file; export it again or use another format");
+    reader.TransferRoots();
+    if (reader.NbShapes() == 0)
+        throw InputError(path + ": the " + format +
+                         " file gives no shape (null shape): it holds no solid, shell or face that "
+                         "can be read; export the part again");
+    return reader.OneShape();
+}
+
+TopoDS_Shape read_brep(std::istream& stream) {
+    TopoDS_Shape shape;
+    BRep_Builder builder;
+    BRepTools::Read(shape, stream, builder);
+    return shape;
+}
+
+std::string lower_suffix(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return suffix;
+}
+
+}  // namespace
+
+Shape Shape::read(const std::string& path) {
+    const std::string suffix = lower_suffix(path);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError(path + ": there is no such file");
+    TopoDS_Shape shape;
+    try {
+        const std::lock_guard<std::mutex> lock(reader_mutex());
+        const QuietMessenger quiet;
+        if (suffix == ".step" || suffix == ".stp") {
+            shape = read_exchange<STEPControl_Reader>(path, "STEP");
+        } else if (suffix == ".iges" || suffix == ".igs") {
+            IGESControl_Controller::Init();
+            Interface_Static::SetIVal("read.surfacecurve.mode", kFreecadIgesCurveMode);
+            shape = read_exchange<IGESControl_Reader>(path, "IGES");
+        } else if (suffix == ".brep" || suffix == ".brp") {
+            BRep_Builder builder;
+            if (!BRepTools::Read(shape, path.c_str(), builder))
+                throw InputError(path + ": not a readable BREP file; export it again");
+        } else {
+            throw InputError(path + ": unknown kind of file '" + suffix +
+                             "'; .step, .stp, .iges, .igs, .brep and .brp are read");
+        }
+    } catch (const Standard_Failure& failure) {
+        throw InputError(path + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
+    }
+    return make_shape(shape, std::filesystem::path(path).filename().string());
+}
+
+Shape Shape::from_brep(const std::string& text, const std::string& name) {
+    TopoDS_Shape shape;
+    try {
+        const std::lock_guard<std::mutex> lock(reader_mutex());
+        const QuietMessenger quiet;
+        std::istringstream stream(text);
+        shape = read_brep(stream);
+    } catch (const Standard_Failure& failure) {
+        throw InputError(name + ": not the text of a BREP shape: " + failure.GetMessageString());
+    }
+    if (shape.IsNull()) throw InputError(name + ": not the text of a BREP shape");
+    return make_shape(shape, name);
+}
+
+std::string Shape::write_brep() const {
+    std::ostringstream stream;
+    BRepTools::Write(impl_->shape, stream, false, false, TopTools_FormatVersion_VERSION_1);
+    return stream.str();
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/geometry.h"
+
+namespace beltgrinding::python {
+
+namespace py = pybind11;
+
+/// A read-only numpy view of `data` as rows of `row` scalars; `owner` stays alive with it.
+template <class Scalar, class T>
+py::array view(const std::vector<T>& data, std::size_t row, const py::object& owner) {
+    static_assert(sizeof(T) % sizeof(Scalar) == 0);
+    const auto n = static_cast<py::ssize_t>(data.size());
+    const auto m = static_cast<py::ssize_t>(row);
+    py::array array = row == 1
+                          ? py::array(py::dtype::of<Scalar>(), {n},
+                                      {static_cast<py::ssize_t>(sizeof(T))}, data.data(), owner)
+                          : py::array(py::dtype::of<Scalar>(), {n, m},
+                                      {static_cast<py::ssize_t>(sizeof(T)),
+                                       static_cast<py::ssize_t>(sizeof(Scalar))},
+                                      data.data(), owner);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+/// Moves `data` into a numpy array of its own.
+template <class Scalar>
+py::array_t<Scalar> own(std::vector<Scalar>&& data) {
+    auto* moved = new std::vector<Scalar>(std::move(data));
+    const py::capsule owner(moved, [](void* p) { delete static_cast<std::vector<Scalar>*>(p); });
+    return py::array_t<Scalar>(static_cast<py::ssize_t>(moved->size()), moved->data(), owner);
+}
+
+/// A rigid transform from a 4 x 4 matrix; `name` stands for it in messages.
+Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name);
+
+void bind_base(py::module_& m);
+void bind_geometry(py::module_& m);
+void bind_height_field(py::module_& m);
+void bind_simulation(py::module_& m);
+void bind_inspection(py::module_& m);
+
+}  // namespace beltgrinding::python

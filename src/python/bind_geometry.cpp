@@ -1,0 +1,100 @@
+#include "brep/shape.h"
+#include "python/arrays.h"
+#include "stock/stock.h"
+
+namespace beltgrinding::python {
+namespace {
+
+using Vertices = py::array_t<float, py::array::c_style | py::array::forcecast>;
+using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+TriangleMesh mesh_from(const Vertices& vertices, const Indices& triangles) {
+    if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 ||
+        triangles.shape(1) != 3) {
+        throw InputError("a mesh needs vertices of shape (n, 3) and triangles of shape (m, 3)");
+    }
+    TriangleMesh mesh;
+    mesh.vertices.resize(static_cast<std::size_t>(vertices.shape(0)));
+    mesh.triangles.resize(static_cast<std::size_t>(triangles.shape(0)));
+    std::copy_n(vertices.data(), vertices.size(), reinterpret_cast<float*>(mesh.vertices.data()));
+    std::copy_n(triangles.data(), triangles.size(),
+                reinterpret_cast<std::uint32_t*>(mesh.triangles.data()));
+    return mesh;
+}
+
+}  // namespace
+
+void bind_geometry(py::module_& m) {
+    py::class_<TriangleMesh>(m, "TriangleMesh", "A bare triangle mesh in millimetres.")
+        .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
+        .def_property_readonly("vertices",
+                               [](py::object self) {
+                                   return view<float>(self.cast<TriangleMesh&>().vertices, 3, self);
+                               })
+        .def_property_readonly("triangles", [](py::object self) {
+            return view<std::uint32_t>(self.cast<TriangleMesh&>().triangles, 3, self);
+        });
+    m.def(
+        "read_mesh",
+        [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement) {
+            const Frame frame = frame_from(placement, "the placement of " + path);
+            const py::gil_scoped_release release;
+            return read_mesh(path, unit_mm, frame);
+        },
+        py::arg("path"), py::arg("unit_mm") = 1.0,
+        py::arg("work_from_mesh") = Eigen::Matrix4d::Identity().eval(),
+        "Reads STL, PLY, OBJ, OFF, 3MF; unit_mm: millimetres per unit of the file.");
+
+    py::class_<Shape>(m, "Shape", "A boundary representation; faces are numbered from 0.")
+        .def_static("read", &Shape::read, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+                    "Reads STEP, IGES or BREP.")
+        .def_static("from_brep", &Shape::from_brep, py::arg("text"), py::arg("name") = "shape",
+                    py::call_guard<py::gil_scoped_release>(),
+                    "Reads what FreeCAD's exportBrepToString makes.")
+        .def("write_brep", &Shape::write_brep)
+        .def_property_readonly("face_count", &Shape::face_count)
+        .def("bounds_solid", &Shape::bounds_solid, py::arg("face"))
+        .def("face_area", &Shape::face_area, py::arg("face"), "mm2")
+        .def("surface_type", &Shape::surface_type, py::arg("face"))
+        .def("extents",
+             [](const Shape& shape) {
+                 const Box box = shape.extents();
+                 return std::pair<Vec3, Vec3>(box.min(), box.max());
+             })
+        .def("warnings", &Shape::warnings);
+    m.def("shape_from_mesh", &shape_from_mesh, py::arg("mesh"),
+          py::call_guard<py::gil_scoped_release>(), "A faceted shell from a mesh.");
+    m.def(
+        "triangulate",
+        [](const Shape& shape, double deflection, const RunContext* context) {
+            const py::gil_scoped_release release;
+            return triangulate(shape, deflection, context != nullptr ? *context : RunContext());
+        },
+        py::arg("shape"), py::arg("deflection"), py::arg("context") = nullptr);
+    m.def(
+        "sample_faces",
+        [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing,
+           bool flip_normals, double depth, std::size_t max_bytes, const RunContext* context) {
+            SamplingOptions options;
+            options.spacing = spacing;
+            options.flip_normals = flip_normals;
+            options.depth = depth;
+            options.max_bytes = max_bytes;
+            SamplingReport report;
+            HeightField field;
+            {
+                const py::gil_scoped_release release;
+                field = sample_faces(shape, faces, options,
+                                     context != nullptr ? *context : RunContext(), &report);
+            }
+            py::dict found;
+            found["face_area"] = report.face_area;
+            found["warnings"] = report.warnings;
+            return py::make_tuple(std::move(field), found);
+        },
+        py::arg("shape"), py::arg("faces"), py::arg("spacing"), py::arg("flip_normals") = false,
+        py::arg("depth") = 1.0, py::arg("max_bytes") = 0, py::arg("context") = nullptr,
+        "Samples faces (from 0; all if empty). Returns (HeightField, dict(face_area, warnings)).");
+}
+
+}  // namespace beltgrinding::python

@@ -1,0 +1,109 @@
+#include "heightfield/height_field.h"
+#include "python/arrays.h"
+#include "stock/stock.h"
+
+namespace beltgrinding::python {
+namespace {
+
+py::dict to_dict(const StockReport& report) {
+    py::dict d;
+    d["missed"] = report.missed;
+    d["defective"] = report.defective;
+    d["volume"] = report.volume;
+    d["warnings"] = report.warnings;
+    return d;
+}
+
+}  // namespace
+
+void bind_height_field(py::module_& m) {
+    m.attr("ON_BOUNDARY") = static_cast<int>(kOnBoundary);
+    m.attr("MISSED") = static_cast<int>(kMissed);
+    m.attr("DEFECTIVE") = static_cast<int>(kDefective);
+    m.attr("DEGENERATE") = static_cast<int>(kDegenerate);
+
+#define BELTGRINDING_VIEW(name, member, Scalar, row)                      \
+    def_property_readonly(name, [](py::object self) {                     \
+        return view<Scalar>(self.cast<HeightField&>().member, row, self); \
+    })
+    py::class_<HeightField>(m, "HeightField",
+                            "Samples of the design surface and the stock on them; arrays are "
+                            "read-only views in mm, work frame.")
+        .def_property_readonly("size", &HeightField::size)
+        .def_property_readonly("bytes", &HeightField::bytes)
+        .def_readonly("spacing", &HeightField::spacing)
+        .def_readonly("depth", &HeightField::depth)
+        .BELTGRINDING_VIEW("points", point, double, 3)
+        .BELTGRINDING_VIEW("normals", normal, float, 3)
+        .BELTGRINDING_VIEW("areas", area, float, 1)
+        .BELTGRINDING_VIEW("stock_height", stock_height, float, 1)
+        .BELTGRINDING_VIEW("height", height, double, 1)
+        .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
+        .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
+        .BELTGRINDING_VIEW("triangles", triangles, std::uint32_t, 3)
+        .def("copy", [](const HeightField& field) { return HeightField(field); })
+        .def(
+            "set_height",
+            [](HeightField& field, const py::array_t<double, py::array::forcecast>& height) {
+                if (height.ndim() != 1 || static_cast<std::size_t>(height.size()) != field.size()) {
+                    throw InputError("set_height needs one value per sample");
+                }
+                const auto values = height.unchecked<1>();
+                for (std::size_t i = 0; i < field.size(); ++i) {
+                    const double value = values(static_cast<py::ssize_t>(i));
+                    if (!std::isfinite(value)) {
+                        throw InputError("height " + std::to_string(i) + " is not finite");
+                    }
+                }
+                for (std::size_t i = 0; i < field.size(); ++i) {
+                    field.height[i] = values(static_cast<py::ssize_t>(i));
+                }
+            },
+            py::arg("height"))
+        .def(
+            "write_hdf5",
+            [](const HeightField& field, const std::string& path, const std::string& attributes) {
+                const py::gil_scoped_release release;
+                write_hdf5(field, path, attributes);
+            },
+            py::arg("path"), py::arg("attributes") = "")
+        .def_static(
+            "from_hdf5",
+            [](const std::string& path) {
+                std::string attributes;
+                HeightField field;
+                {
+                    const py::gil_scoped_release release;
+                    field = read_hdf5(path, &attributes);
+                }
+                return py::make_tuple(std::move(field), attributes);
+            },
+            py::arg("path"), "Returns (HeightField, attributes).");
+#undef BELTGRINDING_VIEW
+
+    m.def(
+        "apply_allowance",
+        [](HeightField& field, double allowance) {
+            return to_dict(apply_allowance(field, allowance));
+        },
+        py::arg("field"), py::arg("allowance"), "Uniform stock, mm.");
+    m.def(
+        "apply_mesh",
+        [](HeightField& field, const TriangleMesh& mesh, double above, double below,
+           const RunContext* context) {
+            StockOptions options;
+            options.search_above = above;
+            options.search_below = below;
+            StockReport report;
+            {
+                const py::gil_scoped_release release;
+                report =
+                    apply_mesh(field, mesh, options, context != nullptr ? *context : RunContext());
+            }
+            return to_dict(report);
+        },
+        py::arg("field"), py::arg("mesh"), py::arg("search_above") = 10.0,
+        py::arg("search_below") = 2.0, py::arg("context") = nullptr, "Stock from a mesh, by rays.");
+}
+
+}  // namespace beltgrinding::python

@@ -1,0 +1,69 @@
+#include "inspection/deviation.h"
+#include "python/arrays.h"
+
+namespace beltgrinding::python {
+namespace {
+
+ColourScale scale_of(double lower, double upper, double limit) {
+    return {{lower, upper}, limit};
+}
+
+}  // namespace
+
+void bind_inspection(py::module_& m) {
+    m.def(
+        "deviation_statistics",
+        [](const HeightField& field, double lower, double upper) {
+            const DeviationStatistics s = deviation_statistics(field, {lower, upper});
+            py::dict d;
+            d["samples"] = s.samples;
+            d["missed"] = s.missed;
+            d["defective"] = s.defective;
+            d["min"] = s.min;
+            d["max"] = s.max;
+            d["mean"] = s.mean;
+            d["rms"] = s.rms;
+            d["p05"] = s.p05;
+            d["p50"] = s.p50;
+            d["p95"] = s.p95;
+            d["in_tolerance_share"] = s.in_tolerance_share;
+            d["above_share"] = s.above_share;
+            d["below_share"] = s.below_share;
+            d["design_area"] = s.design_area;
+            d["stock_volume"] = s.stock_volume;
+            d["removed_volume"] = s.removed_volume;
+            return d;
+        },
+        py::arg("field"), py::arg("lower"), py::arg("upper"),
+        "Area-weighted statistics of the deviation, mm, mm2, mm3.");
+    m.def(
+        "deviation_colours",
+        [](const HeightField& field, double lower, double upper, double limit) {
+            return own(deviation_colours(field, scale_of(lower, upper, limit)));
+        },
+        py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
+        "(n,) uint32, 0xRRGGBBAA.");
+    m.def(
+        "colour_scale",
+        [](double lower, double upper, double limit, const std::vector<double>& values) {
+            std::vector<std::uint32_t> colours;
+            for (const double v : values)
+                colours.push_back(scale_of(lower, upper, limit).colour(v));
+            return own(std::move(colours));
+        },
+        py::arg("lower"), py::arg("upper"), py::arg("limit"), py::arg("values"),
+        "Colours 0xRRGGBBAA of deviations, for a legend.");
+    m.def(
+        "deviation_ply",
+        [](const HeightField& field, double lower, double upper, double limit, bool ground) {
+            return py::bytes(deviation_ply(field, scale_of(lower, upper, limit), ground));
+        },
+        py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
+        py::arg("ground") = true);
+    m.def(
+        "mesh_ply",
+        [](const HeightField& field, bool ground) { return py::bytes(mesh_ply(field, ground)); },
+        py::arg("field"), py::arg("ground") = true);
+}
+
+}  // namespace beltgrinding::python

@@ -1,0 +1,212 @@
+#include <memory>
+
+#include "python/arrays.h"
+#include "simulation/simulation.h"
+
+namespace beltgrinding::python {
+namespace {
+
+/// Takes the value of `key` out of `d`; what is left in the end is unknown.
+template <class T>
+T take(py::dict& d, const char* key, T fallback) {
+    if (!d.contains(key)) return fallback;
+    try {
+        T value = d[key].cast<T>();
+        d.attr("pop")(key);
+        return value;
+    } catch (const py::cast_error&) {
+        throw InputError(std::string("'") + key + "' has a value of the wrong type");
+    }
+}
+
+void refuse_rest(const py::dict& d, const char* where) {
+    if (d.empty()) return;
+    throw InputError(std::string(where) + ": unknown key '" +
+                     py::str((*d.begin()).first).cast<std::string>() + "'");
+}
+
+py::dict copy_of(const py::dict& d) {
+    return d.attr("copy")().cast<py::dict>();
+}
+
+std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    const auto model = take<std::string>(d, "model", "elastic_foundation");
+    if (model != "elastic_foundation") {
+        throw InputError("compliance: there is no model '" + model + "'; use elastic_foundation");
+    }
+    auto result = std::make_unique<ElasticFoundation>(take(d, "stiffness", 0.5));
+    refuse_rest(d, "compliance");
+    return result;
+}
+
+std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    const auto model = take<std::string>(d, "model", "local_linear");
+    const double coefficient = take(d, "coefficient", 1.25e-4);
+    refuse_rest(d, "law");
+    if (model == "local_linear") return std::make_unique<LocalLinearLaw>(coefficient);
+    if (model == "hammann") return std::make_unique<HammannLaw>(coefficient);
+    throw InputError("law: there is no model '" + model + "'; use local_linear or hammann");
+}
+
+SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
+    SimulationOptions o;
+    py::dict w = copy_of(wheel_given);
+    o.wheel.radius = take(w, "radius", o.wheel.radius);
+    o.wheel.width = take(w, "width", o.wheel.width);
+    o.wheel.crown_radius = take(w, "crown_radius", o.wheel.crown_radius);
+    refuse_rest(w, "wheel");
+    py::dict d = copy_of(given);
+    o.force_control = take(d, "force_control", o.force_control);
+    o.force = take(d, "force", o.force);
+    o.force_travel = take(d, "force_travel", o.force_travel);
+    o.belt_speed = take(d, "belt_speed", o.belt_speed);
+    o.belt_wear = take(d, "belt_wear", o.belt_wear);
+    o.contact_spacing = take(d, "contact_spacing", o.contact_spacing);
+    o.contact_tolerance = take(d, "contact_tolerance", o.contact_tolerance);
+    o.stepping.max_travel = take(d, "max_travel", o.stepping.max_travel);
+    o.stepping.max_angle = take(d, "max_angle", o.stepping.max_angle);
+    refuse_rest(d, "options");
+    return o;
+}
+
+template <class Scalar, class Get>
+py::array_t<Scalar> column(const std::vector<StepRecord>& steps, Get get) {
+    std::vector<Scalar> values;
+    values.reserve(steps.size());
+    for (const StepRecord& step : steps) values.push_back(get(step));
+    return own(std::move(values));
+}
+
+py::dict to_dict(const SimulationResult& result) {
+    py::list events;
+    for (const Event& e : result.events) {
+        py::dict d;
+        d["kind"] = e.kind;
+        d["pose"] = e.pose;
+        d["line"] = e.line;
+        d["time"] = e.time;
+        d["duration"] = e.duration;
+        d["value"] = e.value;
+        d["message"] = e.message;
+        events.append(d);
+    }
+    const auto& s = result.steps;
+    py::dict steps;
+    steps["time"] = column<double>(s, [](const StepRecord& r) { return r.time; });
+    steps["pose"] = column<std::uint32_t>(s, [](const StepRecord& r) { return r.pose; });
+    steps["force"] = column<float>(s, [](const StepRecord& r) { return r.force; });
+    steps["approach"] = column<float>(s, [](const StepRecord& r) { return r.approach; });
+    steps["contact_area"] = column<float>(s, [](const StepRecord& r) { return r.contact_area; });
+    steps["peak_pressure"] = column<float>(s, [](const StepRecord& r) { return r.peak_pressure; });
+    steps["removal_rate"] = column<float>(s, [](const StepRecord& r) { return r.removal_rate; });
+    steps["segments"] = column<std::uint32_t>(s, [](const StepRecord& r) { return r.segments; });
+    py::dict wall;
+    wall["build"] = result.build_s;
+    wall["localise"] = result.localise_s;
+    wall["gap"] = result.gap_s;
+    wall["contact"] = result.contact_s;
+    wall["removal"] = result.removal_s;
+    wall["refit"] = result.refit_s;
+    py::dict d;
+    d["events"] = events;
+    d["steps"] = steps;
+    d["process_time"] = result.process_time;
+    d["removed_volume"] = result.removed_volume;
+    d["integrated_rate"] = result.integrated_rate;
+    d["wall"] = wall;
+    return d;
+}
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
+
+ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& forces,
+                   const Bools& rapid, const Ints& lines, const std::string& holding,
+                   const Eigen::Matrix4d& base_from_work, const Eigen::Matrix4d& tcp_from_contact,
+                   const Eigen::Matrix4d& tcp_from_work, const Eigen::Matrix4d& base_from_contact) {
+    const py::ssize_t n = frames.ndim() == 3 ? frames.shape(0) : -1;
+    if (n < 0 || frames.shape(1) != 4 || frames.shape(2) != 4 || feeds.size() != n ||
+        forces.size() != n || rapid.size() != n || lines.size() != n) {
+        throw InputError(
+            "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines");
+    }
+    CellFrames cell;
+    if (holding == "part_in_hand") {
+        cell.holding = Holding::kPartInHand;
+    } else if (holding != "tool_in_hand") {
+        throw InputError("holding must be tool_in_hand or part_in_hand, not '" + holding + "'");
+    }
+    cell.base_from_work = frame_from(base_from_work, "base_from_work");
+    cell.tcp_from_contact = frame_from(tcp_from_contact, "tcp_from_contact");
+    cell.tcp_from_work = frame_from(tcp_from_work, "tcp_from_work");
+    cell.base_from_contact = frame_from(base_from_contact, "base_from_contact");
+    std::vector<PathPose> poses(static_cast<std::size_t>(n));
+    for (py::ssize_t i = 0; i < n; ++i) {
+        PathPose& pose = poses[static_cast<std::size_t>(i)];
+        pose.base_from_tcp.matrix() =
+            Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(frames.data(i, 0, 0));
+        pose.feed = feeds.data()[i];
+        pose.force = forces.data()[i];
+        pose.rapid = rapid.data()[i];
+        pose.line = lines.data()[i];
+    }
+    return ToolPath(std::move(poses), cell);
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& m) {
+    const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
+    py::class_<ToolPath>(m, "ToolPath", "Programmed poses with the cell's frames.")
+        .def(py::init(&path_from), py::arg("frames"), py::arg("feeds"), py::arg("forces"),
+             py::arg("rapid"), py::arg("lines"), py::arg("holding") = "tool_in_hand",
+             py::arg("base_from_work") = identity, py::arg("tcp_from_contact") = identity,
+             py::arg("tcp_from_work") = identity, py::arg("base_from_contact") = identity,
+             "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
+             "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source.")
+        .def("__len__", [](const ToolPath& path) { return path.poses().size(); })
+        .def("duration", &ToolPath::duration, "s")
+        .def(
+            "work_from_contact",
+            [](const ToolPath& path) {
+                const auto n = static_cast<py::ssize_t>(path.poses().size());
+                py::array_t<double> frames({n, py::ssize_t{4}, py::ssize_t{4}});
+                for (py::ssize_t i = 0; i < n; ++i) {
+                    Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(frames.mutable_data(
+                        i, 0, 0)) = path.frames()
+                                        .work_from_contact(
+                                            path.poses()[static_cast<std::size_t>(i)].base_from_tcp)
+                                        .matrix();
+                }
+                return frames;
+            },
+            "(n, 4, 4), mm");
+    m.def(
+        "simulate",
+        [](HeightField& field, const ToolPath& path, const py::dict& wheel,
+           const py::dict& compliance, const py::dict& law, const py::dict& options,
+           const RunContext* context) {
+            const SimulationOptions o = options_from(wheel, options);
+            const auto elastic = compliance_from(compliance);
+            const auto removal = law_from(law);
+            SimulationResult result;
+            {
+                const py::gil_scoped_release release;
+                result = simulate(field, path, *elastic, *removal, o,
+                                  context != nullptr ? *context : RunContext());
+            }
+            py::dict d = to_dict(result);
+            d["compliance"] = elastic->describe();
+            d["law"] = removal->describe();
+            return d;
+        },
+        py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),
+        py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
+        py::arg("options") = py::dict(), py::arg("context") = nullptr,
+        "Grinds field along path; see simulation/simulation.h for units.");
+}
+
+}  // namespace beltgrinding::python

@@ -1,0 +1,57 @@
+#include <embree3/rtcore_config.h>
+
+#include "base/run_context.h"
+#include "heightfield/kdop_tree.h"
+#include "python/arrays.h"
+
+namespace beltgrinding::python {
+
+Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name) {
+    const Eigen::Matrix3d r = matrix.topLeftCorner<3, 3>();
+    const bool rigid = matrix.allFinite() && (r.transpose() * r).isIdentity(1e-6) &&
+                       r.determinant() > 0.0 &&
+                       matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
+    if (!rigid) throw InputError(name + " is no rigid transform (4 x 4, rotation and translation)");
+    return Frame(matrix);
+}
+
+void bind_base(py::module_& m) {
+    py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
+    py::register_exception<Cancelled>(m, "Cancelled", PyExc_Exception);
+    py::class_<RunContext>(m, "RunContext", "Progress and cancellation of one long call.")
+        .def(py::init<>())
+        .def("cancel", &RunContext::cancel, "Asks the call to end; from any thread.")
+        .def("part", &RunContext::part, py::arg("begin"), py::arg("end"),
+             "A context whose [0, 1] is shown as [begin, end] of this one's.")
+        .def("report", &RunContext::report, py::arg("done"))
+        .def("throw_if_cancelled", &RunContext::throw_if_cancelled)
+        .def_property_readonly("cancelled", &RunContext::cancelled)
+        .def_property_readonly("progress", &RunContext::progress, "In [0, 1].");
+    m.attr("VERSION") = BELTGRINDING_VERSION;
+    m.def(
+        "versions",
+        [] {
+            py::dict v;
+            v["beltgrinding"] = BELTGRINDING_VERSION;
+            v["eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." +
+                         std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                         std::to_string(EIGEN_MINOR_VERSION);
+            v["embree"] = RTC_VERSION_STRING;
+            v["opencascade"] = BELTGRINDING_OCCT_VERSION;
+            v["kdop_k"] = BELTGRINDING_KDOP_K;
+            return v;
+        },
+        "Versions of this library and of what it was built with.");
+}
+
+}  // namespace beltgrinding::python
+
+PYBIND11_MODULE(beltgrinding_core, m) {
+    m.doc() = "Robotic belt-grinding simulation. Millimetre, newton, second, megapascal, radian.";
+    using namespace beltgrinding::python;
+    bind_base(m);
+    bind_geometry(m);
+    bind_height_field(m);
+    bind_simulation(m);
+    bind_inspection(m);
+}

@@ -1,0 +1,107 @@
+"""The command line: ``python3 -m beltgrinding run job.json -o out/``.
+
+Exit status: 0 success, 2 wrong input (one line on standard error), 130 interrupted.
+"""
+
+import argparse
+import json
+import sys
+import threading
+
+
+def _parser():
+    parser = argparse.ArgumentParser(
+        prog="beltgrind", description="Simulates robotic belt grinding without FreeCAD."
+    )
+    parser.add_argument("--version", action="store_true", help="print versions and exit")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
+    run = commands.add_parser("run", help="grind a job")
+    run.add_argument("job", help="job.json")
+    run.add_argument("-o", "--output", required=True, help="folder for the results")
+    run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    commands.add_parser("schema", help="print the JSON Schema of job.json")
+    return parser
+
+
+def _show_progress(context, done):
+    while not done.wait(0.2):
+        print(f"\r{100 * context.progress:3.0f} %", end="", file=sys.stderr, flush=True)
+    print("\r     \r", end="", file=sys.stderr, flush=True)
+
+
+def _run(arguments):
+    from . import core, job
+
+    context = core.RunContext()
+    outcome = {}
+    done = threading.Event()
+
+    def work():
+        try:
+            outcome["result"] = job.run(job.load(arguments.job), context)
+        except BaseException as error:  # handed on to the main thread
+            outcome["error"] = error
+
+    # In a thread of its own, so that Ctrl-C reaches the main thread while C++ computes.
+    worker = threading.Thread(target=work)
+    worker.start()
+    if sys.stderr.isatty() and not arguments.quiet:
+        threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
+    try:
+        while worker.is_alive():
+            worker.join(0.1)
+    except KeyboardInterrupt:
+        context.cancel()
+        worker.join()
+        raise
+    finally:
+        done.set()
+    if "error" in outcome:
+        raise outcome["error"]
+    outcome["result"].write(arguments.output)
+    if not arguments.quiet:
+        _report(outcome["result"].summary, arguments.output)
+
+
+def _report(summary, output):
+    for warning in summary["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
+    deviation = summary["deviation_mm"]
+    print(
+        f"{summary['samples']} samples, {summary['steps']} steps, "
+        f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
+        f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "
+        f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "
+        f"results in {output}"
+    )
+
+
+def main(argv=None):
+    """Runs the command line; returns the exit status."""
+    parser = _parser()
+    arguments = parser.parse_args(argv)
+    try:
+        from . import Cancelled, InputError, core, job
+    except ImportError as error:
+        print(f"beltgrind: {error}", file=sys.stderr)
+        return 1
+    try:
+        if arguments.version:
+            print(json.dumps(core.versions()))
+        elif arguments.command == "schema":
+            print(json.dumps(job.schema(), indent=2))
+        elif arguments.command == "run":
+            _run(arguments)
+        else:
+            parser.print_usage(sys.stderr)
+            return 2
+    except InputError as error:
+        print("beltgrind: " + " ".join(str(error).split()), file=sys.stderr)
+        return 2
+    except (KeyboardInterrupt, Cancelled):
+        print("beltgrind: interrupted; nothing was written", file=sys.stderr)
+        return 130
+    except MemoryError:
+        print("beltgrind: out of memory; enlarge sampling.spacing_mm", file=sys.stderr)
+        return 2
+    return 0

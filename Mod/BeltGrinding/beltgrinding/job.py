@@ -1,0 +1,400 @@
+"""A whole job as plain data, and how it is run. No FreeCAD in here.
+
+The format is Resources/schema/job.schema.json; every default stands there and nowhere else.
+"""
+
+import copy
+import difflib
+import json
+import math
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+
+from . import InputError, core, frames, resources
+
+MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
+DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
+CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
+
+
+def schema():
+    """The JSON Schema of a job, as a dict."""
+    with open(resources() / "schema" / "job.schema.json", encoding="utf-8") as file:
+        return json.load(file)
+
+
+def load(path):
+    """Reads and validates a job file; its paths come back absolute. Raises InputError."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    try:
+        job = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}: line {error.lineno}: no JSON: {error.msg}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: {error}") from None
+    try:
+        return validate(job, path.resolve().parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _refuse_constant(name):
+    raise ValueError(f"{name} is no number that a job can use")
+
+
+def _finite(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is too large a number")
+    return value
+
+
+def validate(job, folder="."):
+    """A copy of ``job`` with all defaults filled in and paths absolute (relative to ``folder``).
+
+    Raises InputError naming the key that is unknown, missing or wrong.
+    """
+    import jsonschema
+
+    rules = schema()
+    errors = jsonschema.Draft7Validator(rules).iter_errors(job)
+    first = min(errors, key=lambda e: (len(e.absolute_path), str(e.absolute_path)), default=None)
+    if first is not None:
+        raise InputError(_explain(first))
+    job = copy.deepcopy(job)
+    _fill(job, rules)
+    if not all(math.isfinite(value) for value in _numbers(job)):
+        raise InputError("the job holds a number that is not finite")
+    for holder in [job["design"], job["stock"], *job["programs"]]:
+        if "file" in holder:
+            holder["file"] = str(Path(folder, holder["file"]).resolve())
+    stock = job["stock"]
+    if stock["kind"] == "mesh" and "file" not in stock:
+        raise InputError("stock: a mesh stock needs the key 'file'")
+    if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
+        raise InputError("stock: a solid stock needs exactly one of 'file' or 'brep'")
+    lower, upper = job["inspection"]["tolerance_mm"]
+    if lower > upper:
+        raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
+    return job
+
+
+def _explain(error):
+    """One sentence for a jsonschema error, naming the key."""
+    where = ".".join(str(part) for part in error.absolute_path) or "job"
+    if error.validator == "additionalProperties":
+        known = list(error.schema["properties"])
+        unknown = next(key for key in error.instance if key not in known)
+        near = difflib.get_close_matches(unknown, known, 1)
+        hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
+        return f"{where}: unknown key '{unknown}'; {hint}"
+    if error.validator == "required":
+        missing = next(key for key in error.validator_value if key not in error.instance)
+        return f"{where}: the key '{missing}' is missing"
+    if error.validator == "oneOf":
+        keys = " or ".join(f"'{rule['required'][0]}'" for rule in error.validator_value)
+        return f"{where}: give exactly one of {keys}"
+    return f"{where}: {error.message[:200]}"
+
+
+def _fill(value, rule):
+    """Puts the schema's defaults in where ``value`` has nothing (frames have no defaults here)."""
+    if isinstance(value, dict):
+        for key, sub in rule.get("properties", {}).items():
+            if key not in value and "default" in sub:
+                value[key] = copy.deepcopy(sub["default"])
+            if key in value:
+                _fill(value[key], sub)
+    elif isinstance(value, list):
+        for item in value:
+            _fill(item, rule.get("items", {}))
+
+
+def _numbers(value):
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for item in value:
+            yield from _numbers(item)
+    elif isinstance(value, (int, float)):
+        yield value
+
+
+class Result:
+    """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events``, ``steps``."""
+
+    def __init__(self, job, field, summary, events, steps):
+        self.job = job
+        self.field = field
+        self.summary = summary
+        self.events = events
+        self.steps = steps
+
+    def write(self, folder):
+        """Writes summary.json, events.json, deviation.ply, heightfield.h5; each whole or not."""
+        start = time.perf_counter()
+        folder = Path(folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lower, upper, limit = colour_scale(self.job)
+            ply = core.deviation_ply(self.field, lower, upper, limit, True)
+            _write_whole(folder / "deviation.ply", ply)
+            self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
+            _write_whole(folder / "events.json", _json(self.events))
+            self.summary["wall_time_s"]["write"] = time.perf_counter() - start
+            _write_whole(folder / "summary.json", _json(self.summary))
+        except OSError as error:
+            raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+
+
+def _json(data):
+    return (json.dumps(data, indent=2, allow_nan=False) + "\n").encode()
+
+
+def _write_whole(path, data):
+    part = path.with_name(path.name + ".part")
+    try:
+        part.write_bytes(data)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def colour_scale(job):
+    """(lower, upper, limit) of the job's colours, mm; the limit lies outside of the band."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    limit = max(job["inspection"]["colour_limit_mm"], 1.01 * max(abs(lower), abs(upper)))
+    return lower, upper, limit
+
+
+class _Phases:
+    """Wall time by phase, s."""
+
+    def __init__(self):
+        self.seconds = {}
+        self.restart()
+
+    def restart(self):
+        self._last = time.perf_counter()
+
+    def end(self, name):
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - self._last
+        self.restart()
+
+
+def run(job, context=None):
+    """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel."""
+    context = context or core.RunContext()
+    phases = _Phases()
+    warnings = []
+    paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
+    phases.end("programs")
+    shape = read_design(job["design"])
+    warnings += shape.warnings()
+    phases.end("read")
+    field = make_field(job, shape, warnings, context.part(0.0, 0.2))
+    phases.end("sample")
+    apply_stock(field, job["stock"], warnings, context.part(0.2, 0.3))
+    phases.end("stock")
+
+    events, steps, process_time, models = [], None, 0.0, {}
+    for i, path in enumerate(paths):
+        share = 0.7 / len(paths)
+        part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
+        try:
+            result = core.simulate(field, path, *engine_arguments(job), context=part)
+        except InputError as error:
+            raise InputError(f"{_program_name(job, i)}: {error}") from None
+        for event in result["events"]:
+            events.append({"program": i, **event, "time": event["time"] + process_time})
+        rows = result["steps"]
+        rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
+        rows["time"] = rows["time"] + process_time
+        steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
+        process_time += result["process_time"]
+        models = {key: result[key] for key in ("compliance", "law")}
+        for name, seconds in result["wall"].items():
+            phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
+    phases.restart()
+    summary = summarise(job, field, events)
+    phases.end("inspect")
+    summary.update(
+        steps=len(steps["time"]),
+        process_time_s=process_time,
+        wall_time_s=phases.seconds,
+        warnings=warnings,
+        models=models,
+    )
+    return Result(job, field, summary, events, steps)
+
+
+def summarise(job, field, events):
+    """The figures of a ground field, as summary.json has them."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    s = core.deviation_statistics(field, lower, upper)
+    kinds = {}
+    for event in events:
+        kinds[event["kind"]] = kinds.get(event["kind"], 0) + 1
+    return {
+        "samples": s["samples"],
+        "design_area_mm2": s["design_area"],
+        "stock_volume_mm3": s["stock_volume"],
+        "removed_volume_mm3": s["removed_volume"],
+        "deviation_mm": {k: s[k] for k in ("min", "max", "mean", "rms", "p05", "p50", "p95")},
+        "in_tolerance_area_share": s["in_tolerance_share"],
+        "above_tolerance_area_share": s["above_share"],
+        "below_tolerance_area_share": s["below_share"],
+        "missed_rays": s["missed"],
+        "defective_samples": s["defective"],
+        "events": kinds,
+        "versions": core.versions(),
+    }
+
+
+def read_design(design):
+    """The design's core.Shape; a mesh becomes a faceted B-rep."""
+    if "brep" in design:
+        return core.Shape.from_brep(design["brep"], "design")
+    if Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
+        return core.shape_from_mesh(core.read_mesh(design["file"], design["unit_mm"]))
+    return core.Shape.read(design["file"])
+
+
+def make_field(job, shape, warnings, context):
+    """The height field of the job's faces, without stock."""
+    faces = job["design"]["faces"]
+    for face in faces:
+        if face > shape.face_count:
+            raise InputError(
+                f"design.faces: there is no face {face}; the shape has {shape.face_count}"
+            )
+    field, report = core.sample_faces(
+        shape,
+        [face - 1 for face in faces],
+        job["sampling"]["spacing_mm"],
+        job["design"]["flip_normals"],
+        job["sampling"]["depth_mm"],
+        context=context,
+    )
+    warnings += report["warnings"]
+    return field
+
+
+def apply_stock(field, stock, warnings, context):
+    """Puts the stock on the field."""
+    if stock["kind"] == "allowance":
+        report = core.apply_allowance(field, stock["allowance_mm"])
+    else:
+        if stock["kind"] == "mesh":
+            placement = _frame(stock.get("placement"), "stock.placement")
+            mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement)
+        else:
+            shape = read_design(stock)
+            warnings += [f"stock: {text}" for text in shape.warnings()]
+            mesh = core.triangulate(shape, stock["deflection_mm"], context)
+        report = core.apply_mesh(
+            field, mesh, stock["search_above_mm"], stock["search_below_mm"], context
+        )
+    warnings += report["warnings"]
+
+
+def _frame(data, where):
+    try:
+        return frames.from_data(data)
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _program_name(job, index):
+    return job["programs"][index].get("file", f"programs[{index}]")
+
+
+def _listed_poses(poses, where):
+    """Arrays of a program that is given pose by pose."""
+    matrices = []
+    for i, p in enumerate(poses):
+        try:
+            position, quaternion = [p[k + "_mm"] for k in "xyz"], [p["q" + k] for k in "wxyz"]
+            matrices.append(frames.from_quaternion(position, quaternion))
+        except ValueError as error:
+            raise InputError(f"{where}: pose {i + 1}: {error}") from None
+    return {
+        "frames": np.array(matrices).reshape(-1, 4, 4),
+        "feeds": np.array([p.get("feed_mm_s", DEFAULT_FEED) for p in poses], dtype=float),
+        "forces": np.array([p.get("force_N", -1.0) for p in poses], dtype=float),
+        "rapid": np.array([p["rapid"] for p in poses], dtype=bool),
+        "lines": np.array([p["line"] for p in poses], dtype=int),
+    }
+
+
+def program_arrays(program, where, warnings):
+    """dict(frames, feeds, forces, rapid, lines) of a job's program, overrides applied."""
+    problems = []
+    if "poses" in program:
+        arrays = _listed_poses(program["poses"], where)
+    else:
+        from .programs import ProgramError, read_program
+
+        try:
+            read = read_program(program["file"])
+            problems = [str(problem) for problem in read.problems]
+            arrays = read.path_arrays(DEFAULT_FEED)
+        except ProgramError as error:
+            raise InputError(str(error)) from None
+    warnings += problems
+    count = len(arrays["frames"])
+    if count < 2:
+        raise InputError(
+            f"{where}: the program has {count} Cartesian targets; two at least make a path"
+            + (f" ({problems[0]})" if problems else "")
+        )
+    if "force_N" in program:
+        arrays["forces"] = np.full(count, float(program["force_N"]))
+    if "feed_mm_s" in program:
+        arrays["feeds"] = np.full(count, float(program["feed_mm_s"]))
+    return arrays
+
+
+def tool_path(job, index, warnings):
+    """core.ToolPath of the job's program number ``index``."""
+    where = _program_name(job, index)
+    arrays = program_arrays(job["programs"][index], where, warnings)
+    cell = {name: _frame(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
+    try:
+        return core.ToolPath(**arrays, holding=job["cell"]["holding"], **cell)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def engine_arguments(job):
+    """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
+    machine = job["belt_machine"]
+    wheel = {name[:-3]: float(value) for name, value in machine["wheel"].items()}
+    compliance = {
+        "model": machine["compliance"]["model"],
+        "stiffness": float(machine["compliance"]["stiffness_MPa_per_mm"]),
+    }
+    law = {
+        "model": job["law"]["model"],
+        "coefficient": float(job["law"]["coefficient_mm2_per_N"]),
+    }
+    options = {
+        "force_control": machine["control"] == "force",
+        "force": float(machine["force_N"]),
+        "force_travel": float(machine["force_travel_mm"]),
+        "belt_speed": 1000.0 * machine["belt_speed_m_s"],
+        "belt_wear": float(machine["belt_wear"]),
+        "contact_spacing": float(machine["contact_spacing_mm"]),
+        "contact_tolerance": float(machine["contact_tolerance"]),
+        "max_travel": float(job["simulation"]["max_travel_mm"]),
+        "max_angle": math.radians(job["simulation"]["max_angle_deg"]),
+    }
+    return wheel, compliance, law, options

@@ -1,0 +1,36 @@
+"""Robot languages in and out. No FreeCAD and no simulator in here.
+
+A language is one module with ``read(path) -> Program``, registered in ``READERS`` by its suffix.
+"""
+
+from pathlib import Path
+
+from .program import Motion, Problem, Program, ProgramError
+
+
+def _krl(path):
+    from . import krl
+
+    return krl.read(path)
+
+
+def _csv(path):
+    from . import csv_program
+
+    return csv_program.read(path)
+
+
+READERS = {".src": _krl, ".csv": _csv}
+
+
+def read_program(path):
+    """The Program in the file ``path``, its language told by the suffix. Raises ProgramError."""
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        known = ", ".join(sorted(READERS))
+        raise ProgramError(f"{path}: no robot language is known by '{path.suffix}'; known: {known}")
+    return reader(path)
+
+
+__all__ = ["Motion", "Problem", "Program", "ProgramError", "read_program"]

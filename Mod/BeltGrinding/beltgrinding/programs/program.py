@@ -1,0 +1,159 @@
+"""What a robot program says: motions with poses, and what could not be resolved."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import List, Optional
+
+import numpy as np
+
+CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
+MAX_CHORDS = 10_000
+
+
+class ProgramError(ValueError):
+    """A program that cannot be read; the message names file and line and what to do."""
+
+
+@dataclass
+class Problem:
+    """Something in a program that cannot be known here; only what depends on it is left out."""
+
+    file: str
+    line: int
+    message: str
+
+    def __str__(self):
+        return f"{self.file}:{self.line}: {self.message}"
+
+
+@dataclass
+class Motion:
+    """One programmed target. ``pose``: 4 x 4 base_from_tcp in mm, None for a joint target."""
+
+    kind: str  # PTP, LIN, CIRC, SPL
+    pose: Optional[np.ndarray]
+    line: int
+    file: str
+    speed_mm_s: Optional[float] = None
+    force_N: Optional[float] = None
+    tool: str = ""
+    base: str = ""
+    aux: bool = False  # an arc's auxiliary point: on the way, orientation without meaning
+
+
+@dataclass
+class Program:
+    """All motions of a program, in order."""
+
+    language: str
+    file: str
+    motions: List[Motion] = field(default_factory=list)
+    problems: List[Problem] = field(default_factory=list)
+
+    def path_arrays(self, default_speed_mm_s):
+        """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
+        forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int. Arcs become chords of
+        ``CHORD_ERROR``; after a joint target the robot arrives by a rapid motion.
+        """
+        rows, previous, aux, lost = [], None, None, False
+        for motion in self.motions:
+            if motion.pose is None:
+                lost = True  # where the joint target is, only the robot's geometry tells
+                continue
+            if motion.aux:
+                aux = motion
+                continue
+            rapid = motion.kind == "PTP" or lost or previous is None
+            poses = [motion.pose]
+            if aux is not None and not rapid:
+                poses = _arc(previous, aux.pose, motion.pose)
+            speed = motion.speed_mm_s or default_speed_mm_s
+            force = -1.0 if motion.force_N is None else motion.force_N
+            rows += [(pose, speed, force, rapid, motion.line) for pose in poses]
+            previous, aux, lost = motion.pose, None, False
+        columns = list(zip(*rows)) if rows else [[], [], [], [], []]
+        return {
+            "frames": np.array(columns[0], dtype=float).reshape(-1, 4, 4),
+            "feeds": np.array(columns[1], dtype=float),
+            "forces": np.array(columns[2], dtype=float),
+            "rapid": np.array(columns[3], dtype=bool),
+            "lines": np.array(columns[4], dtype=int),
+        }
+
+
+def name_of(path):
+    """How a program's file is named in messages."""
+    return Path(path).name
+
+
+def _arc(start, through, end):
+    """Poses after ``start`` on the circle through three points; orientation by slerp."""
+    a, b, c = (pose[:3, 3] for pose in (start, through, end))
+    u, v = b - a, c - a
+    normal = np.cross(u, v)
+    size = float(normal @ normal)
+    if size < 1e-18 * max(u @ u, v @ v, 1e-300) ** 2 or size == 0.0:
+        return [through_with(through, start), end]  # on a line
+    centre = a + np.cross((u @ u) * v - (v @ v) * u, normal) / (2.0 * size)
+    radius = float(np.linalg.norm(a - centre))
+    x_axis = (a - centre) / radius
+    y_axis = np.cross(normal / math.sqrt(size), x_axis)
+    angle = math.atan2((c - centre) @ y_axis, (c - centre) @ x_axis) % (2.0 * math.pi)
+    step = 2.0 * math.acos(max(-1.0, 1.0 - CHORD_ERROR / radius)) if radius > CHORD_ERROR else 1.0
+    count = min(MAX_CHORDS, max(2, math.ceil(angle / step)))
+    relative = start[:3, :3].T @ end[:3, :3]
+    poses = []
+    for k in range(1, count):
+        t = k / count
+        pose = np.eye(4)
+        pose[:3, :3] = start[:3, :3] @ power(relative, t)
+        pose[:3, 3] = centre + radius * (
+            math.cos(t * angle) * x_axis + math.sin(t * angle) * y_axis
+        )
+        poses.append(pose)
+    return [*poses, end]
+
+
+def through_with(through, orientation):
+    """The position of ``through`` with the orientation of another pose."""
+    pose = through.copy()
+    pose[:3, :3] = orientation[:3, :3]
+    return pose
+
+
+def power(rotation, t):
+    """The rotation by t times the angle of ``rotation`` (3 x 3): slerp from the identity."""
+    quaternion = _quaternion(rotation)
+    sine = float(np.linalg.norm(quaternion[1:]))
+    if sine < 1e-12:
+        return np.eye(3)
+    half = math.atan2(sine, quaternion[0]) * t
+    x, y, z = quaternion[1:] / sine
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(2 * half) * k + (1 - math.cos(2 * half)) * (k @ k)
+
+
+def _quaternion(r):
+    """Unit quaternion w, x, y, z (w >= 0) of a 3 x 3, by its largest component (Shepperd 1978)."""
+    squares = np.array(
+        [
+            1 + r[0, 0] + r[1, 1] + r[2, 2],
+            1 + r[0, 0] - r[1, 1] - r[2, 2],
+            1 - r[0, 0] + r[1, 1] - r[2, 2],
+            1 - r[0, 0] - r[1, 1] + r[2, 2],
+        ]
+    )
+    products = np.array(
+        [
+            [0, r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+            [r[2, 1] - r[1, 2], 0, r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
+            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], 0, r[1, 2] + r[2, 1]],
+            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], 0],
+        ]
+    )
+    k = int(np.argmax(squares))
+    quaternion = products[k].copy()
+    quaternion[k] = squares[k]
+    quaternion /= np.linalg.norm(quaternion)
+    return quaternion if quaternion[0] >= 0 else -quaternion

@@ -1,0 +1,170 @@
+"""The job as plain data and the command line, without FreeCAD."""
+
+import copy
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+import beltgrinding  # noqa: E402
+from beltgrinding import InputError, core  # noqa: E402
+from beltgrinding import job as jobs  # noqa: E402
+
+SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
+DOWN = {"qw": 0.0, "qx": 1.0, "qy": 0.0, "qz": 0.0}  # half a turn about x: the wheel presses down
+
+
+def plate(length=60.0, width=40.0):
+    """A faceted plate in the x-y plane, its normal up."""
+    corners = np.array([[0, 0, 0], [length, 0, 0], [length, width, 0], [0, width, 0]])
+    return core.shape_from_mesh(
+        core.TriangleMesh(corners.astype(np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+    )
+
+
+def plate_job():
+    return {
+        "design": {"brep": plate().write_brep()},
+        "sampling": {"spacing_mm": 0.6},
+        "stock": {"allowance_mm": 0.2},
+        "belt_machine": {"wheel": {"radius_mm": 60, "width_mm": 15}, "force_N": 30},
+        "programs": [
+            {
+                "poses": [
+                    {"x_mm": 10, "y_mm": 20, "z_mm": 0.2, **DOWN, "feed_mm_s": 30},
+                    {"x_mm": 50, "y_mm": 20, "z_mm": 0.2, **DOWN, "feed_mm_s": 30},
+                ]
+            }
+        ],
+    }
+
+
+def test_a_job_grinds_what_the_law_says():
+    result = beltgrinding.run(plate_job())
+    summary = result.summary
+    expected = 1.25e-4 * 20000.0 * 30.0 * 40.0 / 30.0  # K V_b F t
+    assert summary["removed_volume_mm3"] == pytest.approx(expected, rel=0.01)
+    assert summary["design_area_mm2"] == pytest.approx(2400.0, rel=1e-3)
+    assert summary["stock_volume_mm3"] == pytest.approx(480.0, rel=1e-3)
+    assert summary["process_time_s"] == pytest.approx(40.0 / 30.0)
+    assert summary["deviation_mm"]["max"] == pytest.approx(0.2)
+    assert summary["missed_rays"] == summary["defective_samples"] == 0
+
+
+def test_tool_in_hand_and_part_in_hand_agree():
+    tool = plate_job()
+    part = copy.deepcopy(tool)
+    part["cell"] = {
+        "holding": "part_in_hand",
+        "base_from_contact": {"position_mm": [0, 0, 0], "abc_deg": [0, 0, 0]},
+    }
+    # The part's pose is the inverse of the wheel's; half a turn about x is its own inverse.
+    for pose in part["programs"][0]["poses"]:
+        pose["x_mm"] *= -1
+    results = [beltgrinding.run(job) for job in (tool, part)]
+    np.testing.assert_allclose(results[0].field.height, results[1].field.height, atol=1e-9)
+
+
+def test_results_are_the_same_bit_for_bit():
+    a, b = (beltgrinding.run(plate_job()).field.height for _ in range(2))
+    assert (a == b).all()
+
+
+def test_everything_is_written_and_can_be_read(tmp_path):
+    result = beltgrinding.run(plate_job())
+    result.write(tmp_path / "out")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["samples"] == result.field.size
+    assert json.loads((tmp_path / "out" / "events.json").read_text()) == result.events
+    field, attributes = core.HeightField.from_hdf5(str(tmp_path / "out" / "heightfield.h5"))
+    np.testing.assert_array_equal(field.height, result.field.height)
+    assert json.loads(attributes)["belt_machine"]["force_N"] == 30
+    assert (tmp_path / "out" / "deviation.ply").read_bytes().startswith(b"ply\n")
+    assert not list((tmp_path / "out").glob("*.part"))
+
+
+def test_a_cancelled_run_raises():
+    context = core.RunContext()
+    context.cancel()
+    with pytest.raises(beltgrinding.Cancelled):
+        beltgrinding.run(plate_job(), context)
+
+
+def bad(change):
+    job = plate_job()
+    change(job)
+    with pytest.raises(InputError) as error:
+        beltgrinding.run(job)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    "change, culprit",
+    [
+        (lambda j: j.update(stok={}), "unknown key 'stok'; did you mean 'stock'"),
+        (lambda j: j.pop("design"), "'design' is missing"),
+        (lambda j: j["sampling"].update(spacing_mm=-1), "sampling.spacing_mm"),
+        (lambda j: j["sampling"].update(spacing_mm=1e-6), "spacing"),
+        (lambda j: j["sampling"].update(spacing_mm=float("nan")), "finite"),
+        (lambda j: j["design"].update(faces=[99]), "no face 99"),
+        (lambda j: j["design"].update(brep="rubbish"), "design"),
+        (lambda j: j.update(design={"file": "absent.step"}), "absent.step"),
+        (lambda j: j["programs"][0].update(poses=[]), "0 Cartesian targets"),
+        (lambda j: j["programs"][0]["poses"][1].update(qw=1.0), "pose 2: the quaternion"),
+        (lambda j: [p.update(z_mm=500) for p in j["programs"][0]["poses"]], "never touches"),
+        (lambda j: j["programs"][0].update(file="x.src"), "exactly one"),
+        (lambda j: j.update(stock={"kind": "mesh"}), "needs the key 'file'"),
+        (lambda j: j.update(inspection={"tolerance_mm": [1, -1]}), "tolerance_mm"),
+    ],
+)
+def test_bad_jobs_name_the_culprit(change, culprit):
+    assert culprit in bad(change)
+
+
+def cli(*arguments, cwd):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "Mod" / "BeltGrinding")}
+    return subprocess.run(
+        [sys.executable, "-m", "beltgrinding", *map(str, arguments)],
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_command_line_runs_a_job_with_paths_relative_to_it(tmp_path):
+    job = plate_job()
+    (tmp_path / "plate.brep").write_text(job["design"].pop("brep"))
+    job["design"]["file"] = "plate.brep"
+    (tmp_path / "job.json").write_text(json.dumps(job))
+    (tmp_path / "elsewhere").mkdir()
+    done = cli("run", "../job.json", "-o", "out", cwd=tmp_path / "elsewhere")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "elsewhere" / "out" / "summary.json").is_file()
+    assert "mm3 removed" in done.stdout
+
+
+def test_command_line_says_a_users_mistake_in_one_line(tmp_path):
+    (tmp_path / "job.json").write_text('{"design": {"file": "x.step"}, "programms": []}')
+    for job in ("job.json", "absent.json"):
+        done = cli("run", job, "-o", "out", cwd=tmp_path)
+        assert done.returncode == 2
+        assert job in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(not (SHARED / "data").is_dir(), reason=f"no shared data at {SHARED}")
+@pytest.mark.parametrize("file", ["reads_as_null_shape.stp"])
+def test_nasty_files_are_refused_by_name(file):
+    job = plate_job()
+    job["design"] = {"file": str(SHARED / "data" / "cad_nasty" / file)}
+    with pytest.raises(InputError, match=file):
+        beltgrinding.run(job)

@@ -1,0 +1,1 @@
+"""Complete models, offered in the menu and run as tests."""

@@ -1,0 +1,64 @@
+"""The example blade, made by FreeCAD and ground from the command line's functions."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+import beltgrinding  # noqa: E402
+from beltgrinding.programs import read_program  # noqa: E402
+
+SCRIPT = """
+import os, sys
+status = 1
+try:
+    sys.path.insert(0, {mod!r})
+    from beltgrinding.examples import blade
+    solid, face = blade.shape()
+    assert solid.isValid() and solid.isClosed() and solid.ShapeType == "Solid"
+    blade.make({out!r})
+    status = 0
+except BaseException:
+    import traceback
+    traceback.print_exc()
+finally:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+"""
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    out = tmp_path_factory.mktemp("blade")
+    script = out / "make.py"
+    script.write_text(SCRIPT.format(mod=str(ROOT / "Mod" / "BeltGrinding"), out=str(out)))
+    environment = {**os.environ, "HOME": str(out)}
+    done = subprocess.run(
+        ["freecadcmd", str(script)],
+        stdin=subprocess.DEVNULL,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_the_program_says_what_the_raster_path_meant(example):
+    program = read_program(example / "blade_pressure_side.src")
+    assert not program.problems
+    assert len(program.motions) == 10 * 27
+
+
+def test_the_job_grinds_the_pressure_side(example):
+    summary = beltgrinding.run(example / "job.json").summary
+    assert 6000 < summary["design_area_mm2"] < 8000
+    assert 0.3 < summary["removed_volume_mm3"] / summary["stock_volume_mm3"] < 1.5
+    assert abs(summary["deviation_mm"]["p50"]) < 0.15
+    assert summary["in_tolerance_area_share"] > 0.2

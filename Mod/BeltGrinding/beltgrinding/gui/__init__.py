@@ -1,0 +1,1 @@
+"""What a person sees: commands, panels, view providers. Needs FreeCAD's window."""

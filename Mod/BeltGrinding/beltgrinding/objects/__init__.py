@@ -1,0 +1,1 @@
+"""Document objects: data and recompute. Needs FreeCAD, never its window."""

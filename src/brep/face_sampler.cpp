@@ -15,6 +15,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kSingularJacobian = 1e-6;  // of the face's mean: no normal can be told
+constexpr double kUnevenJacobian = 1.5;     // ratio within a triangle: its mean says little
 constexpr int kImprovePasses = 6;
 constexpr int kNormalRounds = 4;  // singular samples beside singular ones
 constexpr std::size_t kMergeBlock = 1 << 14;
@@ -92,9 +93,15 @@ class FaceSampler {
                         });
     }
 
-    /// One triangle, counter-clockwise in (s, t), with its area in (s, t).
+    /// One triangle, counter-clockwise in (s, t), with its area in (s, t). The area on the surface
+    /// is that times the mean Jacobian; where the Jacobian changes too fast for a mean (a pinched
+    /// parametrisation), the flat triangle's.
     void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, double parameter_area) {
-        const double third = std::abs(parameter_area) * (cross_[a] + cross_[b] + cross_[c]) / 9.0;
+        const double low = std::min({cross_[a], cross_[b], cross_[c]});
+        const double high = std::max({cross_[a], cross_[b], cross_[c]});
+        double third = std::abs(parameter_area) * (cross_[a] + cross_[b] + cross_[c]) / 9.0;
+        if (low > singular_ && high > kUnevenJacobian * low)
+            third = (point_[b] - point_[a]).cross(point_[c] - point_[a]).norm() / 6.0;
         area_[a] += third;
         area_[b] += third;
         area_[c] += third;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "brep/shape.h"
@@ -31,7 +32,8 @@ struct Shape::Impl {
 
     // Costly facts, found once when first asked for.
     mutable std::mutex mutex;
-    mutable std::vector<signed char> solid_sign;  ///< 0: not yet known
+    mutable std::vector<signed char> solid_sign;            ///< 0: not yet known
+    mutable std::unordered_map<std::size_t, double> areas;  ///< mm2, by face
     mutable std::unique_ptr<Box> extents;
     mutable std::unique_ptr<std::vector<std::string>> warnings;
 };

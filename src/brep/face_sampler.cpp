@@ -2,6 +2,7 @@
 
 #include <BRep_Tool.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -19,6 +20,19 @@ constexpr double kUnevenJacobian = 1.5;     // ratio within a triangle: its mean
 constexpr int kImprovePasses = 6;
 constexpr int kNormalRounds = 4;  // singular samples beside singular ones
 constexpr std::size_t kMergeBlock = 1 << 14;
+
+/// Shares of a triangle's area that lie nearest to each corner; for an obtuse one half goes to the
+/// obtuse corner. Meyer et al.: Discrete differential-geometry operators (2003), section 3.3.
+std::array<double, 3> voronoi_shares(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double la = (b - c).squaredNorm(), lb = (c - a).squaredNorm(), lc = (a - b).squaredNorm();
+    if (la >= lb + lc) return {0.5, 0.25, 0.25};
+    if (lb >= lc + la) return {0.25, 0.5, 0.25};
+    if (lc >= la + lb) return {0.25, 0.25, 0.5};
+    // Barycentric weights of the circumcentre, halved on both sides of each corner.
+    const double wa = la * (lb + lc - la), wb = lb * (lc + la - lb), wc = lc * (la + lb - lc);
+    const double sum = 2 * (wa + wb + wc);
+    return {(wb + wc) / sum, (wc + wa) / sum, (wa + wb) / sum};
+}
 
 /// Builds one face step by step; each step reads what the ones before it made.
 class FaceSampler {
@@ -99,12 +113,17 @@ class FaceSampler {
     void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, double parameter_area) {
         const double low = std::min({cross_[a], cross_[b], cross_[c]});
         const double high = std::max({cross_[a], cross_[b], cross_[c]});
-        double third = std::abs(parameter_area) * (cross_[a] + cross_[b] + cross_[c]) / 9.0;
+        double area = std::abs(parameter_area) * (cross_[a] + cross_[b] + cross_[c]) / 3.0;
         if (low > singular_ && high > kUnevenJacobian * low)
-            third = (point_[b] - point_[a]).cross(point_[c] - point_[a]).norm() / 6.0;
-        area_[a] += third;
-        area_[b] += third;
-        area_[c] += third;
+            area = (point_[b] - point_[a]).cross(point_[c] - point_[a]).norm() / 2.0;
+        const std::array<double, 3> share = voronoi_shares(point_[a], point_[b], point_[c]);
+        area_[a] += area * share[0];
+        area_[b] += area * share[1];
+        area_[c] += area * share[2];
+        put_triangle(a, b, c);
+    }
+
+    void put_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         if (a == b || b == c || c == a) return;  // a corner at a pole
         if (sign_ < 0)
             triangles_.push_back({a, c, b});
@@ -129,16 +148,22 @@ class FaceSampler {
                     }
                     ahead = ahead == FaceLattice::kNone ? lattice_->find(j + 1, k) : ahead + 1;
                     const std::uint32_t d = ahead;
-                    const double low = 0.5 * dt * (lattice_->s(a + 1) - lattice_->s(a));
-                    const double high = 0.5 * dt * (lattice_->s(d + 1) - lattice_->s(d));
                     const std::uint32_t sa = lattice_sample(a), sd = lattice_sample(d);
+                    // Nearly a parallelogram: a quarter for each corner.
+                    const double low = lattice_->s(a + 1) - lattice_->s(a);
+                    const double high = lattice_->s(d + 1) - lattice_->s(d);
+                    const double quarter = dt *
+                                           (low * (cross_[sa] + cross_[sa + 1]) +
+                                            high * (cross_[sd] + cross_[sd + 1])) /
+                                           16.0;
+                    for (const std::uint32_t i : {sa, sa + 1, sd, sd + 1}) area_[i] += quarter;
                     if ((point_[sa] - point_[sd + 1]).squaredNorm() <=
                         (point_[sa + 1] - point_[sd]).squaredNorm()) {
-                        add_triangle(sa, sa + 1, sd + 1, low);
-                        add_triangle(sa, sd + 1, sd, high);
+                        put_triangle(sa, sa + 1, sd + 1);
+                        put_triangle(sa, sd + 1, sd);
                     } else {
-                        add_triangle(sa, sa + 1, sd, low);
-                        add_triangle(sa + 1, sd + 1, sd, high);
+                        put_triangle(sa, sa + 1, sd);
+                        put_triangle(sa + 1, sd + 1, sd);
                     }
                 }
             }

@@ -208,9 +208,11 @@ Box Shape::extents() const {
 }
 
 std::vector<std::string> Shape::warnings() const {
+    {
+        const std::lock_guard<std::mutex> lock(impl_->mutex);
+        if (impl_->warnings) return *impl_->warnings;
+    }
     const Box box = extents();
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    if (impl_->warnings) return *impl_->warnings;
     std::vector<std::string> found;
     const std::string& name = impl_->name;
     if (!box.isEmpty()) {
@@ -251,6 +253,7 @@ std::vector<std::string> Shape::warnings() const {
     if (loose > 0 && loose < face_count())
         found.push_back(name + ": " + std::to_string(loose) +
                         " of its faces belong to no solid; their normals follow their orientation");
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->warnings = std::make_unique<std::vector<std::string>>(found);
     return found;
 }

@@ -11,6 +11,7 @@
 #include "brep/face_lattice.h"
 #include "brep/face_surface.h"
 #include "brep/face_trim.h"
+#include "brep/sample_weights.h"
 
 namespace beltgrinding {
 namespace {
@@ -18,21 +19,7 @@ namespace {
 constexpr double kSingularJacobian = 1e-6;  // of the face's mean: no normal can be told
 constexpr double kUnevenJacobian = 1.5;     // ratio within a triangle: its mean says little
 constexpr int kImprovePasses = 6;
-constexpr int kNormalRounds = 4;  // singular samples beside singular ones
 constexpr std::size_t kMergeBlock = 1 << 14;
-
-/// Shares of a triangle's area that lie nearest to each corner; for an obtuse one half goes to the
-/// obtuse corner. Meyer et al.: Discrete differential-geometry operators (2003), section 3.3.
-std::array<double, 3> voronoi_shares(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double la = (b - c).squaredNorm(), lb = (c - a).squaredNorm(), lc = (a - b).squaredNorm();
-    if (la >= lb + lc) return {0.5, 0.25, 0.25};
-    if (lb >= lc + la) return {0.25, 0.5, 0.25};
-    if (lc >= la + lb) return {0.25, 0.25, 0.5};
-    // Barycentric weights of the circumcentre, halved on both sides of each corner.
-    const double wa = la * (lb + lc - la), wb = lb * (lc + la - lb), wc = lc * (la + lb - lc);
-    const double sum = 2 * (wa + wb + wc);
-    return {(wb + wc) / sum, (wc + wa) / sum, (wa + wb) / sum};
-}
 
 /// Builds one face step by step; each step reads what the ones before it made.
 class FaceSampler {
@@ -65,7 +52,7 @@ class FaceSampler {
         gather_samples();
         add_cells();
         add_band();
-        fix_singular_normals();
+        fill_singular_normals(point_, flags_, triangles_, normal_);
         return finish();
     }
 
@@ -328,33 +315,6 @@ class FaceSampler {
             return cotangent(a, b, c) + cotangent(a, b, d) < -1e-3;
         };
         delaunay.improve(usable, better, kImprovePasses);
-    }
-
-    void fix_singular_normals() {
-        std::vector<std::uint32_t> left;
-        for (std::uint32_t i = 0; i < flags_.size(); ++i)
-            if (flags_[i] & kDegenerate) left.push_back(i);
-        for (int round = 0; round < kNormalRounds && !left.empty(); ++round) {
-            std::vector<Vec3> sum(flags_.size() > 0 ? point_.size() : 0, Vec3::Zero());
-            for (const Triangle& t : triangles_)
-                for (std::size_t i = 0; i < 3; ++i)
-                    if ((flags_[t[i]] & kDegenerate) && normal_[t[i]].isZero())
-                        sum[t[i]] +=
-                            (normal_[t[(i + 1) % 3]] + normal_[t[(i + 2) % 3]]).cast<double>();
-            for (const std::uint32_t i : left)
-                if (normal_[i].isZero() && sum[i].norm() > 1e-9)
-                    normal_[i] = sum[i].normalized().cast<float>();
-            std::erase_if(left, [&](std::uint32_t i) { return !normal_[i].isZero(); });
-        }
-        // Nothing but singular samples about it: the triangles' own normals, or any unit vector.
-        if (left.empty()) return;
-        std::vector<Vec3> sum(point_.size(), Vec3::Zero());
-        for (const Triangle& t : triangles_)
-            for (std::size_t i = 0; i < 3; ++i)
-                sum[t[i]] += (point_[t[1]] - point_[t[0]]).cross(point_[t[2]] - point_[t[0]]);
-        for (const std::uint32_t i : left)
-            normal_[i] = sum[i].norm() > 0 ? Vec3f(sum[i].normalized().cast<float>())
-                                           : Vec3f(Vec3f::UnitZ());
     }
 
     /// Keeps the samples that carry area, scales to the exact area.

@@ -74,6 +74,9 @@ struct Boundary {
 Boundary sample_boundary(const TrimCurves& trim, const FaceSurface& surface,
                          const SurfaceMetric& metric, const PlaneGrid& grid, double spacing);
 
+/// Indices of the segments that cross another one properly.
+std::vector<std::size_t> crossing_segments(const Boundary& boundary);
+
 /// Inside and outside of the border by the even-odd rule.
 class TrimScan {
   public:

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "base/error.h"
@@ -55,8 +57,11 @@ TopoDS_Shape read_exchange(const std::string& path, const std::string& format) {
     return reader.OneShape();
 }
 
-TopoDS_Shape read_brep(std::istream& stream) {
+/// Null if the text is no BREP. OpenCASCADE itself complains of that on the standard output.
+TopoDS_Shape read_brep(const std::string& text) {
     TopoDS_Shape shape;
+    if (text.find("CASCADE Topology V") == std::string::npos) return shape;
+    std::istringstream stream(text);
     BRep_Builder builder;
     BRepTools::Read(shape, stream, builder);
     return shape;
@@ -87,8 +92,9 @@ Shape Shape::read(const std::string& path) {
             Interface_Static::SetIVal("read.surfacecurve.mode", kFreecadIgesCurveMode);
             shape = read_exchange<IGESControl_Reader>(path, "IGES");
         } else if (suffix == ".brep" || suffix == ".brp") {
-            BRep_Builder builder;
-            if (!BRepTools::Read(shape, path.c_str(), builder))
+            std::ifstream file(path, std::ios::binary);
+            shape = read_brep({std::istreambuf_iterator<char>(file), {}});
+            if (shape.IsNull())
                 throw InputError(path + ": not a readable BREP file; export it again");
         } else {
             throw InputError(path + ": unknown kind of file '" + suffix +
@@ -105,8 +111,7 @@ Shape Shape::from_brep(const std::string& text, const std::string& name) {
     try {
         const std::lock_guard<std::mutex> lock(reader_mutex());
         const QuietMessenger quiet;
-        std::istringstream stream(text);
-        shape = read_brep(stream);
+        shape = read_brep(text);
     } catch (const Standard_Failure& failure) {
         throw InputError(name + ": not the text of a BREP shape: " + failure.GetMessageString());
     }

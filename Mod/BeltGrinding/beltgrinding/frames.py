@@ -9,24 +9,64 @@ QUATERNION_TOLERANCE = 1e-3  # off unit length by more is a mistake, not roundin
 
 def from_quaternion(position, quaternion):
     """4 x 4 from a position (3,) in mm and a quaternion w, x, y, z. Raises ValueError."""
-    values = np.asarray([*position, *quaternion], dtype=float)
-    if not np.isfinite(values).all():
-        raise ValueError("the pose is not finite; give real numbers")
-    length = float(np.linalg.norm(values[3:]))
-    if abs(length - 1.0) > QUATERNION_TOLERANCE:
+    position = np.asarray(position, dtype=float).reshape(1, 3)
+    return from_quaternions(position, np.asarray(quaternion, dtype=float).reshape(1, 4))[0]
+
+
+def from_quaternions(positions, quaternions):
+    """(n, 4, 4) from positions (n, 3) in mm and quaternions (n, 4) w, x, y, z.
+
+    Raises ValueError naming the first pose (from 1) that is not finite or not of unit length.
+    """
+    lengths = np.linalg.norm(quaternions, axis=1)
+    finite = np.isfinite(positions).all(axis=1) & np.isfinite(quaternions).all(axis=1)
+    unit = np.abs(lengths - 1.0) <= QUATERNION_TOLERANCE
+    wrong = np.flatnonzero(~(finite & unit))
+    if len(wrong):
+        i = int(wrong[0])
+        which = f"pose {i + 1}: " if len(lengths) > 1 else ""
+        if not finite[i]:
+            raise ValueError(f"{which}the pose is not finite; give real numbers")
         raise ValueError(
-            f"the quaternion has length {length:.4g} instead of 1; "
+            f"{which}the quaternion has length {lengths[i]:.4g} instead of 1; "
             "give a unit quaternion w, x, y, z"
         )
-    w, x, y, z = values[3:] / length
-    frame = np.eye(4)
-    frame[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    frame[:3, 3] = values[:3]
-    return frame
+    w, x, y, z = (quaternions / lengths[:, None]).T
+    frames = np.zeros((len(lengths), 4, 4))
+    frames[:, 0, :3] = np.stack(
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=1
+    )
+    frames[:, 1, :3] = np.stack(
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=1
+    )
+    frames[:, 2, :3] = np.stack(
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1
+    )
+    frames[:, :3, 3] = positions
+    frames[:, 3, 3] = 1.0
+    return frames
+
+
+def to_quaternions(rotations):
+    """Unit quaternions (n, 4) w, x, y, z with w >= 0 of rotations (n, 3, 3), each by its largest
+    component (Shepperd 1978)."""
+    r = np.asarray(rotations, dtype=float)
+    xx, yy, zz = r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]
+    a, b, c = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
+    d, e, f = r[:, 0, 1] + r[:, 1, 0], r[:, 2, 0] + r[:, 0, 2], r[:, 2, 1] + r[:, 1, 2]
+    squares = np.stack([1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz], 1)
+    rows = np.stack(  # row k: four times component k times w, x, y, z
+        [
+            np.stack([squares[:, 0], a, b, c], 1),
+            np.stack([a, squares[:, 1], d, e], 1),
+            np.stack([b, d, squares[:, 2], f], 1),
+            np.stack([c, e, f, squares[:, 3]], 1),
+        ],
+        1,
+    )
+    quaternions = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
+    quaternions /= np.linalg.norm(quaternions, axis=1)[:, None]
+    return np.where(quaternions[:, :1] < 0, -quaternions, quaternions)
 
 
 def from_abc(position, abc_deg):

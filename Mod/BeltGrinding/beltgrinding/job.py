@@ -7,16 +7,18 @@ import copy
 import difflib
 import json
 import math
-import os
 import time
 from pathlib import Path
 
 import numpy as np
 
 from . import InputError, core, frames, resources
+from .poses import program_arrays, program_name
+from .result import Result, colour_scale
+
+__all__ = ["Result", "colour_scale", "load", "run", "schema", "tool_path", "validate"]
 
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
-DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
 CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
@@ -128,53 +130,6 @@ def _numbers(value):
         yield value
 
 
-class Result:
-    """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events``, ``steps``."""
-
-    def __init__(self, job, field, summary, events, steps):
-        self.job = job
-        self.field = field
-        self.summary = summary
-        self.events = events
-        self.steps = steps
-
-    def write(self, folder):
-        """Writes summary.json, events.json, deviation.ply, heightfield.h5; each whole or not."""
-        start = time.perf_counter()
-        folder = Path(folder)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            lower, upper, limit = colour_scale(self.job)
-            ply = core.deviation_ply(self.field, lower, upper, limit, True)
-            _write_whole(folder / "deviation.ply", ply)
-            self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
-            _write_whole(folder / "events.json", _json(self.events))
-            self.summary["wall_time_s"]["write"] = time.perf_counter() - start
-            _write_whole(folder / "summary.json", _json(self.summary))
-        except OSError as error:
-            raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
-
-
-def _json(data):
-    return (json.dumps(data, indent=2, allow_nan=False) + "\n").encode()
-
-
-def _write_whole(path, data):
-    part = path.with_name(path.name + ".part")
-    try:
-        part.write_bytes(data)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def colour_scale(job):
-    """(lower, upper, limit) of the job's colours, mm; the limit lies outside of the band."""
-    lower, upper = job["inspection"]["tolerance_mm"]
-    limit = max(job["inspection"]["colour_limit_mm"], 1.01 * max(abs(lower), abs(upper)))
-    return lower, upper, limit
-
-
 class _Phases:
     """Wall time by phase, s."""
 
@@ -212,7 +167,7 @@ def run(job, context=None):
         try:
             result = core.simulate(field, path, *engine_arguments(job), context=part)
         except InputError as error:
-            raise InputError(f"{_program_name(job, i)}: {error}") from None
+            raise InputError(f"{program_name(job, i)}: {error}") from None
         for event in result["events"]:
             events.append({"program": i, **event, "time": event["time"] + process_time})
         rows = result["steps"]
@@ -313,59 +268,9 @@ def _frame(data, where):
         raise InputError(f"{where}: {error}") from None
 
 
-def _program_name(job, index):
-    return job["programs"][index].get("file", f"programs[{index}]")
-
-
-def _listed_poses(poses, where):
-    """Arrays of a program that is given pose by pose."""
-    matrices = []
-    for i, p in enumerate(poses):
-        try:
-            position, quaternion = [p[k + "_mm"] for k in "xyz"], [p["q" + k] for k in "wxyz"]
-            matrices.append(frames.from_quaternion(position, quaternion))
-        except ValueError as error:
-            raise InputError(f"{where}: pose {i + 1}: {error}") from None
-    return {
-        "frames": np.array(matrices).reshape(-1, 4, 4),
-        "feeds": np.array([p.get("feed_mm_s", DEFAULT_FEED) for p in poses], dtype=float),
-        "forces": np.array([p.get("force_N", -1.0) for p in poses], dtype=float),
-        "rapid": np.array([p["rapid"] for p in poses], dtype=bool),
-        "lines": np.array([p["line"] for p in poses], dtype=int),
-    }
-
-
-def program_arrays(program, where, warnings):
-    """dict(frames, feeds, forces, rapid, lines) of a job's program, overrides applied."""
-    problems = []
-    if "poses" in program:
-        arrays = _listed_poses(program["poses"], where)
-    else:
-        from .programs import ProgramError, read_program
-
-        try:
-            read = read_program(program["file"])
-            problems = [str(problem) for problem in read.problems]
-            arrays = read.path_arrays(DEFAULT_FEED)
-        except ProgramError as error:
-            raise InputError(str(error)) from None
-    warnings += problems
-    count = len(arrays["frames"])
-    if count < 2:
-        raise InputError(
-            f"{where}: the program has {count} Cartesian targets; two at least make a path"
-            + (f" ({problems[0]})" if problems else "")
-        )
-    if "force_N" in program:
-        arrays["forces"] = np.full(count, float(program["force_N"]))
-    if "feed_mm_s" in program:
-        arrays["feeds"] = np.full(count, float(program["feed_mm_s"]))
-    return arrays
-
-
 def tool_path(job, index, warnings):
     """core.ToolPath of the job's program number ``index``."""
-    where = _program_name(job, index)
+    where = program_name(job, index)
     arrays = program_arrays(job["programs"][index], where, warnings)
     cell = {name: _frame(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
     try:

@@ -7,6 +7,8 @@ from typing import List, Optional
 
 import numpy as np
 
+from ..frames import to_quaternions
+
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 MAX_CHORDS = 10_000
 
@@ -124,7 +126,7 @@ def through_with(through, orientation):
 
 def power(rotation, t):
     """The rotation by t times the angle of ``rotation`` (3 x 3): slerp from the identity."""
-    quaternion = _quaternion(rotation)
+    quaternion = to_quaternions(rotation[None])[0]
     sine = float(np.linalg.norm(quaternion[1:]))
     if sine < 1e-12:
         return np.eye(3)
@@ -132,28 +134,3 @@ def power(rotation, t):
     x, y, z = quaternion[1:] / sine
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + math.sin(2 * half) * k + (1 - math.cos(2 * half)) * (k @ k)
-
-
-def _quaternion(r):
-    """Unit quaternion w, x, y, z (w >= 0) of a 3 x 3, by its largest component (Shepperd 1978)."""
-    squares = np.array(
-        [
-            1 + r[0, 0] + r[1, 1] + r[2, 2],
-            1 + r[0, 0] - r[1, 1] - r[2, 2],
-            1 - r[0, 0] + r[1, 1] - r[2, 2],
-            1 - r[0, 0] - r[1, 1] + r[2, 2],
-        ]
-    )
-    products = np.array(
-        [
-            [0, r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-            [r[2, 1] - r[1, 2], 0, r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], 0, r[1, 2] + r[2, 1]],
-            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], 0],
-        ]
-    )
-    k = int(np.argmax(squares))
-    quaternion = products[k].copy()
-    quaternion[k] = squares[k]
-    quaternion /= np.linalg.norm(quaternion)
-    return quaternion if quaternion[0] >= 0 else -quaternion

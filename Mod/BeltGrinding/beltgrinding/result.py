@@ -1,0 +1,79 @@
+"""What a job gave, and the files that it is kept in."""
+
+import json
+import os
+import time
+from pathlib import Path
+
+from . import InputError, core
+
+
+class Result:
+    """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events`` (lists and dicts
+    as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None).
+    """
+
+    def __init__(self, job, field, summary, events, steps):
+        self.job = job
+        self.field = field
+        self.summary = summary
+        self.events = events
+        self.steps = steps
+
+    def write(self, folder):
+        """Writes summary.json, events.json, deviation.ply, heightfield.h5; each whole or not."""
+        start = time.perf_counter()
+        folder = Path(folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lower, upper, limit = colour_scale(self.job)
+            ply = core.deviation_ply(self.field, lower, upper, limit, True)
+            write_whole(folder / "deviation.ply", ply)
+            self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
+            write_whole(folder / "events.json", _json(self.events))
+            self.summary["wall_time_s"]["write"] = time.perf_counter() - start
+            write_whole(folder / "summary.json", _json(self.summary))
+        except OSError as error:
+            raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+
+    @classmethod
+    def read(cls, folder):
+        """The result that ``write`` left in ``folder``; without steps. Raises InputError."""
+        folder = Path(folder)
+        data = {}
+        for name in ("summary.json", "events.json"):
+            try:
+                data[name] = json.loads((folder / name).read_text(encoding="utf-8"))
+            except OSError as error:
+                raise InputError(f"{folder / name}: cannot be read: {error.strerror}") from None
+            except ValueError as error:
+                raise InputError(f"{folder / name}: no JSON: {error}") from None
+        field, attributes = core.HeightField.from_hdf5(str(folder / "heightfield.h5"))
+        try:
+            job = json.loads(attributes)
+        except ValueError:
+            raise InputError(
+                f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
+            ) from None
+        return cls(job, field, data["summary.json"], data["events.json"], None)
+
+
+def colour_scale(job):
+    """(lower, upper, limit) of the job's colours, mm; the limit lies outside of the band."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    limit = max(job["inspection"]["colour_limit_mm"], 1.01 * max(abs(lower), abs(upper)))
+    return lower, upper, limit
+
+
+def write_whole(path, data):
+    """Writes bytes to ``path``, whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    try:
+        part.write_bytes(data)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _json(data):
+    return (json.dumps(data, indent=2, allow_nan=False) + "\n").encode()

@@ -51,3 +51,34 @@ def run(job, context=None):
     from . import job as jobs
 
     return jobs.run(jobs.validate(job) if isinstance(job, dict) else jobs.load(job), context)
+
+
+# What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).
+DOCUMENT_FUNCTIONS = (
+    "make_job",
+    "make_stock",
+    "make_belt_machine",
+    "import_program",
+    "simulate",
+    "make_deviation",
+    "export_job",
+    "import_result",
+    "open_job",
+)
+
+
+def __getattr__(name):
+    if name not in DOCUMENT_FUNCTIONS:
+        raise AttributeError(f"module 'beltgrinding' has no attribute '{name}'")
+    try:
+        from .objects import api
+    except ImportError as error:
+        raise ImportError(
+            f"beltgrinding.{name} works on a FreeCAD document ({error}): call it in FreeCAD or "
+            "freecadcmd; beltgrinding.run(job) needs no FreeCAD"
+        ) from None
+    return getattr(api, name)
+
+
+def __dir__():
+    return sorted([*globals(), *DOCUMENT_FUNCTIONS])

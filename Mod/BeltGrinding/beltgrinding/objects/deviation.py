@@ -1,94 +1,102 @@
 """The deviation in the document: a coloured mesh with its statistics as properties."""
 
 import io
+import json
 
-import FreeCAD
 import Mesh
 
-from .. import core
-from ..job import colour_scale
+from .. import InputError, core
+from ..result import colour_scale
+from .properties import Output, add_outputs
+from .proxy import Proxy
 
-SCHEMA = 1
-# name, type, group, what it is
-PROPERTIES = (
-    ("Schema", "App::PropertyInteger", "Base", "version of this object's properties"),
-    ("VertexColors", "App::PropertyColorList", "Deviation", "one colour per sample"),
-    ("ToleranceLower", "App::PropertyFloat", "Tolerance", "lower limit of the deviation, mm"),
-    ("ToleranceUpper", "App::PropertyFloat", "Tolerance", "upper limit of the deviation, mm"),
-    ("ColourLimit", "App::PropertyFloat", "Tolerance", "deviation at which the ramps end, mm"),
-    ("Minimum", "App::PropertyFloat", "Statistics", "mm"),
-    ("Maximum", "App::PropertyFloat", "Statistics", "mm"),
-    ("Mean", "App::PropertyFloat", "Statistics", "area-weighted, mm"),
-    ("RootMeanSquare", "App::PropertyFloat", "Statistics", "area-weighted, mm"),
-    ("Percentile05", "App::PropertyFloat", "Statistics", "of the area, mm"),
-    ("Percentile50", "App::PropertyFloat", "Statistics", "of the area, mm"),
-    ("Percentile95", "App::PropertyFloat", "Statistics", "of the area, mm"),
-    ("InTolerance", "App::PropertyPercent", "Statistics", "share of the area, percent"),
-    ("RemovedVolume", "App::PropertyVolume", "Statistics", "removed by grinding"),
-    ("DesignArea", "App::PropertyArea", "Statistics", "of the inspected faces"),
+OUTPUTS = (
+    Output("VertexColors", "ColorList", "Deviation", "one colour per sample", True),
+    Output("ToleranceLower", "Distance", "Tolerance", "lower limit; set it at the job"),
+    Output("ToleranceUpper", "Distance", "Tolerance", "upper limit; set it at the job"),
+    Output("ColourLimit", "Distance", "Tolerance", "deviation at which the colour ramps end"),
+    Output("OutOfDate", "Bool", "Tolerance", "an input of the simulation has changed since"),
+    Output("Minimum", "Distance", "Statistics", "of the deviation; negative: below the design"),
+    Output("Maximum", "Distance", "Statistics", "of the deviation; positive: stock left"),
+    Output("Mean", "Distance", "Statistics", "weighted by area"),
+    Output("RootMeanSquare", "Distance", "Statistics", "weighted by area"),
+    Output("Percentile05", "Distance", "Statistics", "5 % of the area lie below"),
+    Output("Percentile50", "Distance", "Statistics", "half of the area lies below"),
+    Output("Percentile95", "Distance", "Statistics", "95 % of the area lie below"),
+    Output("InTolerance", "Float", "Statistics", "share of the area in tolerance, percent"),
+    Output(
+        "AboveTolerance", "Float", "Statistics", "share of the area with too much left, percent"
+    ),
+    Output("BelowTolerance", "Float", "Statistics", "share of the area cut too deep, percent"),
+    Output("RemovedVolume", "Volume", "Statistics", "removed by grinding"),
+    Output("DesignArea", "Area", "Statistics", "of the faces"),
+    Output("Shown", "String", "Deviation", "which result the colours show", True),
 )
+STATISTICS = {
+    "Minimum": "min",
+    "Maximum": "max",
+    "Mean": "mean",
+    "RootMeanSquare": "rms",
+    "Percentile05": "p05",
+    "Percentile50": "p50",
+    "Percentile95": "p95",
+    "RemovedVolume": "removed_volume",
+    "DesignArea": "design_area",
+}
+SHARES = {
+    "InTolerance": "in_tolerance_share",
+    "AboveTolerance": "above_share",
+    "BelowTolerance": "below_share",
+}
 
 
-class Deviation:
-    """Proxy; all state lives in properties."""
+class Deviation(Proxy):
+    """Proxy of the Mesh::FeaturePython; shows what its ``Simulation`` holds."""
 
-    def __init__(self, obj):
-        obj.Proxy = self
-        self.onDocumentRestored(obj)
+    TYPE = "BeltGrinding::Deviation"
+    VIEW = "DeviationView"
 
-    def onDocumentRestored(self, obj):
-        """Adds what an older file does not have."""
-        for name, kind, group, text in PROPERTIES:
-            if name not in obj.PropertiesList:
-                obj.addProperty(kind, name, group, text)
-                if name != "VertexColors":
-                    obj.setEditorMode(name, 1)
-        obj.setEditorMode("VertexColors", 2)
-        obj.Schema = SCHEMA
+    def add_properties(self, obj):
+        if "Simulation" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyLink", "Simulation", "Deviation", "the result shown")
+            obj.setEditorMode("Simulation", 1)
+        add_outputs(obj, OUTPUTS)
 
     def execute(self, obj):
-        """Nothing: the mesh is a result."""
+        self.update(obj)
 
-    def dumps(self):
-        return None
+    def update(self, obj):
+        """Reads the result again if it is another one or the tolerance has changed."""
+        simulation, job = obj.Simulation, obj.getParentGroup()
+        if simulation is None or job is None or not simulation.Fingerprint:
+            return
+        if obj.OutOfDate != simulation.OutOfDate:
+            obj.OutOfDate = simulation.OutOfDate
+        from .job_object import inspection
 
-    def loads(self, state):
-        return None
-
-    __getstate__ = dumps
-
-    def __setstate__(self, state):
-        return None
-
-
-def make_deviation(doc, result, name="Deviation"):
-    """Adds the ground surface of a ``job.Result`` to ``doc`` in colour; returns the object.
-
-    Colours: one calm colour inside the tolerance band, a brown ramp above it, a blue one below.
-    """
-    obj = doc.addObject("Mesh::FeaturePython", name)
-    Deviation(obj)
-    if FreeCAD.GuiUp:
-        from ..gui.deviation_view import DeviationView
-
-        DeviationView(obj.ViewObject)
-    show(obj, result)
-    return obj
+        scale = colour_scale({"inspection": inspection(job)})
+        result = [simulation.Fingerprint, simulation.WallTime]
+        before = json.loads(obj.Shown or "[null, null]")
+        if before == [result, list(scale)]:
+            return
+        field = simulation.Proxy.field(simulation)
+        if field is None:
+            raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+        show(obj, field, scale, before[0] != result)
+        obj.Shown = json.dumps([result, scale])
 
 
-def show(obj, result):
-    """Puts another result into an existing Deviation object."""
-    lower, upper, limit = colour_scale(result.job)
-    mesh = Mesh.Mesh()
-    mesh.read(Stream=io.BytesIO(core.mesh_ply(result.field, True)), Format="PLY")
-    colours = core.deviation_colours(result.field, lower, upper, limit)
-    s, d = result.summary, result.summary["deviation_mm"]
-    obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = lower, upper, limit
-    obj.Minimum, obj.Maximum, obj.Mean, obj.RootMeanSquare = d["min"], d["max"], d["mean"], d["rms"]
-    obj.Percentile05, obj.Percentile50, obj.Percentile95 = d["p05"], d["p50"], d["p95"]
-    obj.InTolerance = round(100 * s["in_tolerance_area_share"])
-    obj.RemovedVolume = s["removed_volume_mm3"]
-    obj.DesignArea = s["design_area_mm2"]
-    # In this order: an assignment to Mesh drops the colours.
-    obj.Mesh = mesh
+def show(obj, field, scale, new_mesh=True):
+    """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
+    colours = core.deviation_colours(field, *scale)
+    statistics = core.deviation_statistics(field, *scale[:2])
+    obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
+    for name, key in STATISTICS.items():
+        setattr(obj, name, statistics[key])
+    for name, key in SHARES.items():
+        setattr(obj, name, 100.0 * statistics[key])
+    if new_mesh:  # an assignment to Mesh drops the colours: it comes first
+        mesh = Mesh.Mesh()
+        mesh.read(Stream=io.BytesIO(core.mesh_ply(field, True)), Format="PLY")
+        obj.Mesh = mesh
     obj.VertexColors = colours.tolist()

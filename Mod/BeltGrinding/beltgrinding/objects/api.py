@@ -1,0 +1,255 @@
+"""What a macro and every button call; ``import beltgrinding`` offers these functions too.
+
+Keyword arguments set properties by name; a plain number is in FreeCAD's unit (mm, mm/s, degree), a
+text may carry its unit: ``Force="40 N"``. Every function raises InputError for what the user must
+mend, and leaves the document as it was.
+"""
+
+import json
+from pathlib import Path
+
+import FreeCAD
+import Part
+
+from .. import InputError, job as jobs
+from ..poses import listed_poses
+from ..result import Result, write_whole
+from . import belt_machine, deviation as deviations, job_object, robot_path, simulation as results
+from . import stock as stocks
+from .job_object import child, children
+from .properties import from_job, set_by_name
+from .proxy import type_of
+
+
+def make_job(design, faces=(), **properties):
+    """Adds a job to the design's document. ``design``: a Part object; ``faces``: names such as
+    "Face3" or numbers from 1, none for all; or ``design`` is a list of (object, names).
+    """
+    links = design if isinstance(design, (list, tuple)) else [(design, faces)]
+    links = [
+        (obj, tuple(f"Face{s}" if isinstance(s, int) else s for s in subs) or ("",))
+        for obj, subs in links
+    ]
+    if not links:
+        raise InputError("a job needs a part; give an object with a shape, or select faces")
+    job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
+    with _removed_on_error(job):
+        job.Label = "Belt grinding"
+        job_object.BeltGrindingJob(job)
+        job.DesignFaces = links
+        job_object.design(job)
+        set_by_name(job, properties)
+    return job
+
+
+def make_stock(job, source=None, **properties):
+    """Adds the stock to a job, or changes the one it has. ``source``: a Part or Mesh object, or a
+    mesh's file; its kind follows from it.
+    """
+    if source is not None:
+        if isinstance(source, (str, Path)):
+            properties = {"Kind": "mesh", "File": str(source), **properties}
+        else:
+            kind = "mesh" if hasattr(source, "Mesh") else "solid"
+            properties = {"Kind": kind, "Source": source, **properties}
+    return _child(job, stocks.Stock, "Stock", properties)
+
+
+def make_belt_machine(job, **properties):
+    """Adds the belt machine to a job, or changes the one it has."""
+    machine = _child(job, belt_machine.BeltMachine, "BeltMachine", properties)
+    for path in children(job, robot_path.RobotPath):
+        path.Machine = machine
+    return machine
+
+
+def import_program(job, path, **properties):
+    """Adds a robot program's file (.src, .csv) as RobotPath to a job, or to a document."""
+    document = job if isinstance(job, FreeCAD.Document) else job.Document
+    program = document.addObject("Path::FeaturePython", "RobotPath")
+    with _removed_on_error(program):
+        robot_path.RobotPath(program)
+        robot_path.load_program(program, path, **properties)
+        program.Label = Path(path).stem
+        if job is not document:
+            program.Machine = child(job, belt_machine.BeltMachine)
+            job.addObject(program)
+        program.recompute()
+    return program
+
+
+def simulate(job, context=None, write_to=None):
+    """Grinds the job here and now; returns its Simulation object. ``write_to``: a folder for the
+    files that ``beltgrind run`` writes.
+    """
+    with job_object.scratch_folder() as folder:
+        result = jobs.run(job_object.to_data(job, folder), context)
+    if write_to is not None:
+        result.write(write_to)
+    return store_result(job, result, job_object.fingerprint(job))
+
+
+def store_result(job, result, fingerprint):
+    """Puts a ``job.Result`` into the job's Simulation and returns that. ``fingerprint``: of the
+    inputs that the run had (``job_object.fingerprint``); the job marks others as out of date.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None:
+        simulation = job.Document.addObject("App::FeaturePython", "Simulation")
+        results.Simulation(simulation)
+        job.addObject(simulation)
+    results.store(simulation, result, fingerprint)
+    simulation.touch()
+    job.Document.recompute()
+    return simulation
+
+
+def make_deviation(job):
+    """Adds the coloured deviation of the job's simulation, or returns the one that is there."""
+    simulation = child(job, results.Simulation)
+    if simulation is None:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    found = child(job, deviations.Deviation)
+    if found is None:
+        found = job.Document.addObject("Mesh::FeaturePython", "Deviation")
+        with _removed_on_error(found):
+            deviations.Deviation(found)
+            found.Simulation = simulation
+            job.addObject(found)
+            found.Proxy.update(found)
+    job.Document.recompute()
+    return found
+
+
+def export_job(job, path):
+    """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD; a mesh stock is
+    written beside it.
+    """
+    path = Path(path)
+    try:
+        data = job_object.to_data(job, path.resolve().parent)
+        if "file" in data["stock"]:
+            data["stock"]["file"] = _relative(data["stock"]["file"], path.resolve().parent)
+        write_whole(path, (json.dumps(data) + "\n").encode())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    return path
+
+
+def _relative(path, folder):
+    path = Path(path)
+    return path.name if path.parent == folder else str(path)
+
+
+def import_result(job, folder):
+    """Brings back what ``beltgrind run`` wrote to ``folder`` for this job. A result of other inputs
+    is marked out of date.
+    """
+    result = Result.read(folder)
+    with job_object.scratch_folder() as scratch:
+        same = _inputs(job_object.to_data(job, scratch)) == _inputs(result.job)
+    return store_result(job, result, job_object.fingerprint(job) if same else "other inputs")
+
+
+def _inputs(data):
+    """What the result depends on: no tolerance, no names and places of files."""
+    data = {key: value for key, value in data.items() if key != "inspection"}
+    data["stock"] = {key: value for key, value in data["stock"].items() if key != "file"}
+    return data
+
+
+def open_job(doc, path):
+    """Makes the objects of a job.json in a document; returns the job."""
+    data = jobs.load(path)
+    made = []
+    try:
+        return _open_job(doc, data, Path(path), made)
+    except Exception:
+        for obj in reversed(made):
+            doc.removeObject(obj.Name)
+        raise
+
+
+def _open_job(doc, data, path, made):
+    shape = jobs.read_design(data["design"])
+    part = doc.addObject("Part::Feature", "Design")
+    made.append(part)
+    part.Label = Path(data["design"].get("file", path)).stem
+    brep = Part.Shape()
+    brep.importBrepFromString(shape.write_brep())
+    part.Shape = brep
+    faces = data["design"]["faces"]
+    job = make_job(part, faces)
+    made.append(job)
+    from_job(job, job_object.KEYS, data)
+    stock = make_stock(job)
+    made.append(stock)
+    _open_stock(doc, stock, data["stock"], made)
+    machine = make_belt_machine(job)
+    made.append(machine)
+    from_job(machine, belt_machine.KEYS, data)
+    for name, (key, _) in belt_machine.FRAMES.items():
+        setattr(machine, name, stocks.placement_from_job(data["cell"].get(key)))
+    for i, program in enumerate(data["programs"]):
+        if "file" in program:
+            robot = import_program(job, program["file"])
+        else:
+            arrays = listed_poses(program["poses"], f"programs[{i}]")
+            robot = robot_path.make_robot_path(doc, arrays, program.get("name", "Program"))
+            robot.Machine = machine
+            job.addObject(robot)
+        made.append(robot)
+        if "force_N" in program:
+            robot.ForceOverride = f"{program['force_N']} N"
+        if "feed_mm_s" in program:
+            robot.FeedOverride = program["feed_mm_s"]
+    doc.recompute()
+    return job
+
+
+def _open_stock(doc, stock, data, made):
+    from_job(stock, stocks.KEYS, {"stock": data})
+    if data["kind"] == "mesh":
+        stock.File = data["file"]
+        stock.FilePlacement = stocks.placement_from_job(data.get("placement"))
+    elif data["kind"] == "solid":
+        solid = doc.addObject("Part::Feature", "StockSolid")
+        made.append(solid)
+        brep = Part.Shape()
+        brep.importBrepFromString(jobs.read_design(data).write_brep())
+        solid.Shape = brep
+        stock.Source = solid
+
+
+def is_job(obj):
+    """True for a BeltGrindingJob."""
+    return type_of(obj) == job_object.BeltGrindingJob.TYPE
+
+
+def _child(job, proxy, name, properties):
+    """The job's child of a kind, made where it is missing, with properties set."""
+    found = child(job, proxy)
+    if found is not None:
+        set_by_name(found, properties)
+        return found
+    found = job.Document.addObject("App::FeaturePython", name)
+    with _removed_on_error(found):
+        proxy(found)
+        set_by_name(found, properties)
+        job.addObject(found)
+    return found
+
+
+class _removed_on_error:
+    """Removes a new object from its document if the block fails."""
+
+    def __init__(self, obj):
+        self.document, self.name = obj.Document, obj.Name
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is not None and self.document.getObject(self.name) is not None:
+            self.document.removeObject(self.name)
+        return False

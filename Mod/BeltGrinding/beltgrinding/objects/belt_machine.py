@@ -1,0 +1,57 @@
+"""The belt machine in the document: contact wheel, belt, control, and the cell's frames."""
+
+import numpy as np
+
+from .properties import Key, add_keys, to_job
+from .proxy import Proxy
+from .stock import placement_to_job
+
+KEYS = (
+    Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
+    Key("WheelWidth", "Length", "Wheel", "belt_machine.wheel.width_mm"),
+    Key("CrownRadius", "Length", "Wheel", "belt_machine.wheel.crown_radius_mm"),
+    Key("Compliance", "Enumeration", "Elasticity", "belt_machine.compliance.model"),
+    Key("Stiffness", "Float", "Elasticity", "belt_machine.compliance.stiffness_MPa_per_mm"),
+    Key("BeltSpeed", "Speed", "Belt", "belt_machine.belt_speed_m_s", 1000.0),
+    Key("BeltWear", "Float", "Belt", "belt_machine.belt_wear"),
+    Key("Control", "Enumeration", "Control", "belt_machine.control"),
+    Key("Force", "Force", "Control", "belt_machine.force_N"),
+    Key("ForceTravel", "Length", "Control", "belt_machine.force_travel_mm"),
+    Key("ContactSpacing", "Length", "Contact", "belt_machine.contact_spacing_mm"),
+    Key("ContactTolerance", "Float", "Contact", "belt_machine.contact_tolerance"),
+    Key("Holding", "Enumeration", "Cell", "cell.holding"),
+)
+FRAMES = {
+    "BaseFromWork": ("base_from_work", "tool in hand: the document's origin in the base frame"),
+    "TcpFromContact": ("tcp_from_contact", "tool in hand: the contact frame in the tool frame"),
+    "TcpFromWork": ("tcp_from_work", "part in hand: the document's origin in the tool frame"),
+    "BaseFromContact": ("base_from_contact", "part in hand: the contact frame in the base frame"),
+}
+
+
+class BeltMachine(Proxy):
+    """Proxy."""
+
+    TYPE = "BeltGrinding::BeltMachine"
+    VIEW = "BeltMachineView"
+
+    def add_properties(self, obj):
+        add_keys(obj, KEYS)
+        for name, (_, text) in FRAMES.items():
+            if name not in obj.PropertiesList:
+                obj.addProperty("App::PropertyPlacement", name, "Cell", text)
+
+    def to_job(self, obj):
+        """The parts of a job under 'belt_machine' and 'cell'."""
+        job = {}
+        to_job(obj, KEYS, job)
+        for name, (key, _) in FRAMES.items():
+            job["cell"][key] = placement_to_job(getattr(obj, name))
+        return job
+
+    def cell(self, obj):
+        """The cell's frames as core.ToolPath takes them: 4 x 4 in mm, by name."""
+        cell = {"holding": obj.Holding}
+        for name, (key, _) in FRAMES.items():
+            cell[key] = np.array(getattr(obj, name).toMatrix().A, dtype=float).reshape(4, 4)
+        return cell

@@ -1,0 +1,193 @@
+"""The job in the document: a group that holds the settings and everything that belongs to it."""
+
+import hashlib
+import json
+import tempfile
+
+import Part
+
+from .. import InputError, job as jobs
+from ..poses import list_poses
+from .belt_machine import BeltMachine
+from .deviation import Deviation
+from .properties import Key, add_keys, to_job
+from .proxy import Proxy, type_of
+from .robot_path import RobotPath
+from .simulation import Simulation
+from .stock import Stock, placed_shape
+
+KEYS = (
+    Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
+    Key("Spacing", "Length", "Sampling", "sampling.spacing_mm"),
+    Key("Depth", "Length", "Sampling", "sampling.depth_mm"),
+    Key("ToleranceLower", "Distance", "Tolerance", "inspection.tolerance_mm.0"),
+    Key("ToleranceUpper", "Distance", "Tolerance", "inspection.tolerance_mm.1"),
+    Key("ColourLimit", "Length", "Tolerance", "inspection.colour_limit_mm"),
+    Key("Law", "Enumeration", "Law", "law.model"),
+    Key("LawCoefficient", "Float", "Law", "law.coefficient_mm2_per_N"),
+    Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
+    Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),
+)
+
+
+class BeltGrindingJob(Proxy):
+    """Proxy of the App::DocumentObjectGroupPython."""
+
+    TYPE = "BeltGrinding::Job"
+    VIEW = "JobView"
+
+    def add_properties(self, obj):
+        if "DesignFaces" not in obj.PropertiesList:
+            obj.addProperty(
+                "App::PropertyLinkSubList", "DesignFaces", "Design", "the faces to be ground"
+            )
+        add_keys(obj, KEYS)
+
+    def execute(self, obj):
+        """Marks the result out of date or up to date, and recolours it; never simulates."""
+        simulation = child(obj, Simulation)
+        if simulation is not None and simulation.Fingerprint:
+            try:
+                stale = fingerprint(obj) != simulation.Fingerprint
+            except InputError:
+                stale = True
+            simulation.OutOfDate = stale
+        for deviation in children(obj, Deviation):
+            deviation.Proxy.update(deviation)
+
+
+def children(job, proxy):
+    """The job's children of a proxy class, in the tree's order."""
+    return [obj for obj in job.Group if type_of(obj) == proxy.TYPE]
+
+
+def child(job, proxy):
+    """The job's first child of a proxy class, or None."""
+    return next(iter(children(job, proxy)), None)
+
+
+def required(job, proxy, what):
+    """The job's child of a proxy class. Raises InputError."""
+    found = child(job, proxy)
+    if found is None:
+        raise InputError(f"{job.Label} has no {what}; add one")
+    return found
+
+
+def inspection(job):
+    """The part of a job under 'inspection'."""
+    data = {}
+    to_job(job, KEYS, data)
+    return data["inspection"]
+
+
+def design(job):
+    """(shape, numbers of its faces from 1) in the document's coordinates. Raises InputError.
+
+    Several objects become one compound, whose faces are numbered through.
+    """
+    if not job.DesignFaces:
+        raise InputError(f"{job.Label}: no faces are chosen; select faces and add them to the job")
+    shapes, numbers, offset = [], [], 0
+    for obj, subs in _by_object(job.DesignFaces):
+        shape = placed_shape(obj)
+        count = len(shape.Faces)
+        if count == 0:
+            raise InputError(f"{job.Label}: {obj.Label} has no faces")
+        for number in _face_numbers(job, obj, subs, count):
+            if number + offset not in numbers:
+                numbers.append(number + offset)
+        shapes.append(shape)
+        offset += count
+    return (shapes[0] if len(shapes) == 1 else Part.Compound(shapes)), sorted(numbers)
+
+
+def _by_object(links):
+    merged = {}
+    for obj, subs in links:
+        merged.setdefault(obj, []).extend([subs] if isinstance(subs, str) else subs)
+    return merged.items()
+
+
+def _face_numbers(job, obj, subs, count):
+    names = [sub.rpartition(".")[2] for sub in subs]
+    if not any(names):
+        return range(1, count + 1)
+    numbers = []
+    for name in names:
+        if not (name.startswith("Face") and name[4:].isdigit()):
+            raise InputError(f"{job.Label}: {obj.Label}.{name or '(all)'} is no face; choose faces")
+        if not 1 <= int(name[4:]) <= count:
+            raise InputError(
+                f"{job.Label}: {obj.Label} has no {name}; it has {count} faces. Choose them again"
+            )
+        numbers.append(int(name[4:]))
+    return numbers
+
+
+def _without_geometry(job):
+    """The job's settings, without shapes, meshes and poses."""
+    data = {"schema": 1}
+    to_job(job, KEYS, data)
+    data.update(required(job, BeltMachine, "belt machine").Proxy.to_job(child(job, BeltMachine)))
+    return data
+
+
+def _paths(job):
+    paths = children(job, RobotPath)
+    if not paths:
+        raise InputError(f"{job.Label} has no robot program; import one")
+    return paths
+
+
+def _overrides(path):
+    """A program's keys that replace its own feeds and forces."""
+    keys = {}
+    if path.ForceOverride.Value > 0:
+        keys["force_N"] = path.ForceOverride.getValueAs("N").Value
+    if path.FeedOverride.Value > 0:
+        keys["feed_mm_s"] = path.FeedOverride.Value
+    return keys
+
+
+def fingerprint(job):
+    """Hash of all that the simulation's result depends on (not of the tolerance)."""
+    data = _without_geometry(job)
+    del data["inspection"]
+    stock = required(job, Stock, "stock")
+    data["stock"] = stock.Proxy.settings(stock)
+    data["stock"]["digest"] = stock.Proxy.digest(stock)
+    shape, data["design"]["faces"] = design(job)
+    data["design"]["digest"] = hashlib.sha256(shape.exportBrepToString().encode()).hexdigest()
+    data["programs"] = [
+        {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
+    ]
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def to_data(job, folder):
+    """The whole job as validated plain data; a mesh stock is written to ``folder``.
+
+    Raises InputError naming the object and what is wrong with it.
+    """
+    data = _without_geometry(job)
+    shape, data["design"]["faces"] = design(job)
+    data["design"]["brep"] = shape.exportBrepToString()
+    stock = required(job, Stock, "stock")
+    data["stock"] = stock.Proxy.to_job(stock, folder)
+    paths = _paths(job)
+    data["programs"] = [{"poses": []} for _ in paths]
+    # The poses come from properties that hold nothing but numbers, and they may be many.
+    data = jobs.validate(data, folder)
+    for program, path in zip(data["programs"], paths):
+        program.update(_overrides(path))
+        program["name"] = path.Label
+        program["poses"] = list_poses(path.Proxy.arrays(path))
+        if len(program["poses"]) < 2:
+            raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
+    return data
+
+
+def scratch_folder():
+    """A folder for a mesh stock, removed when the object dies."""
+    return tempfile.TemporaryDirectory(prefix="beltgrinding-")

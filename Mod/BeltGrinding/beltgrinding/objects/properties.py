@@ -1,0 +1,138 @@
+"""Properties that mirror keys of a job: name, unit type, default and text come from the schema."""
+
+import difflib
+from functools import lru_cache
+from typing import NamedTuple
+
+from .. import InputError
+from ..job import schema
+
+# FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N.
+FACTOR = {"Force": 1000.0}
+
+
+class Key(NamedTuple):
+    """A property for the key of a job. ``kind`` is the property's type without App::Property."""
+
+    name: str
+    kind: str
+    group: str
+    key: str  # dotted; a number is an index of an array
+    factor: float = 1.0  # FreeCAD's value of the job's 1
+
+    @property
+    def scale(self):
+        return self.factor * FACTOR.get(self.kind, 1.0)
+
+
+class Output(NamedTuple):
+    """A read-only result."""
+
+    name: str
+    kind: str
+    group: str
+    text: str
+    hidden: bool = False
+
+
+@lru_cache(maxsize=None)
+def _schema():
+    return schema()
+
+
+def rule(key):
+    """The schema's rule for a dotted key, and its default."""
+    node, default = _schema(), None
+    for part in key.split("."):
+        if part.isdigit():
+            default = default[int(part)] if default else None
+        elif node.get("type") == "array":
+            node = node["items"]["properties"][part]
+            default = node.get("default")
+        else:
+            node = node["properties"][part]
+            default = node.get("default")
+    return node, default
+
+
+def add_keys(obj, keys):
+    """Adds what ``obj`` lacks, with the schema's defaults."""
+    for key in keys:
+        if key.name in obj.PropertiesList:
+            continue
+        found, default = rule(key.key)
+        obj.addProperty(f"App::Property{key.kind}", key.name, key.group, found["description"])
+        if key.kind == "Enumeration":
+            setattr(obj, key.name, found["enum"])
+        if default is not None:
+            set_value(obj, key, default)
+
+
+def add_outputs(obj, outputs):
+    """Adds results: read-only, and setting them does not touch the object."""
+    for output in outputs:
+        if output.name in obj.PropertiesList:
+            continue
+        kind = f"App::Property{output.kind}"
+        obj.addProperty(kind, output.name, output.group, output.text, 8)
+        obj.setEditorMode(output.name, 2 if output.hidden else 1)
+
+
+def get_value(obj, key):
+    """The property in the job's unit."""
+    value = getattr(obj, key.name)
+    if key.kind in ("Bool", "Enumeration", "String"):
+        return value
+    value = float(getattr(value, "Value", value)) / key.scale
+    return float(f"{value:.15g}")  # 0.05 stays 0.05 on its way through FreeCAD's units
+
+
+def set_value(obj, key, value):
+    """Sets the property from a value in the job's unit."""
+    if key.kind not in ("Bool", "Enumeration", "String"):
+        value = value * key.scale
+    setattr(obj, key.name, value)
+
+
+def to_job(obj, keys, job):
+    """Puts the properties into the nested dict ``job``."""
+    for key in keys:
+        *path, last = key.key.split(".")
+        node = job
+        for i, part in enumerate(path):
+            following = [*path, last][i + 1]
+            node = node.setdefault(part, [None, None] if following.isdigit() else {})
+        node[int(last) if last.isdigit() else last] = get_value(obj, key)
+
+
+def from_job(obj, keys, job):
+    """Sets the properties for which the nested dict ``job`` has a value."""
+    for key in keys:
+        node = job
+        for part in key.key.split("."):
+            if part.isdigit():
+                node = node[int(part)]
+            elif part in node:
+                node = node[part]
+            else:
+                break
+        else:
+            set_value(obj, key, node)
+
+
+def set_by_name(obj, values):
+    """Sets properties from a macro's keyword arguments; a unit may be given: "0.5 mm".
+
+    Raises InputError naming the property that does not exist or does not take the value.
+    """
+    own = [name for name in obj.PropertiesList if name not in ("Proxy", "ExpressionEngine")]
+    for name, value in values.items():
+        if name not in own:
+            near = difflib.get_close_matches(name, own, 1)
+            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(sorted(own))}"
+            raise InputError(f"{obj.Label} has no property {name}; {hint}")
+        try:
+            setattr(obj, name, value)
+        except Exception as error:  # FreeCAD raises TypeError, ValueError and its own
+            reason = str(error) or type(error).__name__
+            raise InputError(f"{obj.Label}.{name} does not take {value!r}: {reason}") from None

@@ -1,0 +1,57 @@
+"""What every document object of the workbench has in common."""
+
+import FreeCAD
+
+
+class Stateless:
+    """A proxy without state of its own: all state lives in properties.
+
+    FreeCAD 0.20 calls __getstate__ and __setstate__, 1.0 prefers dumps and loads.
+    """
+
+    def dumps(self):
+        return None
+
+    def loads(self, state):
+        return None
+
+    __getstate__ = dumps
+
+    def __setstate__(self, state):
+        return None
+
+
+class Proxy(Stateless):
+    """Base of the objects' proxies. ``TYPE`` tells objects apart; ``VIEW`` names the view provider
+    in gui/views.py; ``add_properties`` also gives a file of an older version what it lacks.
+    """
+
+    TYPE = ""
+    VIEW = ""
+    SCHEMA = 1
+
+    def __init__(self, obj):
+        obj.Proxy = self
+        self.onDocumentRestored(obj)
+        if FreeCAD.GuiUp:
+            from ..gui import views
+
+            getattr(views, self.VIEW)(obj.ViewObject)
+
+    def onDocumentRestored(self, obj):
+        if "Schema" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyInteger", "Schema", "Base", "version of the properties")
+            obj.setEditorMode("Schema", 2)
+        self.add_properties(obj)
+        obj.Schema = self.SCHEMA
+
+    def add_properties(self, obj):
+        raise NotImplementedError
+
+    def execute(self, obj):
+        """Nothing by default."""
+
+
+def type_of(obj):
+    """The TYPE of a workbench object's proxy, '' for anything else."""
+    return getattr(getattr(obj, "Proxy", None), "TYPE", "")

@@ -1,0 +1,155 @@
+"""A robot's program in the document: poses that are the truth, and a Path that is drawn."""
+
+import hashlib
+
+import FreeCAD
+import numpy as np
+import Path
+
+from .. import InputError, core
+from ..poses import DEFAULT_FEED
+from ..programs import ProgramError, read_program
+from .properties import Output, add_outputs, set_by_name
+from .proxy import Proxy
+
+OUTPUTS = (
+    Output("Language", "String", "Program", "language of the source"),
+    Output("PoseCount", "Integer", "Program", "number of Cartesian poses"),
+    Output("PathLength", "Length", "Program", "length of the way of the tool centre point"),
+    Output("Duration", "Float", "Program", "time at the programmed feeds, s"),
+    Output("Problems", "StringList", "Program", "what could not be resolved, by file and line"),
+)
+# name, type, text; parallel lists, one value per pose
+LISTS = (
+    ("Poses", "PlacementList", "tool centre points in the program's base frame, mm"),
+    ("Feeds", "FloatList", "speed towards each pose, mm/s"),
+    ("Forces", "FloatList", "pressing force towards each pose, N; negative: the belt machine's"),
+    ("Rapid", "BoolList", "positioning moves: nothing is ground on the way to these poses"),
+    ("Lines", "IntegerList", "lines of the source"),
+)
+
+
+class RobotPath(Proxy):
+    """Proxy of the Path::FeaturePython; ``Path`` follows from the poses and the machine's frames."""
+
+    TYPE = "BeltGrinding::RobotPath"
+    VIEW = "RobotPathView"
+
+    def add_properties(self, obj):
+        def add(kind, name, group, text):
+            if name in obj.PropertiesList:
+                return False
+            obj.addProperty(f"App::Property{kind}", name, group, text)
+            return True
+
+        add("File", "Source", "Program", "the robot program that the poses come from")
+        add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
+        add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
+        if add("Link", "Machine", "Program", "the belt machine, for the cell's frames"):
+            obj.setEditorMode("Machine", 2)
+        for name, kind, text in LISTS:
+            if add(kind, name, "Poses", text):
+                obj.setEditorMode(name, 2)
+        add_outputs(obj, OUTPUTS)
+
+    def onChanged(self, obj, name):
+        if name in ("Poses", "Feeds", "Forces", "Rapid", "Lines"):
+            self._arrays = None
+
+    def arrays(self, obj):
+        """dict(frames, feeds, forces, rapid, lines) as core.ToolPath takes them, no overrides."""
+        if getattr(self, "_arrays", None) is None:
+            count = len(obj.Poses)
+            rows = [placement.toMatrix().A for placement in obj.Poses]
+            self._arrays = {
+                "frames": np.array(rows, dtype=float).reshape(count, 4, 4),
+                "feeds": np.array(obj.Feeds, dtype=float),
+                "forces": np.array(obj.Forces, dtype=float),
+                "rapid": np.array(obj.Rapid, dtype=bool),
+                "lines": np.array(obj.Lines, dtype=int),
+            }
+        if any(len(a) != len(self._arrays["frames"]) for a in self._arrays.values()):
+            raise InputError(f"{obj.Label}: its lists differ in length; import the program again")
+        return self._arrays
+
+    def digest(self, obj):
+        """Hash of the poses and what belongs to them."""
+        hashed = hashlib.sha256()
+        for name, array in self.arrays(obj).items():
+            if name != "lines":
+                hashed.update(np.ascontiguousarray(array).tobytes())
+        return hashed.hexdigest()
+
+    def execute(self, obj):
+        arrays = self.arrays(obj)
+        if len(arrays["frames"]) < 2:
+            obj.Path = Path.Path()
+            return
+        feeds = arrays["feeds"]
+        if obj.FeedOverride.Value > 0:
+            feeds = np.full(len(feeds), obj.FeedOverride.Value)
+        cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
+        path = core.ToolPath(**{**arrays, "feeds": feeds}, **cell)
+        frames = path.work_from_contact()
+        obj.PoseCount = len(frames)
+        steps = np.diff(frames[:, :3, 3], axis=0)
+        obj.PathLength = float(np.linalg.norm(steps, axis=1).sum())
+        obj.Duration = path.duration()
+        obj.Path = Path.Path(_commands(frames, feeds, arrays["rapid"]))
+
+
+def _commands(frames, feeds, rapid):
+    """X Y Z of the contact in mm, its rotation vector in degrees as U V W (A B C would be drawn as
+    angles of a rotary table), F in mm/s."""
+    commands = []
+    for frame, feed, fast in zip(frames, feeds, rapid):
+        rotation = FreeCAD.Rotation(
+            *(FreeCAD.Vector(*frame[:3, k]) for k in range(3)), "XYZ"
+        )  # from the frame's axes
+        vector = rotation.Axis * np.degrees(rotation.Angle)
+        words = dict(zip("XYZUVW", (*frame[:3, 3].tolist(), *vector)), F=float(feed))
+        commands.append(Path.Command("G0" if fast else "G1", words))
+    return commands
+
+
+def make_robot_path(doc, arrays, label="Program"):
+    """Adds a RobotPath with the poses in ``arrays`` (as ``Program.path_arrays`` gives them)."""
+    obj = doc.addObject("Path::FeaturePython", "RobotPath")
+    obj.Label = label
+    RobotPath(obj)
+    set_arrays(obj, arrays)
+    return obj
+
+
+def set_arrays(obj, arrays):
+    """Gives a RobotPath other poses."""
+    matrices = np.asarray(arrays["frames"], dtype=float).reshape(-1, 16).tolist()
+    obj.Poses = [FreeCAD.Placement(FreeCAD.Matrix(*values)) for values in matrices]
+    obj.Feeds = np.asarray(arrays["feeds"], dtype=float).tolist()
+    obj.Forces = np.asarray(arrays["forces"], dtype=float).tolist()
+    obj.Rapid = tuple(bool(value) for value in arrays["rapid"])
+    obj.Lines = np.asarray(arrays["lines"], dtype=int).tolist()
+
+
+def read_arrays(path):
+    """(Program, arrays) of a robot program's file. Raises InputError."""
+    try:
+        program = read_program(path)
+    except ProgramError as error:
+        raise InputError(str(error)) from None
+    arrays = program.path_arrays(DEFAULT_FEED)
+    count = len(arrays["frames"])
+    if count < 2:
+        why = f" ({program.problems[0]})" if program.problems else ""
+        raise InputError(f"{path}: {count} Cartesian targets; two at least make a path{why}")
+    return program, arrays
+
+
+def load_program(obj, path, **values):
+    """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
+    program, arrays = read_arrays(path)
+    set_arrays(obj, arrays)
+    obj.Source = str(path)
+    obj.Language = program.language
+    obj.Problems = [str(problem) for problem in program.problems]
+    set_by_name(obj, values)

@@ -1,0 +1,98 @@
+"""The result of a simulation in the document: the stored height field, the events, the figures."""
+
+import json
+import os
+import tempfile
+from pathlib import Path
+
+from .. import core
+from .properties import Output, add_outputs
+from .proxy import Proxy
+
+OUTPUTS = (
+    Output("OutOfDate", "Bool", "Result", "an input has changed since; simulate again"),
+    Output("RemovedVolume", "Volume", "Result", "removed by grinding"),
+    Output("StockVolume", "Volume", "Result", "on the design before"),
+    Output("DesignArea", "Area", "Result", "of the faces"),
+    Output("ProcessTime", "Float", "Result", "what the robot takes, s"),
+    Output("WallTime", "Float", "Result", "what the simulation took, s"),
+    Output("Samples", "Integer", "Result", "of the height field"),
+    Output("Steps", "Integer", "Result", "of the simulation"),
+    Output("MissedRays", "Integer", "Result", "samples over which no stock was found"),
+    Output(
+        "DefectiveSamples", "Integer", "Result", "samples where the stock lies below the design"
+    ),
+    Output("Events", "StringList", "Result", "what happened on the way"),
+    Output("Warnings", "StringList", "Result", "what the user should know of the input"),
+    Output("ElasticModel", "String", "Result", "compliance of the wheel"),
+    Output("LawModel", "String", "Result", "law of removal"),
+    Output("EventData", "String", "Result", "the events as JSON", True),
+    Output("Fingerprint", "String", "Result", "hash of the inputs", True),
+)
+
+
+class Simulation(Proxy):
+    """Proxy. ``HeightField`` is the HDF5 file, kept inside the document's file."""
+
+    TYPE = "BeltGrinding::Simulation"
+    VIEW = "SimulationView"
+
+    def add_properties(self, obj):
+        if "HeightField" not in obj.PropertiesList:
+            obj.addProperty(
+                "App::PropertyFileIncluded", "HeightField", "Result", "the ground height field"
+            )
+            obj.setEditorMode("HeightField", 1)
+        add_outputs(obj, OUTPUTS)
+
+    def field(self, obj):
+        """core.HeightField of the result; None if there is none."""
+        path = obj.HeightField
+        if not path or not os.path.exists(path):
+            return None
+        return core.HeightField.from_hdf5(path)[0]
+
+    def events(self, obj):
+        """List of dicts: kind, program, pose, line, time (s), duration (s), value, message."""
+        return json.loads(obj.EventData or "[]")
+
+
+def store(obj, result, fingerprint):
+    """Puts a ``job.Result`` into a Simulation object."""
+    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
+        path = Path(folder, "heightfield.h5")
+        result.field.write_hdf5(str(path), json.dumps(_without_bulk(result.job)))
+        obj.HeightField = str(path)
+    s = result.summary
+    obj.RemovedVolume, obj.StockVolume = s["removed_volume_mm3"], s["stock_volume_mm3"]
+    obj.DesignArea = s["design_area_mm2"]
+    obj.ProcessTime, obj.WallTime = s["process_time_s"], sum(s["wall_time_s"].values())
+    obj.Samples, obj.Steps = s["samples"], s["steps"]
+    obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
+    obj.Events = [describe(event, result.job) for event in result.events]
+    obj.Warnings = s["warnings"]
+    obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
+    obj.EventData = json.dumps(result.events)
+    obj.Fingerprint = fingerprint
+    obj.OutOfDate = False
+
+
+def _without_bulk(job):
+    """The job without what the document holds anyway: shapes and poses."""
+    bulk = ("brep", "poses")
+    job = {k: v for k, v in job.items()}
+    for part in ("design", "stock"):
+        job[part] = {k: v for k, v in job[part].items() if k not in bulk}
+    job["programs"] = [{k: v for k, v in p.items() if k not in bulk} for p in job["programs"]]
+    return job
+
+
+def describe(event, job):
+    """One line for an event."""
+    program = job["programs"][event["program"]]
+    where = program.get("name") or Path(program.get("file", "program")).name
+    line = f", line {event['line']}" if event["line"] else ""
+    return (
+        f"{event['kind']}: {where}, pose {event['pose'] + 1}{line}, "
+        f"{event['time']:.2f} s: {event['message']}"
+    )

@@ -1,0 +1,134 @@
+"""The stock in the document: a uniform allowance, a solid or a mesh."""
+
+import hashlib
+import os
+from functools import lru_cache
+from pathlib import Path
+
+import FreeCAD
+
+from .. import InputError
+from .properties import Key, add_keys, get_value
+from .proxy import Proxy
+
+KEYS = (
+    Key("Kind", "Enumeration", "Stock", "stock.kind"),
+    Key("Allowance", "Distance", "Stock", "stock.allowance_mm"),
+    Key("Deflection", "Length", "Solid", "stock.deflection_mm"),
+    Key("FileUnit", "Float", "Mesh", "stock.unit_mm"),
+    Key("SearchAbove", "Length", "Search", "stock.search_above_mm"),
+    Key("SearchBelow", "Length", "Search", "stock.search_below_mm"),
+)
+USED = {
+    "allowance": {"Kind", "Allowance"},
+    "solid": {"Kind", "Deflection", "SearchAbove", "SearchBelow"},
+    "mesh": {"Kind", "FileUnit", "SearchAbove", "SearchBelow"},
+}
+
+
+class Stock(Proxy):
+    """Proxy. ``Source`` is a Part or a Mesh object; ``File`` is a mesh's file in its place."""
+
+    TYPE = "BeltGrinding::Stock"
+    VIEW = "StockView"
+
+    def add_properties(self, obj):
+        add_keys(obj, KEYS)
+        for kind, name, group, text in (
+            ("Link", "Source", "Stock", "the Part or Mesh object that is the stock"),
+            ("File", "File", "Mesh", "a mesh's file (STL, PLY, OBJ) in place of an object"),
+            ("Placement", "FilePlacement", "Mesh", "where the file's mesh lies in the document"),
+        ):
+            if name not in obj.PropertiesList:
+                obj.addProperty(f"App::Property{kind}", name, group, text)
+
+    def settings(self, obj):
+        """The part of a job under 'stock' that needs no geometry."""
+        used = USED[obj.Kind]
+        return {k.key.split(".")[1]: get_value(obj, k) for k in KEYS if k.name in used}
+
+    def digest(self, obj):
+        """Hash of the stock's geometry; '' for an allowance."""
+        if obj.Kind == "allowance":
+            return ""
+        if obj.Kind == "mesh" and obj.Source is None and obj.File:
+            try:
+                status = os.stat(obj.File)
+            except OSError:
+                return f"missing {obj.File}"
+            file = _file_digest(obj.File, status.st_size, status.st_mtime_ns)
+            return f"{file} {obj.FilePlacement.toMatrix().A}"
+        if obj.Source is None:
+            return "none"
+        placement = obj.Source.getGlobalPlacement().toMatrix().A
+        if hasattr(obj.Source, "Mesh"):
+            mesh = obj.Source.Mesh
+            figures = (mesh.CountPoints, mesh.CountFacets, mesh.Area, mesh.Volume)
+            return f"{figures} {placement}"
+        return hashlib.sha256(_brep(obj).encode()).hexdigest()
+
+    def to_job(self, obj, folder):
+        """The part of a job under 'stock'; a mesh of the document is written to ``folder``."""
+        job = self.settings(obj)
+        if obj.Kind == "solid":
+            job["brep"] = _brep(obj)
+        elif obj.Kind == "mesh":
+            if obj.Source is not None:
+                job["file"] = _write_mesh(obj, Path(folder))
+                job["unit_mm"] = 1.0
+            elif obj.File:
+                job["file"] = obj.File
+                job["placement"] = placement_to_job(obj.FilePlacement)
+            else:
+                raise InputError(f"{obj.Label}: choose the mesh: an object or a file")
+        return job
+
+
+@lru_cache(maxsize=8)
+def _file_digest(path, size, time):
+    hashed = hashlib.sha256()
+    with open(path, "rb") as file:
+        while chunk := file.read(1 << 20):
+            hashed.update(chunk)
+    return hashed.hexdigest()
+
+
+def placed_shape(obj):
+    """A copy of a document object's shape in the document's coordinates. Raises InputError."""
+    shape = getattr(obj, "Shape", None)
+    if shape is None or shape.isNull():
+        raise InputError(f"{obj.Label} has no shape; choose a part with faces")
+    shape = shape.copy()
+    shape.Placement = obj.getGlobalPlacement()
+    return shape
+
+
+def _brep(obj):
+    if obj.Source is None:
+        raise InputError(f"{obj.Label}: choose the solid that is the stock")
+    if not hasattr(obj.Source, "Shape"):
+        raise InputError(f"{obj.Label}: {obj.Source.Label} is no solid; set Kind to mesh")
+    return placed_shape(obj.Source).exportBrepToString()
+
+
+def _write_mesh(obj, folder):
+    if not hasattr(obj.Source, "Mesh"):
+        raise InputError(f"{obj.Label}: {obj.Source.Label} is no mesh; set Kind to solid")
+    mesh = obj.Source.Mesh.copy()
+    mesh.Placement = obj.Source.getGlobalPlacement()
+    path = folder / "stock.ply"
+    mesh.write(str(path))
+    return str(path)
+
+
+def placement_to_job(placement):
+    """A job's frame from a FreeCAD.Placement."""
+    x, y, z, w = placement.Rotation.Q
+    return {"position_mm": list(placement.Base), "quaternion_wxyz": [w, x, y, z]}
+
+
+def placement_from_job(frame):
+    """FreeCAD.Placement of a job's frame (None: identity). Raises ValueError."""
+    from .. import frames
+
+    return FreeCAD.Placement(FreeCAD.Matrix(*frames.from_data(frame).ravel().tolist()))

@@ -1,0 +1,310 @@
+"""The commands, in the order of work. What a button does, it does by beltgrinding.objects.api."""
+
+import traceback
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import InputError
+from ..objects import api, belt_machine, deviation, robot_path, simulation, stock
+from ..objects.job_object import BeltGrindingJob, child
+from ..objects.proxy import type_of
+from .compat import QtGui, translate
+from .icons import icon
+from .panel import edit
+
+PROGRAMS = "Robot programs (*.src *.csv)"
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+
+def active_job():
+    """The selected job, or the job of the selected object, or the document's only one; or None."""
+    document = FreeCAD.ActiveDocument
+    if document is None:
+        return None
+    for obj in Gui.Selection.getSelection(document.Name):
+        while obj is not None:
+            if type_of(obj) == BeltGrindingJob.TYPE:
+                return obj
+            obj = obj.getParentGroup()
+    jobs = [obj for obj in document.Objects if type_of(obj) == BeltGrindingJob.TYPE]
+    return jobs[0] if len(jobs) == 1 else None
+
+
+def report(error):
+    """Says an error in the report view and, where there is a user to see it, in a message."""
+    if not isinstance(error, InputError):
+        lines = traceback.format_exception(type(error), error, error.__traceback__)
+        FreeCAD.Console.PrintError("".join(lines))
+    FreeCAD.Console.PrintError(f"{error}\n")
+    box = QtGui.QMessageBox(Gui.getMainWindow())
+    box.setObjectName("BeltGrinding_Error")
+    box.setIcon(QtGui.QMessageBox.Warning)
+    box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
+    box.setText(str(error))
+    box.setModal(False)
+    box.show()
+
+
+class transaction:
+    """One undo step; aborted, and the error reported, if the block fails."""
+
+    def __init__(self, document, name):
+        self.document, self.name = document, name
+        self.failed = False
+
+    def __enter__(self):
+        self.document.openTransaction(self.name)
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is None:
+            return False
+        self.failed = True
+        self.document.abortTransaction()
+        if issubclass(kind, Exception):
+            report(error)
+            return True
+        return False
+
+
+class Command:
+    """Base. Subclasses give NAME, TEXT, TIP, and do their work in ``run``."""
+
+    NAME = TEXT = TIP = ""
+    NEEDS_JOB = True
+
+    def GetResources(self):
+        return {"Pixmap": icon(self.NAME), "MenuText": self.TEXT, "ToolTip": self.TIP}
+
+    def IsActive(self):
+        if Gui.Control.activeDialog():
+            return False
+        return not self.NEEDS_JOB or active_job() is not None
+
+    def Activated(self, index=0):
+        try:
+            self.run()
+        except Exception as error:
+            report(error)
+
+    def run(self):
+        raise NotImplementedError
+
+
+class NewJob(Command):
+    NAME = "BeltGrinding_Job"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Job", "New job")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Job", "Makes a grinding job of the selected faces or part"
+    )
+    NEEDS_JOB = False
+
+    def IsActive(self):
+        return FreeCAD.ActiveDocument is not None and not Gui.Control.activeDialog()
+
+    def run(self):
+        document = FreeCAD.ActiveDocument
+        links = []
+        for one in Gui.Selection.getSelectionEx(document.Name):
+            if hasattr(one.Object, "Shape") and one.Object.Shape.Faces:
+                links.append((one.Object, [s for s in one.SubElementNames if s.startswith("Face")]))
+        if not links:
+            raise InputError(
+                translate("BeltGrinding", "Select the faces to be ground, or the part, first.")
+            )
+        with transaction(document, "New grinding job") as step:
+            job = api.make_job(links)
+        if not step.failed:
+            edit(job)
+
+
+class _Child(Command):
+    """Makes or edits the child of a kind."""
+
+    PROXY = None
+
+    def make(self, job):
+        raise NotImplementedError
+
+    def run(self):
+        job = active_job()
+        found = child(job, self.PROXY)
+        if found is None:
+            with transaction(job.Document, self.TEXT) as step:
+                found = self.make(job)
+            if step.failed:
+                return
+        edit(found)
+
+
+class Stock(_Child):
+    NAME = "BeltGrinding_Stock"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Stock", "Stock")
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_Stock", "Says what stock lies on the design faces")
+    PROXY = stock.Stock
+
+    def make(self, job):
+        return api.make_stock(job)
+
+
+class BeltMachine(_Child):
+    NAME = "BeltGrinding_BeltMachine"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_BeltMachine", "Belt machine")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_BeltMachine", "Describes contact wheel, belt, force control and cell"
+    )
+    PROXY = belt_machine.BeltMachine
+
+    def make(self, job):
+        return api.make_belt_machine(job)
+
+
+class ImportProgram(Command):
+    NAME = "BeltGrinding_ImportProgram"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Import robot program...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ImportProgram", "Reads a robot program (KUKA KRL or CSV) into the job"
+    )
+
+    def run(self):
+        title = translate("BeltGrinding", "Import robot program")
+        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", PROGRAMS)[0]
+        if path:
+            import_program(active_job(), path)
+
+
+def import_program(job, path):
+    """Imports a program's file into the job in a transaction and opens its panel."""
+    with transaction(job.Document, "Import robot program") as step:
+        program = api.import_program(job, path)
+    if not step.failed:
+        edit(program)
+
+
+class Simulate(Command):
+    NAME = "BeltGrinding_Simulate"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Simulate")
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Grinds the job; FreeCAD stays usable")
+
+    def run(self):
+        from .simulation_panel import SimulationPanel
+
+        Gui.Control.showDialog(SimulationPanel(active_job(), True))
+
+
+class Deviation(Command):
+    NAME = "BeltGrinding_Deviation"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Deviation", "Deviation")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Deviation", "Lays the deviation from the design over the part in colour"
+    )
+
+    def IsActive(self):
+        return super().IsActive() and child(active_job(), simulation.Simulation) is not None
+
+    def run(self):
+        job = active_job()
+        found = child(job, deviation.Deviation)
+        if found is None:
+            with transaction(job.Document, "Deviation") as step:
+                found = api.make_deviation(job)
+                for part in {obj for obj, _ in job.DesignFaces}:
+                    part.ViewObject.Visibility = False
+            if step.failed:
+                return
+        edit(found)
+
+
+class ExampleBlade(Command):
+    NAME = "BeltGrinding_ExampleBlade"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleBlade", "Example: compressor blade")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExampleBlade", "Makes a document with a blade, its stock and its program"
+    )
+    NEEDS_JOB = False
+
+    def run(self):
+        from ..examples import blade
+
+        folder = Path(FreeCAD.getUserAppDataDir(), "BeltGrinding", "blade")
+        blade.make_document(folder)
+        Gui.activeDocument().activeView().viewIsometric()
+        Gui.SendMsgToActiveView("ViewFit")
+
+
+class OpenJob(Command):
+    NAME = "BeltGrinding_OpenJob"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_OpenJob", "Open job file...")
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_OpenJob", "Makes document objects of a job.json")
+    NEEDS_JOB = False
+
+    def run(self):
+        title = translate("BeltGrinding", "Open job file")
+        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", "Job (*.json)")[0]
+        if not path:
+            return
+        document = FreeCAD.ActiveDocument or FreeCAD.newDocument(Path(path).stem)
+        with transaction(document, "Open job file"):
+            api.open_job(document, path)
+            Gui.SendMsgToActiveView("ViewFit")
+
+
+class ExportJob(Command):
+    NAME = "BeltGrinding_ExportJob"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExportJob", "Export job file...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExportJob", "Writes the job as JSON, for beltgrind on another machine"
+    )
+
+    def run(self):
+        title = translate("BeltGrinding", "Export job file")
+        path = QtGui.QFileDialog.getSaveFileName(
+            Gui.getMainWindow(), title, "job.json", "Job (*.json)"
+        )[0]
+        if path:
+            api.export_job(active_job(), path)
+
+
+class ImportResult(Command):
+    NAME = "BeltGrinding_ImportResult"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportResult", "Import result...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ImportResult", "Brings back what beltgrind computed on another machine"
+    )
+
+    def run(self):
+        title = translate("BeltGrinding", "Folder of the result")
+        folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)
+        if folder:
+            job = active_job()
+            with transaction(job.Document, "Import result"):
+                api.import_result(job, folder)
+
+
+class ReadAgain(Command):
+    NAME = "BeltGrinding_ReadAgain"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ReadAgain", "Read programs again")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ReadAgain", "Reads the job's robot programs from their files again"
+    )
+
+    def run(self):
+        job = active_job()
+        with transaction(job.Document, "Read programs again"):
+            for path in job.Group:
+                if type_of(path) == robot_path.RobotPath.TYPE and path.Source:
+                    robot_path.load_program(path, path.Source)
+            job.Document.recompute()
+
+
+WORK = (NewJob, Stock, BeltMachine, ImportProgram, Simulate, Deviation)
+MORE = (ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
+
+
+def register():
+    """Tells FreeCAD the commands; returns (names in the order of work, other names)."""
+    for command in WORK + MORE:
+        Gui.addCommand(command.NAME, command())
+    return [c.NAME for c in WORK], [c.NAME for c in MORE]

@@ -1,0 +1,23 @@
+"""What differs between FreeCAD's generations, for the window."""
+
+import FreeCAD
+from PySide import QtCore, QtGui  # FreeCAD's shim: PySide2 or 6; 0.20 has the widgets in QtGui
+
+__all__ = ["QtCore", "QtGui", "VERSION", "buttons", "set_shape_colour", "translate"]
+
+VERSION = tuple(int("".join(c for c in part if c.isdigit()) or 0) for part in FreeCAD.Version()[:2])
+translate = FreeCAD.Qt.translate
+
+
+def buttons(*names):
+    """What getStandardButtons returns: an int in 0.20, the enum later. Names such as "Ok"."""
+    box = QtGui.QDialogButtonBox
+    both = getattr(box, names[0])
+    for name in names[1:]:
+        both = both | getattr(box, name)
+    return int(both) if VERSION < (1, 0) else both
+
+
+def set_shape_colour(view, rgb):
+    """Colours a whole shape; rgb in 0..1."""
+    view.ShapeColor = tuple(rgb)

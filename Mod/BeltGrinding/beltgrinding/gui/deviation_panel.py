@@ -1,0 +1,72 @@
+"""Task panel of the deviation: the tolerance and the figures."""
+
+from .. import InputError
+from .compat import QtGui, translate
+from .form import Form
+from .panel import Panel
+
+
+class DeviationPanel(Panel):
+    """Edits the job's tolerance; the colours and the figures follow."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Deviation")
+        super().__init__(obj, title, "BeltGrinding_Deviation")
+        form = Form(obj.getParentGroup(), translate("BeltGrinding", "Tolerance"))
+        form.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
+        form.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
+        form.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
+        form.changed = self.update
+        self.body.addWidget(form)
+        self.table = QtGui.QTableWidget(0, 2)
+        self.table.setObjectName("statistics")
+        self.table.horizontalHeader().hide()
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setStretchLastSection(True)
+        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.body.addWidget(self.table, 1)
+        self.finish()
+        self.update()
+
+    def update(self):
+        """Colours and figures anew."""
+        obj = self.obj
+        try:
+            self.check()
+        except InputError as error:
+            self.tell(str(error), True)
+            return
+        obj.Proxy.update(obj)
+        self.tell(
+            translate("BeltGrinding", "Out of date: simulate again.") if obj.OutOfDate else "", True
+        )
+
+        def mm(value):
+            return f"{value.Value:+.4f} mm"
+
+        rows = (
+            (translate("BeltGrinding", "In tolerance"), f"{obj.InTolerance:.2f} %"),
+            (translate("BeltGrinding", "Too much left"), f"{obj.AboveTolerance:.2f} %"),
+            (translate("BeltGrinding", "Cut too deep"), f"{obj.BelowTolerance:.2f} %"),
+            (translate("BeltGrinding", "Minimum"), mm(obj.Minimum)),
+            (translate("BeltGrinding", "Maximum"), mm(obj.Maximum)),
+            (translate("BeltGrinding", "Mean"), mm(obj.Mean)),
+            (translate("BeltGrinding", "Root mean square"), f"{obj.RootMeanSquare.Value:.4f} mm"),
+            (translate("BeltGrinding", "5 % lie below"), mm(obj.Percentile05)),
+            (translate("BeltGrinding", "Median"), mm(obj.Percentile50)),
+            (translate("BeltGrinding", "95 % lie below"), mm(obj.Percentile95)),
+            (translate("BeltGrinding", "Removed"), f"{obj.RemovedVolume.Value:,.1f} mm³"),
+            (translate("BeltGrinding", "Area"), f"{obj.DesignArea.Value:,.1f} mm²"),
+        )
+        self.table.setRowCount(len(rows))
+        for i, (name, text) in enumerate(rows):
+            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
+            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+
+    def check(self):
+        job = self.obj.getParentGroup()
+        if job.ToleranceLower > job.ToleranceUpper:
+            raise InputError(
+                translate("BeltGrinding", "The lower limit lies above the upper limit.")
+            )

@@ -1,0 +1,124 @@
+"""Task panel of the job: the faces, sampling, tolerance, law."""
+
+import FreeCADGui as Gui
+
+from .. import InputError
+from ..objects import job_object
+from .compat import QtGui, translate
+from .form import Form
+from .panel import Panel
+
+
+class FaceGate:
+    """Lets faces and whole parts be selected."""
+
+    def allow(self, document, obj, sub):
+        return hasattr(obj, "Shape") and (not sub or sub.rpartition(".")[2].startswith("Face"))
+
+
+class JobPanel(Panel):
+    """Edits a BeltGrindingJob."""
+
+    def __init__(self, obj):
+        super().__init__(obj, translate("BeltGrinding", "Belt-grinding job"), "BeltGrinding_Job")
+        self.body.addWidget(self._faces())
+        sampling = Form(obj, translate("BeltGrinding", "Sampling and tolerance"))
+        sampling.add("Spacing", translate("BeltGrinding", "Sample spacing"))
+        sampling.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
+        sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
+        sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
+        sampling.add("FlipNormals", translate("BeltGrinding", "Flip normals of loose faces"))
+        self.body.addWidget(sampling)
+        law = Form(obj, translate("BeltGrinding", "Removal"))
+        texts = {
+            "local_linear": translate("BeltGrinding", "Local linear"),
+            "hammann": translate("BeltGrinding", "Hammann, global"),
+        }
+        law.add("Law", translate("BeltGrinding", "Law"), texts)
+        law.add("LawCoefficient", translate("BeltGrinding", "Coefficient"), unit="mm²/N")
+        self.body.addWidget(law)
+        self.forms = (sampling, law)
+        sampling.changed = self.estimate
+        self.finish()
+        Gui.Selection.addSelectionGate(FaceGate())
+        self.estimate()
+
+    def _faces(self):
+        box = QtGui.QGroupBox(translate("BeltGrinding", "Faces to be ground"))
+        layout = QtGui.QVBoxLayout(box)
+        self.list = QtGui.QListWidget()
+        self.list.setObjectName("faces")
+        self.list.setMaximumHeight(110)
+        self.list.setSelectionMode(QtGui.QAbstractItemView.ExtendedSelection)
+        layout.addWidget(self.list)
+        row = QtGui.QHBoxLayout()
+        for name, text, action in (
+            ("addFaces", translate("BeltGrinding", "Add selected"), self.add_selected),
+            ("removeFaces", translate("BeltGrinding", "Remove"), self.remove),
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(action)
+            row.addWidget(button)
+        layout.addLayout(row)
+        self.fill()
+        return box
+
+    def pairs(self):
+        """[(object, face name or '' for all)] of the job."""
+        return [(obj, sub) for obj, subs in self.obj.DesignFaces for sub in (subs or ("",))]
+
+    def fill(self):
+        self.list.clear()
+        for obj, sub in self.pairs():
+            everything = translate("BeltGrinding", "all faces")
+            self.list.addItem(f"{obj.Label}: {sub or everything}")
+
+    def add_selected(self):
+        """Adds the faces that are selected in the 3D view."""
+        found = []
+        for one in Gui.Selection.getSelectionEx(self.document.Name):
+            if hasattr(one.Object, "Shape"):
+                faces = [s for s in one.SubElementNames if s.startswith("Face")]
+                found += [(one.Object, face) for face in faces or [""]]
+        if not found:
+            self.tell(translate("BeltGrinding", "Select faces in the 3D view first."), True)
+            return
+        self.set_pairs(self.pairs() + [pair for pair in found if pair not in self.pairs()])
+
+    def remove(self):
+        rows = {index.row() for index in self.list.selectedIndexes()}
+        self.set_pairs([pair for i, pair in enumerate(self.pairs()) if i not in rows])
+
+    def set_pairs(self, pairs):
+        self.obj.DesignFaces = [(obj, (sub,)) for obj, sub in pairs]
+        self.fill()
+        self.estimate()
+
+    def estimate(self):
+        """Says what the settings will cost."""
+        try:
+            self.check()
+            shape, numbers = job_object.design(self.obj)
+        except InputError as error:
+            self.tell(str(error), True)
+            return
+        area = sum(shape.Faces[number - 1].Area for number in numbers)
+        count = area / self.obj.Spacing.Value**2
+        self.tell(
+            translate("BeltGrinding", "{} faces, {:,.0f} mm², about {:,.0f} samples").format(
+                len(numbers), area, count
+            )
+        )
+
+    def check(self):
+        if self.obj.Spacing.Value <= 0:
+            raise InputError(translate("BeltGrinding", "The sample spacing must be positive."))
+        if self.obj.ToleranceLower > self.obj.ToleranceUpper:
+            raise InputError(
+                translate("BeltGrinding", "The lower limit lies above the upper limit.")
+            )
+        job_object.design(self.obj)
+
+    def close(self):
+        Gui.Selection.removeSelectionGate()

@@ -1,0 +1,111 @@
+"""The legend of the deviation: a colour bar with numbers, laid over the 3D view."""
+
+from pivy import coin
+
+from .. import core
+from .compat import translate
+
+BAR_STEPS = 120
+# In the legend's own coordinates: the view is 2 high, its middle 0.
+LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
+
+
+def _rgb(packed):
+    return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
+
+
+def node(lower, upper, limit, out_of_date=False):
+    """Colour bar with numbers in mm at the view's left border; not picked, not counted by fitAll."""
+    outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
+    group = coin.SoAnnotation()
+    outer.addChild(group)
+    pick = coin.SoPickStyle()
+    pick.style = coin.SoPickStyle.UNPICKABLE
+    group.addChild(pick)
+    camera = coin.SoOrthographicCamera()
+    camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
+    camera.position = (0, 0, 1)
+    camera.height = 2.0
+    group.addChild(camera)
+    light = coin.SoLightModel()
+    light.model = coin.SoLightModel.BASE_COLOR
+    group.addChild(light)
+    shift = coin.SoTranslation()
+    shift.translation = (-0.95, -0.5 * HEIGHT, 0)
+    group.addChild(shift)
+    group.addChild(_panel(out_of_date))
+    group.addChild(_bar(lower, upper, limit))
+    text_colour = coin.SoBaseColor()
+    text_colour.rgb = (0.0, 0.0, 0.0)
+    group.addChild(text_colour)
+    font = coin.SoFont()
+    font.name = "Sans"
+    font.size = 14
+    group.addChild(font)
+    for value in (-limit, -0.5 * limit, lower, upper, 0.5 * limit, limit):
+        group.addChild(_label(f"{value:+.3f}", LEFT + WIDTH + 0.02, _height(value, limit)))
+    group.addChild(_label(translate("BeltGrinding", "deviation, mm"), LEFT, HEIGHT + 0.06))
+    if out_of_date:
+        warning = coin.SoBaseColor()
+        warning.rgb = (0.7, 0.15, 0.1)
+        group.addChild(warning)
+        text = translate("BeltGrinding", "out of date: simulate again")
+        group.addChild(_label(text, LEFT, -0.1))
+    return outer
+
+
+def _panel(out_of_date):
+    """A light ground: FreeCAD's own background may be dark."""
+    group = coin.SoSeparator()
+    material = coin.SoMaterial()
+    material.diffuseColor = (1.0, 1.0, 1.0)
+    material.transparency = 0.25
+    group.addChild(material)
+    low, high = (-0.16 if out_of_date else -0.06), HEIGHT + 0.13
+    right = LEFT + (0.62 if out_of_date else 0.33)
+    points = coin.SoCoordinate3()
+    corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
+    points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])
+    group.addChild(points)
+    face = coin.SoFaceSet()
+    face.numVertices = 4
+    group.addChild(face)
+    return group
+
+
+def _height(value, limit):
+    return HEIGHT * (value + limit) / (2 * limit)
+
+
+def _label(text, x, y):
+    group = coin.SoSeparator()
+    move = coin.SoTranslation()
+    move.translation = (x, y - 0.012, 0)
+    group.addChild(move)
+    node = coin.SoText2()
+    node.string = text
+    group.addChild(node)
+    return group
+
+
+def _bar(lower, upper, limit):
+    group = coin.SoSeparator()
+    values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    colours = [_rgb(c) for c in core.colour_scale(lower, upper, limit, values)]
+    material = coin.SoBaseColor()
+    material.rgb.setValues(0, BAR_STEPS, colours)
+    binding = coin.SoMaterialBinding()
+    binding.value = coin.SoMaterialBinding.PER_FACE
+    corners, indices = [], []
+    for k in range(BAR_STEPS + 1):
+        y = HEIGHT * k / BAR_STEPS
+        corners += [(LEFT, y, 0), (LEFT + WIDTH, y, 0)]
+    for k in range(BAR_STEPS):
+        indices += [2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2, -1]
+    points = coin.SoCoordinate3()
+    points.point.setValues(0, len(corners), corners)
+    faces = coin.SoIndexedFaceSet()
+    faces.coordIndex.setValues(0, len(indices), indices)
+    for node in (material, binding, points, faces):
+        group.addChild(node)
+    return group

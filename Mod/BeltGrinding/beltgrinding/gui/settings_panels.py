@@ -1,0 +1,120 @@
+"""Task panels of the stock and of the belt machine."""
+
+from .. import InputError
+from .compat import translate
+from .form import Form
+from .panel import Panel
+
+MESH_FILES = "*.stl *.ply *.obj *.off *.3mf"
+
+
+class StockPanel(Panel):
+    """Edits a Stock."""
+
+    def __init__(self, obj):
+        super().__init__(obj, translate("BeltGrinding", "Stock"), "BeltGrinding_Stock")
+        form = self.fields = Form(obj, translate("BeltGrinding", "Stock on the design faces"))
+        kinds = {
+            "allowance": translate("BeltGrinding", "Uniform allowance"),
+            "solid": translate("BeltGrinding", "Solid"),
+            "mesh": translate("BeltGrinding", "Mesh (a scan)"),
+        }
+        bodies = [
+            one
+            for one in obj.Document.Objects
+            if hasattr(one, "Shape") or (hasattr(one, "Mesh") and not hasattr(one, "Simulation"))
+        ]
+        form.add("Kind", translate("BeltGrinding", "Kind"), kinds)
+        form.add("Allowance", translate("BeltGrinding", "Allowance"))
+        form.add("Source", translate("BeltGrinding", "Object"), bodies)
+        form.add("File", translate("BeltGrinding", "or file"), f"Mesh ({MESH_FILES})")
+        form.add("FileUnit", translate("BeltGrinding", "Unit of the file"), unit="mm")
+        form.add("FilePlacement", translate("BeltGrinding", "Place of the file"))
+        form.add("Deflection", translate("BeltGrinding", "Chord error"))
+        form.add("SearchAbove", translate("BeltGrinding", "Search outward"))
+        form.add("SearchBelow", translate("BeltGrinding", "Search inward"))
+        form.changed = self.arrange
+        self.body.addWidget(form)
+        self.finish()
+        self.arrange()
+
+    def arrange(self):
+        """Shows the fields that the kind uses."""
+        rays = {"Kind", "Source", "SearchAbove", "SearchBelow"}
+        files = {"File", "FileUnit", "FilePlacement"} if self.obj.Source is None else set()
+        self.fields.show_rows(
+            {
+                "allowance": {"Kind", "Allowance"},
+                "solid": rays | {"Deflection"},
+                "mesh": rays | files,
+            }[self.obj.Kind]
+        )
+        self.tell("")
+
+    def check(self):
+        obj = self.obj
+        if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
+            raise InputError(translate("BeltGrinding", "Choose the solid that is the stock."))
+        if obj.Kind == "mesh" and not (hasattr(obj.Source, "Mesh") or obj.File):
+            raise InputError(translate("BeltGrinding", "Choose the mesh: an object or a file."))
+
+
+class BeltMachinePanel(Panel):
+    """Edits a BeltMachine."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Belt machine")
+        super().__init__(obj, title, "BeltGrinding_BeltMachine")
+        wheel = Form(obj, translate("BeltGrinding", "Contact wheel"))
+        wheel.add("WheelRadius", translate("BeltGrinding", "Radius"))
+        wheel.add("WheelWidth", translate("BeltGrinding", "Width"))
+        wheel.add("CrownRadius", translate("BeltGrinding", "Crown radius (0: cylinder)"))
+        wheel.add("Stiffness", translate("BeltGrinding", "Stiffness"), unit="MPa/mm")
+        belt = Form(obj, translate("BeltGrinding", "Belt and control"))
+        belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+        belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
+        control = {
+            "force": translate("BeltGrinding", "Force"),
+            "position": translate("BeltGrinding", "Position"),
+        }
+        belt.add("Control", translate("BeltGrinding", "Control"), control)
+        belt.add("Force", translate("BeltGrinding", "Force"))
+        belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
+        cell = self.cell = Form(obj, translate("BeltGrinding", "Cell"))
+        holding = {
+            "tool_in_hand": translate("BeltGrinding", "Tool in hand"),
+            "part_in_hand": translate("BeltGrinding", "Part in hand"),
+        }
+        cell.add("Holding", translate("BeltGrinding", "Robot holds"), holding)
+        cell.add("BaseFromWork", translate("BeltGrinding", "Part in base"))
+        cell.add("TcpFromContact", translate("BeltGrinding", "Contact in tool"))
+        cell.add("TcpFromWork", translate("BeltGrinding", "Part in tool"))
+        cell.add("BaseFromContact", translate("BeltGrinding", "Contact in base"))
+        for form in (wheel, belt, cell):
+            form.changed = self.arrange
+            self.body.addWidget(form)
+        self.belt = belt
+        self.finish()
+        self.arrange()
+
+    def arrange(self):
+        """Shows the frames that the holding uses, and the fields of the control."""
+        frames = {
+            "tool_in_hand": {"BaseFromWork", "TcpFromContact"},
+            "part_in_hand": {"TcpFromWork", "BaseFromContact"},
+        }
+        self.cell.show_rows({"Holding"} | frames[self.obj.Holding])
+        force = {"Force", "ForceTravel"} if self.obj.Control == "force" else set()
+        self.belt.show_rows({"BeltSpeed", "BeltWear", "Control"} | force)
+        self.tell("")
+
+    def check(self):
+        for name, text in (
+            ("WheelRadius", translate("BeltGrinding", "The wheel's radius must be positive.")),
+            ("WheelWidth", translate("BeltGrinding", "The wheel's width must be positive.")),
+            ("BeltSpeed", translate("BeltGrinding", "The belt speed must be positive.")),
+        ):
+            if getattr(self.obj, name).Value <= 0:
+                raise InputError(text)
+        if self.obj.Stiffness <= 0:
+            raise InputError(translate("BeltGrinding", "The stiffness must be positive."))

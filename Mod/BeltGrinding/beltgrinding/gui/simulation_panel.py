@@ -1,0 +1,182 @@
+"""Task panel of the simulation: progress and Cancel, then figures and events."""
+
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import Cancelled, InputError
+from ..objects.job_object import child
+from ..objects.simulation import Simulation
+from .compat import QtCore, QtGui, buttons, translate
+from .icons import icon
+from .runner import Runner
+
+SHOWN_EVENTS = 1000
+
+
+class SimulationPanel:
+    """Runs a job if ``run``, and shows its result."""
+
+    def __init__(self, job, run):
+        self.job = job
+        self.runner = None
+        self.form = QtGui.QWidget()
+        self.form.setWindowTitle(translate("BeltGrinding", "Simulation"))
+        self.form.setWindowIcon(QtGui.QIcon(icon("BeltGrinding_Simulate")))
+        body = QtGui.QVBoxLayout(self.form)
+        self.state = QtGui.QLabel()
+        self.state.setObjectName("state")
+        self.state.setWordWrap(True)
+        body.addWidget(self.state)
+        self.bar = QtGui.QProgressBar()
+        self.bar.setRange(0, 1000)
+        body.addWidget(self.bar)
+        row = QtGui.QHBoxLayout()
+        self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
+        self.again = self._button("again", translate("BeltGrinding", "Simulate again"), self.start)
+        self.look = self._button(
+            "deviation", translate("BeltGrinding", "Show deviation"), self.deviation
+        )
+        for button in (self.cancel, self.again, self.look):
+            row.addWidget(button)
+        body.addLayout(row)
+        self.figures = QtGui.QLabel()
+        self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        body.addWidget(self.figures)
+        self.table = QtGui.QTableWidget(0, 4)
+        self.table.setObjectName("events")
+        self.table.setHorizontalHeaderLabels(
+            [
+                translate("BeltGrinding", "Time, s"),
+                translate("BeltGrinding", "Pose"),
+                translate("BeltGrinding", "Line"),
+                translate("BeltGrinding", "Event"),
+            ]
+        )
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setStretchLastSection(True)
+        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.table.setWordWrap(True)
+        body.addWidget(self.table, 1)
+        if run:
+            self.start()
+        else:
+            self.show(child(job, Simulation))
+
+    def _button(self, name, text, action):
+        button = QtGui.QPushButton(text)
+        button.setObjectName(name)
+        button.clicked.connect(action)
+        return button
+
+    def start(self):
+        """Begins a run; what is missing is said in the panel."""
+        try:
+            self.runner = Runner(self.job, self.progress, self.done)
+        except InputError as error:
+            self._arrange(False)
+            self._say(str(error), True)
+            return
+        self._arrange(True)
+        self.progress(0.0)
+
+    def stop(self):
+        if self.runner:
+            self.runner.cancel()
+
+    def progress(self, share):
+        self.bar.setValue(int(1000 * share))
+        seconds = time.monotonic() - self.runner.start
+        self._say(translate("BeltGrinding", "Grinding, {:.0f} s").format(seconds))
+
+    def done(self, simulation, error):
+        """The run has ended."""
+        self.runner = None
+        self._arrange(False)
+        if error is None:
+            self.show(simulation)
+        elif isinstance(error, Cancelled):
+            self._say(translate("BeltGrinding", "Cancelled; the document is as it was."))
+        else:
+            if not isinstance(error, InputError):
+                lines = traceback.format_exception(type(error), error, error.__traceback__)
+                FreeCAD.Console.PrintError("".join(lines))
+            FreeCAD.Console.PrintError(f"{error}\n")
+            self._say(str(error), True)
+
+    def show(self, simulation):
+        """Figures and events of a result."""
+        self._arrange(False)
+        if simulation is None:
+            self._say(translate("BeltGrinding", "No result yet."))
+            return
+        if simulation.OutOfDate:
+            text = translate("BeltGrinding", "Out of date: an input has changed since.")
+        else:
+            text = translate("BeltGrinding", "Done.")
+        self._say(text, simulation.OutOfDate)
+        self.figures.setText(
+            translate(
+                "BeltGrinding",
+                "Removed: {:,.1f} of {:,.1f} mm³\nProcess time: {:.1f} s\n"
+                "Samples: {:,}, steps: {:,}, computed in {:.1f} s\n"
+                "Missed rays: {:,}, defective stock: {:,} samples",
+            ).format(
+                simulation.RemovedVolume.Value,
+                simulation.StockVolume.Value,
+                simulation.ProcessTime,
+                simulation.Samples,
+                simulation.Steps,
+                simulation.WallTime,
+                simulation.MissedRays,
+                simulation.DefectiveSamples,
+            )
+            + "".join(f"\n⚠ {warning}" for warning in simulation.Warnings[:10])
+        )
+        events = simulation.Proxy.events(simulation)[:SHOWN_EVENTS]
+        self.table.setRowCount(len(events))
+        for i, event in enumerate(events):
+            kind = event["kind"].replace("_", " ")
+            cells = (
+                f"{event['time']:.2f}",
+                str(event["pose"] + 1),
+                str(event["line"] or ""),
+                f"{kind}: {event['message']}",
+            )
+            for k, text in enumerate(cells):
+                item = QtGui.QTableWidgetItem(text)
+                item.setToolTip(text)
+                self.table.setItem(i, k, item)
+        self.table.resizeColumnsToContents()
+
+    def deviation(self):
+        Gui.Control.closeDialog()
+        Gui.runCommand("BeltGrinding_Deviation")
+
+    def _arrange(self, running):
+        self.bar.setVisible(running)
+        self.cancel.setVisible(running)
+        self.again.setVisible(not running)
+        self.look.setVisible(not running and child(self.job, Simulation) is not None)
+
+    def _say(self, text, error=False):
+        self.state.setText(text)
+        self.state.setStyleSheet("color: #b3261e; font-weight: bold;" if error else "")
+
+    def getStandardButtons(self):
+        return buttons("Close")
+
+    def reject(self):
+        """Close: a run that still goes on is cancelled."""
+        self.stop()
+        Gui.Control.closeDialog()
+        return True
+
+
+def show_result(simulation):
+    """Opens the panel with the result of a Simulation object."""
+    job = simulation.getParentGroup()
+    if job is not None and not Gui.Control.activeDialog():
+        Gui.Control.showDialog(SimulationPanel(job, False))

@@ -1,0 +1,107 @@
+"""View providers: the icon in the tree, and the panel that a double click opens."""
+
+import FreeCADGui as Gui
+
+from ..objects.proxy import Stateless
+from .deviation_view import DeviationView
+from .icons import icon
+from .panel import edit
+
+__all__ = [
+    "BeltMachineView",
+    "DeviationView",
+    "JobView",
+    "RobotPathView",
+    "SimulationView",
+    "StockView",
+]
+
+
+class View(Stateless):
+    """Base. ``ICON`` names the icon; ``panel`` makes the task panel."""
+
+    ICON = ""
+
+    def __init__(self, view):
+        view.Proxy = self
+
+    def attach(self, view):
+        self.view = view
+
+    def getIcon(self):
+        return icon(self.ICON)
+
+    def panel(self, obj):
+        raise NotImplementedError
+
+    def doubleClicked(self, view):
+        edit(view.Object)
+        return True
+
+    def setEdit(self, view, mode=0):
+        if mode != 0:
+            return None
+        Gui.Control.showDialog(self.panel(view.Object))
+        return True
+
+    def unsetEdit(self, view, mode=0):
+        if mode != 0:
+            return None
+        Gui.Control.closeDialog()
+        return True
+
+
+class JobView(View):
+    ICON = "BeltGrinding_Job"
+
+    def panel(self, obj):
+        from .job_panel import JobPanel
+
+        return JobPanel(obj)
+
+
+class StockView(View):
+    ICON = "BeltGrinding_Stock"
+
+    def panel(self, obj):
+        from .settings_panels import StockPanel
+
+        return StockPanel(obj)
+
+
+class BeltMachineView(View):
+    ICON = "BeltGrinding_BeltMachine"
+
+    def panel(self, obj):
+        from .settings_panels import BeltMachinePanel
+
+        return BeltMachinePanel(obj)
+
+
+class RobotPathView(View):
+    ICON = "BeltGrinding_ImportProgram"
+
+    def panel(self, obj):
+        from .program_panel import ProgramPanel
+
+        return ProgramPanel(obj)
+
+
+class SimulationView(View):
+    """The icon says when the result is out of date; a double click shows the result."""
+
+    ICON = "BeltGrinding_Simulate"
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
+        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+
+    def updateData(self, obj, name):
+        if name == "OutOfDate" and getattr(self, "view", None) is not None:
+            self.view.signalChangeIcon()
+
+    def doubleClicked(self, view):
+        from .simulation_panel import show_result
+
+        show_result(view.Object)
+        return True

@@ -16,7 +16,7 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libassimp-dev libgtest-dev libbenchmark-dev)
 packages_run=(freecad python3-numpy python3-jsonschema xvfb xauth libgl1-mesa-dri)
-packages_test=(python3-pytest python3-h5py)
+packages_test=(python3-pytest python3-h5py python3-pil)
 
 say() { printf '%s\n' "$*" >&2; }
 
@@ -72,4 +72,18 @@ build_all() {
         say "The build failed; the log is $log"
         return 1
     }
+}
+
+# in_freecad freecad|freecadcmd SCRIPT [NAME=VALUE...]: runs a Python file inside FreeCAD, without a
+# display and with settings of its own; its status is the script's.
+in_freecad() {
+    local program=$1 script=$2 home status=0
+    shift 2
+    home=$(mktemp -d)
+    local command=("$program" "$root/tools/in_freecad.py")
+    [ "$program" = freecadcmd ] ||
+        command=(xvfb-run -a -s "-screen 0 1600x1000x24" "${command[@]}")
+    env HOME="$home" BELTGRINDING_RUN="$script" "$@" "${command[@]}" </dev/null || status=$?
+    rm -rf "$home"
+    return "$status"
 }

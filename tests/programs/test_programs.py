@@ -38,7 +38,7 @@ def test_flagship_program_against_its_truth():
     assert len(motions) == len(truth) == 423
     assert not program.problems
     for motion, row in zip(motions, truth):
-        expected = frames.from_quaternion(map(float, row[4:7]), map(float, row[7:11]))
+        expected = frames.from_quaternion(row[4:7], row[7:11])
         assert np.abs(motion.pose[:3, 3] - expected[:3, 3]).max() <= 1e-3, row
         if row[1] != "Ca":  # an arc's auxiliary point has no orientation of its own
             assert angle_deg(motion.pose, expected) <= 2e-3, row

@@ -153,10 +153,14 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
             }
             if (state == Pressing::State::kBeyondTravel) {
                 const bool low = contact.force < step.force;
-                events.note(low ? "force_not_reached" : "force_exceeded", i, step, contact.force,
-                            newtons("the force control ran to the end of its travel at ",
-                                    contact.force, " N; correct the pose or enlarge the travel"),
-                            !low);
+                // On the way to the surface and off it, less than the commanded force is no fault.
+                if (!low || !step.plunging) {
+                    events.note(
+                        low ? "force_not_reached" : "force_exceeded", i, step, contact.force,
+                        newtons("the force control ran to the end of its travel at ", contact.force,
+                                " N; correct the pose or enlarge the travel"),
+                        !low);
+                }
             }
             changed.clear();
             const double volume =

@@ -128,7 +128,10 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
                     interpolate(from.base_from_tcp, to.base_from_tcp, (k + 1.0) / parts));
                 step.duration = duration / parts;
                 step.time = time + (k + 0.5) * step.duration;
-                step.feed = (next.translation() - previous.translation()).norm() / step.duration;
+                const Vec3 way = next.translation() - previous.translation();
+                const double along = std::abs(way.dot(step.work_from_contact.linear().col(2)));
+                step.feed = way.norm() / step.duration;
+                step.plunging = 2.0 * along * along > way.squaredNorm();
                 step.force = force;
                 step.pose = static_cast<std::uint32_t>(i);
                 steps.push_back(step);

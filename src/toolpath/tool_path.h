@@ -42,6 +42,8 @@ struct PathStep {
     double feed = 0.0;       ///< mm/s, infeed speed of the contact point over the work
     double force = 0.0;      ///< N
     std::uint32_t pose = 0;  ///< index of the programmed pose that the step leads to
+    bool plunging = false;   ///< the contact point moves more along its z than across: it comes to
+                             ///< the surface, or leaves it
 };
 
 struct SteppingOptions {

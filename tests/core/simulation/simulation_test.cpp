@@ -133,6 +133,19 @@ TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
     EXPECT_NEAR(result.events[0].duration, 1.0, 1e-6);
 }
 
+TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
+    HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
+    ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.force_travel = 2.0;
+    // The force falls below the commanded one for a while after the travel has ended.
+    const ToolPath path({pressing_down(8, 20, 20.0, 20.0), pressing_down(10, 20, 0.1, 20.0),
+                         pressing_down(30, 20, 0.1, 20.0), pressing_down(32, 20, 20.0, 20.0)},
+                        {});
+    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    EXPECT_TRUE(result.events.empty());
+}
+
 TEST(Simulation, RefusesAPathThatNeverTouchesAndLeavesTheField) {
     HeightField field = testing::plate(20.0, 20.0, 0.5, 0.3);
     const std::vector<double> before = field.height;

@@ -15,6 +15,7 @@ from .icons import icon
 from .panel import edit
 
 PROGRAMS = "Robot programs (*.src *.csv)"
+EXPAND = 2  # toggleTreeItem's modes: 0 toggle, 1 collapse, 2 expand
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 
@@ -47,11 +48,18 @@ def report(error):
     box.show()
 
 
-class transaction:
-    """One undo step; aborted, and the error reported, if the block fails."""
+def expand(job):
+    """Opens the job in the tree."""
+    Gui.getDocument(job.Document.Name).toggleTreeItem(job, EXPAND)
 
-    def __init__(self, document, name):
-        self.document, self.name = document, name
+
+class transaction:
+    """One undo step; aborted, and the error reported, if the block fails. ``panel``: the step stays
+    open for the panel that follows, whose Cancel takes it back.
+    """
+
+    def __init__(self, document, name, panel=False):
+        self.document, self.name, self.panel = document, name, panel
         self.failed = False
 
     def __enter__(self):
@@ -60,6 +68,8 @@ class transaction:
 
     def __exit__(self, kind, error, trace):
         if kind is None:
+            if not self.panel:
+                self.document.commitTransaction()
             return False
         self.failed = True
         self.document.abortTransaction()
@@ -114,9 +124,10 @@ class NewJob(Command):
             raise InputError(
                 translate("BeltGrinding", "Select the faces to be ground, or the part, first.")
             )
-        with transaction(document, "New grinding job") as step:
+        with transaction(document, "New grinding job", panel=True) as step:
             job = api.make_job(links)
         if not step.failed:
+            expand(job)
             edit(job)
 
 
@@ -132,7 +143,7 @@ class _Child(Command):
         job = active_job()
         found = child(job, self.PROXY)
         if found is None:
-            with transaction(job.Document, self.TEXT) as step:
+            with transaction(job.Document, self.TEXT, panel=True) as step:
                 found = self.make(job)
             if step.failed:
                 return
@@ -177,7 +188,7 @@ class ImportProgram(Command):
 
 def import_program(job, path):
     """Imports a program's file into the job in a transaction and opens its panel."""
-    with transaction(job.Document, "Import robot program") as step:
+    with transaction(job.Document, "Import robot program", panel=True) as step:
         program = api.import_program(job, path)
     if not step.failed:
         edit(program)
@@ -208,7 +219,7 @@ class Deviation(Command):
         job = active_job()
         found = child(job, deviation.Deviation)
         if found is None:
-            with transaction(job.Document, "Deviation") as step:
+            with transaction(job.Document, "Deviation", panel=True) as step:
                 found = api.make_deviation(job)
                 for part in {obj for obj, _ in job.DesignFaces}:
                     part.ViewObject.Visibility = False
@@ -229,7 +240,7 @@ class ExampleBlade(Command):
         from ..examples import blade
 
         folder = Path(FreeCAD.getUserAppDataDir(), "BeltGrinding", "blade")
-        blade.make_document(folder)
+        expand(blade.make_document(folder))
         Gui.activeDocument().activeView().viewIsometric()
         Gui.SendMsgToActiveView("ViewFit")
 
@@ -247,7 +258,7 @@ class OpenJob(Command):
             return
         document = FreeCAD.ActiveDocument or FreeCAD.newDocument(Path(path).stem)
         with transaction(document, "Open job file"):
-            api.open_job(document, path)
+            expand(api.open_job(document, path))
             Gui.SendMsgToActiveView("ViewFit")
 
 

@@ -5,6 +5,8 @@ from .compat import QtGui, translate
 from .form import Form
 from .panel import Panel
 
+TABLE_HEIGHT = 300  # pixels: all rows
+
 
 class DeviationPanel(Panel):
     """Edits the job's tolerance; the colours and the figures follow."""
@@ -22,7 +24,8 @@ class DeviationPanel(Panel):
         self.table.setObjectName("statistics")
         self.table.horizontalHeader().hide()
         self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setStretchLastSection(True)
+        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
+        self.table.setMinimumHeight(TABLE_HEIGHT)
         self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
         self.body.addWidget(self.table, 1)
         self.finish()
@@ -63,6 +66,7 @@ class DeviationPanel(Panel):
             self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
             self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
         self.table.resizeColumnsToContents()
+        self.table.resizeRowsToContents()
 
     def check(self):
         job = self.obj.getParentGroup()

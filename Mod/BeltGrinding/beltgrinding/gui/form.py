@@ -12,7 +12,19 @@ QUANTITIES = {
     "App::PropertySpeed",
     "App::PropertyForce",
 }
+MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
 NOT_NEGATIVE = {"App::PropertyLength", "App::PropertySpeed", "App::PropertyForce"}
+
+
+def quantity_field(quantity):
+    """FreeCAD's entry for a number with its unit; its property rawValue is in FreeCAD's own unit."""
+    widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+    # FreeCAD's two decimals would round the value itself, not only its text.
+    quantity = Units.Quantity(quantity)
+    quantity.Format = {"Precision": 7, "NumberFormat": "g", "Denominator": 8}
+    widget.setProperty("value", quantity)
+    widget.setMinimumWidth(MINIMUM_WIDTH)
+    return widget
 
 
 class Form(QtGui.QGroupBox):
@@ -25,6 +37,7 @@ class Form(QtGui.QGroupBox):
         self.changed = lambda: None  # called after a property was set
         self.layout_ = QtGui.QFormLayout(self)
         self.layout_.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        self.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
 
     def add(self, name, text, choices=None, unit=""):
         """A row for the property ``name``. choices: texts of an enumeration's values, or the objects
@@ -66,10 +79,8 @@ class Form(QtGui.QGroupBox):
             self.changed()
 
     def _quantity(self, name, kind):
-        widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         value = getattr(self.obj, name)
-        widget.setProperty("unit", value.getUserPreferred()[2])
-        widget.setProperty("value", value)
+        widget = quantity_field(value)
         if kind in NOT_NEGATIVE:
             widget.setProperty("minimum", 0.0)
         Gui.ExpressionBinding(widget).bind(self.obj, name)
@@ -132,12 +143,14 @@ class FrameField(QtGui.QWidget):
         super().__init__()
         grid = QtGui.QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(4)
+        grid.setColumnStretch(1, 1)
+        grid.setColumnStretch(3, 1)
         angles = placement.Rotation.toEuler()
         self.fields = []
         for i, (name, value) in enumerate(zip("XYZABC", (*placement.Base, *angles))):
-            field = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
-            field.setProperty("unit", "mm" if i < 3 else "deg")
-            field.setProperty("rawValue", float(value))
+            field = quantity_field(Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
+            field.setMinimumWidth(MINIMUM_WIDTH // 2)
             field.setObjectName(name)
             field.setToolTip(name)
             field.connect(field, QtCore.SIGNAL("valueChanged(double)"), self._changed)

@@ -106,9 +106,9 @@ class JobPanel(Panel):
         area = sum(shape.Faces[number - 1].Area for number in numbers)
         count = area / self.obj.Spacing.Value**2
         self.tell(
-            translate("BeltGrinding", "{} faces, {:,.0f} mm², about {:,.0f} samples").format(
-                len(numbers), area, count
-            )
+            translate(
+                "BeltGrinding", "Faces: {}. Area: {:,.0f} mm². Samples: about {:,.0f}."
+            ).format(len(numbers), area, count)
         )
 
     def check(self):

@@ -14,6 +14,7 @@ from .icons import icon
 from .runner import Runner
 
 SHOWN_EVENTS = 1000
+TABLE_HEIGHT = 320  # pixels
 
 
 class SimulationPanel:
@@ -35,14 +36,15 @@ class SimulationPanel:
         body.addWidget(self.bar)
         row = QtGui.QHBoxLayout()
         self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
-        self.again = self._button("again", translate("BeltGrinding", "Simulate again"), self.start)
+        self.again = self._button("again", translate("BeltGrinding", "Again"), self.start)
         self.look = self._button(
-            "deviation", translate("BeltGrinding", "Show deviation"), self.deviation
+            "deviation", translate("BeltGrinding", "Deviation"), self.deviation
         )
         for button in (self.cancel, self.again, self.look):
             row.addWidget(button)
         body.addLayout(row)
         self.figures = QtGui.QLabel()
+        self.figures.setWordWrap(True)
         self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         body.addWidget(self.figures)
         self.table = QtGui.QTableWidget(0, 4)
@@ -56,9 +58,9 @@ class SimulationPanel:
             ]
         )
         self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setStretchLastSection(True)
+        self.table.horizontalHeader().setSectionResizeMode(3, QtGui.QHeaderView.Stretch)
         self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.table.setWordWrap(True)
+        self.table.setMinimumHeight(TABLE_HEIGHT)
         body.addWidget(self.table, 1)
         if run:
             self.start()
@@ -150,6 +152,7 @@ class SimulationPanel:
                 item.setToolTip(text)
                 self.table.setItem(i, k, item)
         self.table.resizeColumnsToContents()
+        self.table.resizeRowsToContents()
 
     def deviation(self):
         Gui.Control.closeDialog()

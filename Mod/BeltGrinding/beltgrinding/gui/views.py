@@ -1,6 +1,7 @@
 """View providers: the icon in the tree, and the panel that a double click opens."""
 
 import FreeCADGui as Gui
+from pivy import coin
 
 from ..objects.proxy import Stateless
 from .deviation_view import DeviationView
@@ -51,6 +52,20 @@ class View(Stateless):
         return True
 
 
+class Undrawn(View):
+    """An object that draws nothing. Without a display mode the tree would grey it out as hidden."""
+
+    def attach(self, view):
+        super().attach(view)
+        view.addDisplayMode(coin.SoGroup(), "Default")
+
+    def getDisplayModes(self, view):
+        return ["Default"]
+
+    def getDefaultDisplayMode(self):
+        return "Default"
+
+
 class JobView(View):
     ICON = "BeltGrinding_Job"
 
@@ -60,7 +75,7 @@ class JobView(View):
         return JobPanel(obj)
 
 
-class StockView(View):
+class StockView(Undrawn):
     ICON = "BeltGrinding_Stock"
 
     def panel(self, obj):
@@ -69,7 +84,7 @@ class StockView(View):
         return StockPanel(obj)
 
 
-class BeltMachineView(View):
+class BeltMachineView(Undrawn):
     ICON = "BeltGrinding_BeltMachine"
 
     def panel(self, obj):
@@ -87,7 +102,7 @@ class RobotPathView(View):
         return ProgramPanel(obj)
 
 
-class SimulationView(View):
+class SimulationView(Undrawn):
     """The icon says when the result is out of date; a double click shows the result."""
 
     ICON = "BeltGrinding_Simulate"

@@ -52,12 +52,12 @@ def make_stock(job, source=None, **properties):
         else:
             kind = "mesh" if hasattr(source, "Mesh") else "solid"
             properties = {"Kind": kind, "Source": source, **properties}
-    return _child(job, stocks.Stock, "Stock", properties)
+    return _child(job, stocks.Stock, "Stock", "Stock", properties)
 
 
 def make_belt_machine(job, **properties):
     """Adds the belt machine to a job, or changes the one it has."""
-    machine = _child(job, belt_machine.BeltMachine, "BeltMachine", properties)
+    machine = _child(job, belt_machine.BeltMachine, "BeltMachine", "Belt machine", properties)
     for path in children(job, robot_path.RobotPath):
         path.Machine = machine
     return machine
@@ -226,7 +226,7 @@ def is_job(obj):
     return type_of(obj) == job_object.BeltGrindingJob.TYPE
 
 
-def _child(job, proxy, name, properties):
+def _child(job, proxy, name, label, properties):
     """The job's child of a kind, made where it is missing, with properties set."""
     found = child(job, proxy)
     if found is not None:
@@ -235,6 +235,7 @@ def _child(job, proxy, name, properties):
     found = job.Document.addObject("App::FeaturePython", name)
     with _removed_on_error(found):
         proxy(found)
+        found.Label = label
         set_by_name(found, properties)
         job.addObject(found)
     return found

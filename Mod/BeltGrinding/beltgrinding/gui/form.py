@@ -51,7 +51,7 @@ class Form(QtGui.QGroupBox):
             widget = QtGui.QCheckBox()
             widget.setChecked(getattr(self.obj, name))
             widget.toggled.connect(lambda on: self._set(name, on))
-        elif kind == "App::PropertyLink":
+        elif kind == "App::PropertyLinkGlobal":
             widget = self._link(name, choices or [])
         elif kind == "App::PropertyFile":
             widget = self._file(name, choices or "")

@@ -16,6 +16,7 @@ from ..poses import listed_poses
 from ..result import Result, write_whole
 from . import belt_machine, deviation as deviations, job_object, robot_path, simulation as results
 from . import stock as stocks
+from .geometry import placement_from_job
 from .job_object import child, children
 from .properties import from_job, set_by_name
 from .proxy import type_of
@@ -48,7 +49,7 @@ def make_stock(job, source=None, **properties):
     """
     if source is not None:
         if isinstance(source, (str, Path)):
-            properties = {"Kind": "mesh", "File": str(source), **properties}
+            properties = {"Kind": "mesh", "File": str(Path(source).absolute()), **properties}
         else:
             kind = "mesh" if hasattr(source, "Mesh") else "solid"
             properties = {"Kind": kind, "Source": source, **properties}
@@ -189,7 +190,7 @@ def _open_job(doc, data, path, made):
     made.append(machine)
     from_job(machine, belt_machine.KEYS, data)
     for name, (key, _) in belt_machine.FRAMES.items():
-        setattr(machine, name, stocks.placement_from_job(data["cell"].get(key)))
+        setattr(machine, name, placement_from_job(data["cell"].get(key)))
     for i, program in enumerate(data["programs"]):
         if "file" in program:
             robot = import_program(job, program["file"])
@@ -211,7 +212,7 @@ def _open_stock(doc, stock, data, made):
     from_job(stock, stocks.KEYS, {"stock": data})
     if data["kind"] == "mesh":
         stock.File = data["file"]
-        stock.FilePlacement = stocks.placement_from_job(data.get("placement"))
+        stock.FilePlacement = placement_from_job(data.get("placement"))
     elif data["kind"] == "solid":
         solid = doc.addObject("Part::Feature", "StockSolid")
         made.append(solid)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from .geometry import placement_to_job
 from .properties import Key, add_keys, to_job
 from .proxy import Proxy
-from .stock import placement_to_job
 
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),

@@ -10,11 +10,12 @@ from .. import InputError, job as jobs
 from ..poses import list_poses
 from .belt_machine import BeltMachine
 from .deviation import Deviation
+from .geometry import faces_digest, placed_shape
 from .properties import Key, add_keys, to_job
 from .proxy import Proxy, type_of
 from .robot_path import RobotPath
 from .simulation import Simulation
-from .stock import Stock, placed_shape
+from .stock import Stock
 
 KEYS = (
     Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
@@ -39,7 +40,7 @@ class BeltGrindingJob(Proxy):
     def add_properties(self, obj):
         if "DesignFaces" not in obj.PropertiesList:
             obj.addProperty(
-                "App::PropertyLinkSubList", "DesignFaces", "Design", "the faces to be ground"
+                "App::PropertyLinkSubListGlobal", "DesignFaces", "Design", "the faces to be ground"
             )
         add_keys(obj, KEYS)
 
@@ -158,7 +159,8 @@ def fingerprint(job):
     data["stock"] = stock.Proxy.settings(stock)
     data["stock"]["digest"] = stock.Proxy.digest(stock)
     shape, data["design"]["faces"] = design(job)
-    data["design"]["digest"] = hashlib.sha256(shape.exportBrepToString().encode()).hexdigest()
+    chosen = set(data["design"]["faces"])
+    data["design"]["digest"] = faces_digest(f for i, f in enumerate(shape.Faces, 1) if i in chosen)
     data["programs"] = [
         {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
     ]

@@ -1,6 +1,7 @@
 """A robot's program in the document: poses that are the truth, and a Path that is drawn."""
 
 import hashlib
+import os
 
 import FreeCAD
 import numpy as np
@@ -149,7 +150,7 @@ def load_program(obj, path, **values):
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
     program, arrays = read_arrays(path)
     set_arrays(obj, arrays)
-    obj.Source = str(path)
+    obj.Source = os.path.abspath(path)
     obj.Language = program.language
     obj.Problems = [str(problem) for problem in program.problems]
     set_by_name(obj, values)

@@ -5,9 +5,8 @@ import os
 from functools import lru_cache
 from pathlib import Path
 
-import FreeCAD
-
 from .. import InputError
+from .geometry import faces_digest, placed_shape, placement_to_job
 from .properties import Key, add_keys, get_value
 from .proxy import Proxy
 
@@ -35,7 +34,7 @@ class Stock(Proxy):
     def add_properties(self, obj):
         add_keys(obj, KEYS)
         for kind, name, group, text in (
-            ("Link", "Source", "Stock", "the Part or Mesh object that is the stock"),
+            ("LinkGlobal", "Source", "Stock", "the Part or Mesh object that is the stock"),
             ("File", "File", "Mesh", "a mesh's file (STL, PLY, OBJ) in place of an object"),
             ("Placement", "FilePlacement", "Mesh", "where the file's mesh lies in the document"),
         ):
@@ -65,13 +64,13 @@ class Stock(Proxy):
             mesh = obj.Source.Mesh
             figures = (mesh.CountPoints, mesh.CountFacets, mesh.Area, mesh.Volume)
             return f"{figures} {placement}"
-        return hashlib.sha256(_brep(obj).encode()).hexdigest()
+        return faces_digest(_shape(obj).Faces)
 
     def to_job(self, obj, folder):
         """The part of a job under 'stock'; a mesh of the document is written to ``folder``."""
         job = self.settings(obj)
         if obj.Kind == "solid":
-            job["brep"] = _brep(obj)
+            job["brep"] = _shape(obj).exportBrepToString()
         elif obj.Kind == "mesh":
             if obj.Source is not None:
                 job["file"] = _write_mesh(obj, Path(folder))
@@ -93,22 +92,12 @@ def _file_digest(path, size, time):
     return hashed.hexdigest()
 
 
-def placed_shape(obj):
-    """A copy of a document object's shape in the document's coordinates. Raises InputError."""
-    shape = getattr(obj, "Shape", None)
-    if shape is None or shape.isNull():
-        raise InputError(f"{obj.Label} has no shape; choose a part with faces")
-    shape = shape.copy()
-    shape.Placement = obj.getGlobalPlacement()
-    return shape
-
-
-def _brep(obj):
+def _shape(obj):
     if obj.Source is None:
         raise InputError(f"{obj.Label}: choose the solid that is the stock")
     if not hasattr(obj.Source, "Shape"):
         raise InputError(f"{obj.Label}: {obj.Source.Label} is no solid; set Kind to mesh")
-    return placed_shape(obj.Source).exportBrepToString()
+    return placed_shape(obj.Source)
 
 
 def _write_mesh(obj, folder):
@@ -119,16 +108,3 @@ def _write_mesh(obj, folder):
     path = folder / "stock.ply"
     mesh.write(str(path))
     return str(path)
-
-
-def placement_to_job(placement):
-    """A job's frame from a FreeCAD.Placement."""
-    x, y, z, w = placement.Rotation.Q
-    return {"position_mm": list(placement.Base), "quaternion_wxyz": [w, x, y, z]}
-
-
-def placement_from_job(frame):
-    """FreeCAD.Placement of a job's frame (None: identity). Raises ValueError."""
-    from .. import frames
-
-    return FreeCAD.Placement(FreeCAD.Matrix(*frames.from_data(frame).ravel().tolist()))

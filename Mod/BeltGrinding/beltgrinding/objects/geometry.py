@@ -1,0 +1,63 @@
+"""Shapes and placements of document objects, as the simulator takes them."""
+
+import hashlib
+
+import FreeCAD
+import numpy as np
+
+from .. import InputError, frames
+
+GRID = 5  # points per direction and face, and per edge, that tell shapes apart
+RESOLUTION = 1e-6  # mm; below it, two shapes are the same
+# Off the numbers that people choose, which must not lie on the border between two roundings.
+OFFSET = 0.3183
+
+
+def placed_shape(obj):
+    """A copy of a document object's shape in the document's coordinates. Raises InputError."""
+    shape = getattr(obj, "Shape", None)
+    if shape is None or shape.isNull():
+        raise InputError(f"{obj.Label} has no shape; choose a part with faces")
+    shape = shape.copy()
+    shape.Placement = obj.getGlobalPlacement()
+    return shape
+
+
+def faces_digest(faces):
+    """Hash of what faces look like. The B-rep's text would not do: FreeCAD changes its flags and
+    locations on saving and drawing.
+    """
+    shares = np.linspace(0.0, 1.0, GRID).tolist()
+    numbers, orientations = [], []
+    for face in faces:
+        orientations.append(face.Orientation)
+        u0, u1, v0, v1 = face.ParameterRange
+        for u in shares:
+            for v in shares:
+                numbers.append(face.valueAt(u0 + u * (u1 - u0), v0 + v * (v1 - v0)))
+        numbers += _poles(face)
+        for edge in face.Edges:
+            if not edge.Degenerated:
+                first, last = edge.ParameterRange
+                numbers += [edge.valueAt(first + t * (last - first)) for t in shares]
+    rounded = np.floor(np.array(numbers, dtype=float).reshape(-1, 3) / RESOLUTION + OFFSET)
+    return hashlib.sha256(rounded.tobytes() + "".join(orientations).encode()).hexdigest()
+
+
+def _poles(face):
+    try:
+        surface = face.Surface
+    except TypeError:  # FreeCAD has no class for it, an offset surface for one
+        return []
+    return [pole for row in surface.getPoles() for pole in row] if hasattr(surface, "getPoles") else []
+
+
+def placement_to_job(placement):
+    """A job's frame from a FreeCAD.Placement."""
+    x, y, z, w = placement.Rotation.Q
+    return {"position_mm": list(placement.Base), "quaternion_wxyz": [w, x, y, z]}
+
+
+def placement_from_job(frame):
+    """FreeCAD.Placement of a job's frame (None: identity). Raises ValueError."""
+    return FreeCAD.Placement(FreeCAD.Matrix(*frames.from_data(frame).ravel().tolist()))

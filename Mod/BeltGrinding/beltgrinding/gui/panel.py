@@ -61,8 +61,8 @@ class Panel:
 
     def reject(self):
         self.close()
+        self.document.abortTransaction()  # before leaving: resetEdit commits what is open
         _leave(self.document)
-        self.document.abortTransaction()
         self.document.recompute()
         return True
 

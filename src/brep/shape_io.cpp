@@ -62,8 +62,15 @@ TopoDS_Shape read_brep(const std::string& text) {
     TopoDS_Shape shape;
     if (text.find("CASCADE Topology V") == std::string::npos) return shape;
     std::istringstream stream(text);
+    // Where the text ends before its own counts do, OpenCASCADE would read on for hours or for
+    // ever.
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
     BRep_Builder builder;
-    BRepTools::Read(shape, stream, builder);
+    try {
+        BRepTools::Read(shape, stream, builder);
+    } catch (const std::ios_base::failure&) {
+        return {};
+    }
     return shape;
 }
 

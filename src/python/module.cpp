@@ -16,7 +16,18 @@ Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name) {
 }
 
 void bind_base(py::module_& m) {
-    py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
+    static py::exception<InputError> input_error(m, "InputError", PyExc_ValueError);
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const InputError& error) {
+            // A path, or a word of a broken file, need not be UTF-8.
+            const std::string_view text = error.what();
+            const auto message = py::reinterpret_steal<py::object>(
+                PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
+            PyErr_SetObject(input_error.ptr(), message.ptr());
+        }
+    });
     py::register_exception<Cancelled>(m, "Cancelled", PyExc_Exception);
     py::class_<RunContext>(m, "RunContext", "Progress and cancellation of one long call.")
         .def(py::init<>())

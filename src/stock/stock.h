@@ -34,8 +34,8 @@ StockReport apply_allowance(HeightField& field, double allowance);
 StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const StockOptions& options,
                        const RunContext& context = {});
 
-/// Reads STL, PLY, OBJ, OFF or 3MF by assimp, scaled by `unit_mm` (1: millimetres, 1000: metres)
-/// and moved by `work_from_mesh`. Throws InputError naming the file.
+/// Reads STL, OBJ, OFF or 3MF by assimp, PLY by `read_ply`, scaled by `unit_mm` (1: millimetres,
+/// 1000: metres) and moved by `work_from_mesh`. Throws InputError naming the file.
 TriangleMesh read_mesh(const std::string& path, double unit_mm = 1.0,
                        const Frame& work_from_mesh = Frame::Identity());
 

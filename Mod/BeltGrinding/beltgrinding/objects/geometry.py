@@ -49,7 +49,9 @@ def _poles(face):
         surface = face.Surface
     except TypeError:  # FreeCAD has no class for it, an offset surface for one
         return []
-    return [pole for row in surface.getPoles() for pole in row] if hasattr(surface, "getPoles") else []
+    return (
+        [pole for row in surface.getPoles() for pole in row] if hasattr(surface, "getPoles") else []
+    )
 
 
 def placement_to_job(placement):

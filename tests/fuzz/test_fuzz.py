@@ -1,0 +1,207 @@
+"""Whatever the bytes, a reader gives a result or one clear error; it never crashes."""
+
+import copy
+import json
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beltgrinding
+from beltgrinding import InputError, core
+from beltgrinding import job as jobs
+from beltgrinding.programs import ProgramError, read_program
+
+ROUNDS = 300
+HERE = Path(__file__).resolve().parent
+PATHS = (HERE, HERE.parents[1] / "Mod" / "BeltGrinding")
+KRL = b"""&ACCESS RVP
+DEF grind( )
+DECL E6POS XHOME={X 10,Y 20,Z 30,A 1,B 2,C 3,S 2,T 35}
+DECL FRAME OFFSET={X 1,Y 0,Z 0,A 0,B 0,C 0}
+$BASE=BASE_DATA[1]:OFFSET
+$VEL.CP=0.05 ; m/s
+PTP XHOME
+LIN {X 100,Y 0,Z 50,A 0,B 90,C 0} C_DIS
+CIRC {X 110,Y 10,Z 50},{X 120,Y 0,Z 50}
+FOR I=1 TO 3
+LIN_REL {X 1}
+ENDFOR
+END
+"""
+CSV = b"""# a program
+x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s,force_N,motion
+0,0,0,1,0,0,0,50,30,LIN
+10,0,0,0.7071068,0.7071068,0,0,50,,PTP
+"""
+
+
+def mutations(data, seed):
+    """Copies of ``data`` with bytes changed, cut out, doubled and cut off."""
+    dice = random.Random(seed)
+    for _ in range(ROUNDS):
+        text = bytearray(data)
+        for _ in range(dice.randint(1, 8)):
+            at = dice.randrange(len(text) + 1)
+            kind = dice.randrange(4)
+            if kind == 0 and at < len(text):
+                text[at] = dice.randrange(256)
+            elif kind == 1:
+                del text[at : at + dice.randint(1, 20)]
+            elif kind == 2:
+                text[at:at] = text[at : at + dice.randint(1, 40)]
+            else:
+                text[at:at] = dice.choice([b"\x00", b"1e999", b"nan", b"(" * 50, b"\n", b"\xff"])
+        yield bytes(text)
+
+
+@pytest.mark.parametrize("name, data", [("program.src", KRL), ("program.csv", CSV)])
+def test_programs(tmp_path, name, data):
+    path = tmp_path / name
+    path.write_bytes(data)
+    assert len(read_program(path).motions) >= 2
+    read = 0
+    for text in mutations(data, 1):
+        path.write_bytes(text)
+        try:
+            program = read_program(path)
+            arrays = program.path_arrays(100.0)
+            assert np.isfinite(arrays["frames"]).all()
+            read += 1
+        except ProgramError as error:
+            assert name in str(error)
+    assert 0 < read < ROUNDS
+
+
+def plate_brep():
+    corners = np.array([[0, 0, 0], [60, 0, 0], [60, 40, 0]], dtype=np.float32)
+    mesh = core.TriangleMesh(corners, np.array([[0, 1, 2]], np.uint32))
+    return core.shape_from_mesh(mesh).write_brep()
+
+
+JOB = {
+    "design": {"brep": "", "faces": [1]},
+    "sampling": {"spacing_mm": 1.0},
+    "stock": {"kind": "allowance", "allowance_mm": 0.2},
+    "belt_machine": {"wheel": {"radius_mm": 60, "width_mm": 15}, "force_N": 30},
+    "programs": [
+        {"poses": [{"x_mm": x, "y_mm": 9, "z_mm": 0.2, "qx": 1, "qw": 0} for x in (9, 30)]}
+    ],
+    "inspection": {"tolerance_mm": [-0.05, 0.05]},
+}
+VALUES = (
+    None,
+    "",
+    "x",
+    -1,
+    0,
+    1e308,
+    -1e308,
+    float("nan"),
+    float("inf"),
+    [],
+    {},
+    [[]],
+    True,
+    1e-300,
+)
+
+
+def places(node, way=()):
+    items = node.items() if isinstance(node, dict) else enumerate(node)
+    for key, value in items:
+        yield (*way, key)
+        if isinstance(value, (dict, list)):
+            yield from places(value, (*way, key))
+
+
+def test_jobs(tmp_path):
+    job = copy.deepcopy(JOB)
+    for pose in job["programs"][0]["poses"]:
+        pose.update(qy=0, qz=0)
+    job["design"]["brep"] = plate_brep()
+    beltgrinding.run(job)
+    refused = 0
+    for place in places(job):
+        for value in VALUES:
+            changed = copy.deepcopy(job)
+            node = changed
+            for key in place[:-1]:
+                node = node[key]
+            node[place[-1]] = value
+            try:
+                beltgrinding.run(changed)
+            except InputError as error:
+                refused += 1
+                assert "\n" not in str(error), (place, value)
+    assert refused > 100
+
+
+def test_job_files(tmp_path):
+    path = tmp_path / "job.json"
+    data = json.dumps({**JOB, "design": {"file": "absent.step"}}).encode()
+    for text in mutations(data, 2):
+        path.write_bytes(text)
+        with pytest.raises(InputError, match="job.json|absent"):
+            jobs.run(jobs.load(path))
+
+
+# These readers are libraries' (OpenCASCADE, HDF5, assimp): a crash would take the tests with it, so
+# they run in a process of their own.
+BINARY = """
+import sys
+from pathlib import Path
+sys.path[:0] = {paths!r}
+from beltgrinding import InputError, core
+import test_fuzz
+path = Path({path!r})
+data = path.read_bytes()
+read = 0
+for text in test_fuzz.mutations(data, 3):
+    path.write_bytes(text)
+    try:
+        {call}
+        read += 1
+    except InputError as error:
+        assert path.name in str(error), repr(error)
+print("read", read)
+"""
+READERS = {
+    "field.h5": "core.HeightField.from_hdf5(str(path))",
+    "shape.brep": "core.Shape.read(str(path)).extents()",
+    "mesh.stl": "core.read_mesh(str(path))",
+    "mesh.ply": "core.read_mesh(str(path))",
+    "mesh.obj": "core.read_mesh(str(path))",
+}
+
+
+def write_sample(path):
+    shape = core.Shape.from_brep(plate_brep(), "plate")
+    field, _ = core.sample_faces(shape, [0], 10.0)
+    if path.suffix == ".h5":
+        field.write_hdf5(str(path), "{}")
+    elif path.suffix == ".brep":
+        path.write_text(plate_brep())
+    elif path.suffix == ".ply":
+        path.write_bytes(core.mesh_ply(field, True))
+    elif path.suffix == ".stl":
+        facet = "facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n"
+        corners = "vertex 0 0 0\nvertex 60 0 0\nvertex 60 40 0\n"
+        path.write_text("solid x\n" + facet.format(corners) * 3 + "endsolid x\n")
+    else:
+        path.write_text("v 0 0 0\nv 60 0 0\nv 60 40 0\nv 0 40 0\nf 1 2 3\nf 1 3 4\n")
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_libraries_readers(tmp_path, name):
+    path = tmp_path / name
+    write_sample(path)
+    script = tmp_path / "read.py"
+    script.write_text(
+        BINARY.format(paths=[str(p) for p in PATHS], path=str(path), call=READERS[name])
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
+    assert done.returncode == 0, (done.returncode, done.stdout[-500:], done.stderr[-2000:])

@@ -12,9 +12,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <sstream>
 
 #include "base/error.h"
+#include "brep/crash_guard.h"
 #include "brep/shape.h"
 #include "brep/shape_impl.h"
 
@@ -45,16 +47,35 @@ class QuietMessenger {
 
 template <class Reader>
 TopoDS_Shape read_exchange(const std::string& path, const std::string& format) {
-    Reader reader;
-    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-        throw InputError(path + ": not a readable " + format +
-                         " file; export it again or use another format");
-    reader.TransferRoots();
-    if (reader.NbShapes() == 0)
+    static bool unusable = false;  // guarded by reader_mutex()
+    if (unusable) {
+        throw InputError(path + ": an earlier, damaged " + format +
+                         " file has broken OpenCASCADE's reader; start the program again");
+    }
+    auto reader = std::make_unique<Reader>();
+    bool readable = false;
+    TopoDS_Shape shape;
+    const bool survived = survives([&] {
+        readable = reader->ReadFile(path.c_str()) == IFSelect_RetDone;
+        if (!readable) return;
+        reader->TransferRoots();
+        if (reader->NbShapes() > 0) shape = reader->OneShape();
+    });
+    if (!survived) {
+        unusable = true;
+        static_cast<void>(reader.release());  // its destructor could fail as well
+    }
+    if (!survived || !readable) {
+        throw InputError(path + ": not a readable " + format + " file" +
+                         (survived ? "" : ", it is damaged") +
+                         "; export it again or use another format");
+    }
+    if (shape.IsNull()) {
         throw InputError(path + ": the " + format +
                          " file gives no shape (null shape): it holds no solid, shell or face that "
                          "can be read; export the part again");
-    return reader.OneShape();
+    }
+    return shape;
 }
 
 /// Null if the text is no BREP. OpenCASCADE itself complains of that on the standard output.

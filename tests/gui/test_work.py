@@ -2,104 +2,18 @@
 
 from support.picture import coloured
 
-# Helpers that run inside FreeCAD.
-HANDS = """
-import os, time
-from pathlib import Path
-import FreeCAD, Part
-import FreeCADGui as Gui
-from PySide import QtCore, QtGui
-
-window = Gui.getMainWindow()
-
-def settle():
-    for _ in range(5):
-        Gui.updateGui()
-        QtGui.QApplication.processEvents()
-
-def wait(condition, seconds=60):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        QtGui.QApplication.processEvents()
-        time.sleep(0.01)
-    settle()
-
-def menu(text):
-    settle()
-    bar = next(a for a in window.menuBar().actions() if a.text().replace("&", "") == "Belt grinding")
-    action = next(a for a in bar.menu().actions() if a.text().replace("&", "") == text)
-    wait(action.isEnabled, 5)  # FreeCAD looks a few times a second
-    assert not action.icon().isNull() and action.toolTip()
-    action.trigger()
-    settle()
-
-def field(name, kind=QtGui.QWidget):
-    found = [w for w in window.findChildren(kind, name) if w.isVisible()]
-    assert len(found) == 1, (name, found)
-    return found[0]
-
-def type_in(name, text):
-    line = field(name)
-    if not isinstance(line, QtGui.QLineEdit):
-        line = line.findChild(QtGui.QLineEdit)
-    line.setFocus()
-    line.selectAll()
-    line.insert(text)
-    line.editingFinished.emit()
-    settle()
-
-def press(text):
-    for button in window.findChildren(QtGui.QPushButton):
-        if button.isVisible() and button.text().replace("&", "") == text:
-            button.click()
-            return settle()
-    raise AssertionError(text)
-
-def choose(path):
-    QtGui.QFileDialog.getOpenFileName = staticmethod(lambda *a, **k: (str(path), ""))
-
-ROWS = [f"{x},20,20.2,0,1,0,0,30" for x in range(10, 51, 5)]
-Path("pass.csv").write_text("\\n".join(["x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s", *ROWS]) + "\\n")
-Gui.activateWorkbench("BeltGrindingWorkbench")
-window.showMaximized()
-settle()
-"""
-
 PREPARE = """
-doc = FreeCAD.newDocument("work")
-doc.UndoMode = 1
-part = doc.addObject("Part::Feature", "Block")
-part.Shape = Part.makeBox(60, 40, 20)
-doc.recompute()
-Gui.Selection.clearSelection()
-Gui.Selection.addSelection(doc.Name, "Block", "Face6")
-menu("New job")
-type_in("Spacing", "0.6 mm")
-press("OK")
-job = doc.BeltGrindingJob
-assert job.Spacing.Value == 0.6 and job.DesignFaces == [(part, ("Face6",))]
-menu("Stock")
-type_in("Allowance", "0.2 mm")
-press("OK")
-menu("Belt machine")
-type_in("WheelRadius", "60 mm")
-type_in("WheelWidth", "15 mm")
-type_in("Force", "30 N")
-press("OK")
-machine = doc.BeltMachine
-assert machine.WheelRadius.Value == 60 and machine.Force.getValueAs("N") == 30
-choose("pass.csv")
-menu("Import robot program...")
-press("OK")
-assert doc.RobotPath.PoseCount == 9
+import time
+from pathlib import Path
+from support.hands import *
+job = prepare()
+doc, part, machine = job.Document, job.Document.Block, job.Document.BeltMachine
 """
 
 
 def test_from_a_selected_face_to_the_coloured_deviation(freecad):
     freecad.run(
-        HANDS
-        + PREPARE
+        PREPARE
         + """
 menu("Simulate")
 wait(lambda: doc.getObject("Simulation") is not None)
@@ -127,8 +41,7 @@ view.saveImage("work.png", 800, 600, "White")
 
 def test_cancel_and_undo_take_back(freecad):
     freecad.run(
-        HANDS
-        + PREPARE
+        PREPARE
         + """
 names = [o.Name for o in doc.Objects]
 steps = doc.UndoCount
@@ -162,8 +75,7 @@ assert [o.Name for o in doc.Objects] == names
 
 def test_a_run_can_be_cancelled_and_the_window_stays_usable(freecad):
     freecad.run(
-        HANDS
-        + PREPARE
+        PREPARE
         + """
 job.Spacing = 0.05
 doc.recompute()
@@ -190,8 +102,7 @@ assert "Out of date" in field("state").text()
 
 def test_mistakes_are_said_where_they_are_made(freecad):
     freecad.run(
-        HANDS
-        + PREPARE
+        PREPARE
         + """
 def message():
     boxes = [b for b in window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
@@ -232,8 +143,7 @@ assert "no robot program" in field("state").text()
 
 def test_a_double_click_opens_the_panel(freecad):
     freecad.run(
-        HANDS
-        + PREPARE
+        PREPARE
         + """
 for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath"):
     view = doc.getObject(name).ViewObject

@@ -32,7 +32,8 @@ class FreeCad:
                 pytest.skip(f"{tool} is not installed")
         self.runs += 1
         script = self.folder / f"run{self.runs}.py"
-        script.write_text(textwrap.dedent(body))
+        path = f"import sys\nsys.path.insert(0, {str(ROOT / 'tests')!r})\n"
+        script.write_text(path + textwrap.dedent(body))
         command = [program, str(ROOT / "tools" / "in_freecad.py")]
         if window:
             command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", *command]

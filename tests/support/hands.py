@@ -1,0 +1,123 @@
+"""Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
+
+import subprocess
+import time
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui as Gui
+import Part
+from PySide import QtCore, QtGui
+
+window = Gui.getMainWindow()
+
+
+def settle():
+    """Lets the window do what it has to do."""
+    for _ in range(5):
+        Gui.updateGui()
+        QtGui.QApplication.processEvents()
+
+
+def wait(condition, seconds=60):
+    """Waits until ``condition()``."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        QtGui.QApplication.processEvents()
+        time.sleep(0.01)
+    settle()
+
+
+def menu(text):
+    """Chooses an entry of the workbench's menu."""
+    settle()
+    bar = next(
+        a for a in window.menuBar().actions() if a.text().replace("&", "") == "Belt grinding"
+    )
+    action = next(a for a in bar.menu().actions() if a.text().replace("&", "") == text)
+    wait(action.isEnabled, 5)  # FreeCAD looks a few times a second
+    assert not action.icon().isNull() and action.toolTip()
+    action.trigger()
+    settle()
+
+
+def field(name, kind=QtGui.QWidget):
+    """The visible widget of this object name."""
+    found = [w for w in window.findChildren(kind, name) if w.isVisible()]
+    assert len(found) == 1, (name, found)
+    return found[0]
+
+
+def type_in(name, text):
+    """Types a value into a field, as a person does."""
+    line = field(name)
+    if not isinstance(line, QtGui.QLineEdit):
+        line = line.findChild(QtGui.QLineEdit)
+    line.setFocus()
+    line.selectAll()
+    line.insert(text)
+    line.editingFinished.emit()
+    settle()
+
+
+def press(text):
+    """Presses the visible button with this text."""
+    for button in window.findChildren(QtGui.QPushButton):
+        if button.isVisible() and button.text().replace("&", "") == text:
+            button.click()
+            return settle()
+    raise AssertionError(text)
+
+
+def choose(path):
+    """Makes the next file dialog answer with ``path``."""
+    QtGui.QFileDialog.getOpenFileName = staticmethod(lambda *a, **k: (str(path), ""))
+
+
+def screenshot(path):
+    """The whole screen as a PNG."""
+    settle()
+    subprocess.run(["import", "-window", "root", "-strip", str(path)], check=True)
+
+
+def start():
+    """Opens the workbench and writes pass.csv, one pass over the block."""
+    rows = [f"{x},20,20.2,0,1,0,0,30" for x in range(10, 51, 5)]
+    header = "x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s"
+    Path("pass.csv").write_text("\n".join([header, *rows]) + "\n")
+    Gui.activateWorkbench("BeltGrindingWorkbench")
+    window.showMaximized()
+    settle()
+
+
+def prepare():
+    """From a block to a job that can be simulated, through menus and panels; returns the job."""
+    start()
+    doc = FreeCAD.newDocument("work")
+    doc.UndoMode = 1
+    part = doc.addObject("Part::Feature", "Block")
+    part.Shape = Part.makeBox(60, 40, 20)
+    doc.recompute()
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(doc.Name, "Block", "Face6")
+    menu("New job")
+    type_in("Spacing", "0.6 mm")
+    press("OK")
+    job = doc.BeltGrindingJob
+    assert job.Spacing.Value == 0.6 and job.DesignFaces == [(part, ("Face6",))]
+    menu("Stock")
+    type_in("Allowance", "0.2 mm")
+    press("OK")
+    menu("Belt machine")
+    type_in("WheelRadius", "60 mm")
+    type_in("WheelWidth", "15 mm")
+    type_in("Force", "30 N")
+    press("OK")
+    machine = doc.BeltMachine
+    assert machine.WheelRadius.Value == 60 and machine.Force.getValueAs("N") == 30
+    choose("pass.csv")
+    menu("Import robot program...")
+    press("OK")
+    assert doc.RobotPath.PoseCount == 9
+    return job

@@ -8,6 +8,8 @@ import json
 import sys
 import threading
 
+CANCEL_TIME = 5.0  # s
+
 
 def _parser():
     parser = argparse.ArgumentParser(
@@ -43,7 +45,7 @@ def _run(arguments):
             outcome["error"] = error
 
     # In a thread of its own, so that Ctrl-C reaches the main thread while C++ computes.
-    worker = threading.Thread(target=work)
+    worker = threading.Thread(target=work, daemon=True)
     worker.start()
     if sys.stderr.isatty() and not arguments.quiet:
         threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
@@ -52,7 +54,7 @@ def _run(arguments):
             worker.join(0.1)
     except KeyboardInterrupt:
         context.cancel()
-        worker.join()
+        worker.join(CANCEL_TIME)  # a library that reads a damaged file may never come back
         raise
     finally:
         done.set()

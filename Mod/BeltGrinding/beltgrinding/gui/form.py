@@ -97,6 +97,7 @@ class Form(QtGui.QGroupBox):
         validator = QtGui.QDoubleValidator(0.0, 1e12, 12, widget)
         validator.setLocale(QtCore.QLocale.c())
         widget.setValidator(validator)
+        widget.setCursorPosition(0)  # else a narrow panel shows the last digits only
 
         def changed(text):
             if widget.hasAcceptableInput():

@@ -48,7 +48,7 @@ class JobPanel(Panel):
         layout = QtGui.QVBoxLayout(box)
         self.list = QtGui.QListWidget()
         self.list.setObjectName("faces")
-        self.list.setMaximumHeight(110)
+        self.list.setMaximumHeight(80)
         self.list.setSelectionMode(QtGui.QAbstractItemView.ExtendedSelection)
         layout.addWidget(self.list)
         row = QtGui.QHBoxLayout()

@@ -62,7 +62,7 @@ def _panel(out_of_date):
     material.transparency = 0.25
     group.addChild(material)
     low, high = (-0.16 if out_of_date else -0.06), HEIGHT + 0.13
-    right = LEFT + (0.62 if out_of_date else 0.33)
+    right = LEFT + (0.62 if out_of_date else 0.3)
     points = coin.SoCoordinate3()
     corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
     points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])

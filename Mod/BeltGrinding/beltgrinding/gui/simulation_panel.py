@@ -61,6 +61,7 @@ class SimulationPanel:
         self.table.horizontalHeader().setSectionResizeMode(3, QtGui.QHeaderView.Stretch)
         self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
         self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.table.hide()
         body.addWidget(self.table, 1)
         if run:
             self.start()
@@ -135,9 +136,11 @@ class SimulationPanel:
                 simulation.MissedRays,
                 simulation.DefectiveSamples,
             )
+            + ("" if simulation.Events else "\n" + translate("BeltGrinding", "No events."))
             + "".join(f"\n⚠ {warning}" for warning in simulation.Warnings[:10])
         )
         events = simulation.Proxy.events(simulation)[:SHOWN_EVENTS]
+        self.table.setVisible(bool(events))
         self.table.setRowCount(len(events))
         for i, event in enumerate(events):
             kind = event["kind"].replace("_", " ")

@@ -1,0 +1,48 @@
+"""Run inside FreeCAD with a window: takes the pictures of docs/workbench.md anew.
+
+    source tools/setup.sh && in_freecad freecad "$root/tools/manual_pictures.py"
+"""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests"))
+IMAGES = ROOT / "docs" / "images"
+
+import FreeCAD  # noqa: E402
+import FreeCADGui as Gui  # noqa: E402
+from support import hands  # noqa: E402
+
+
+def take(name):
+    hands.screenshot(IMAGES / f"{name}.png")
+
+
+def main():
+    sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+    from beltgrinding.gui.camera import look_at
+
+    Gui.activateWorkbench("BeltGrindingWorkbench")
+    hands.window.showMaximized()
+    hands.menu("Example: compressor blade")
+    doc = FreeCAD.ActiveDocument
+    Gui.ActiveDocument.ActiveView.setAnimationEnabled(False)
+    look_at(FreeCAD.Vector(0.35, -0.9, 0.3))
+    view = doc.BeltGrindingJob.ViewObject
+    view.Proxy.doubleClicked(view)
+    Gui.Selection.addSelection(doc.Name, "Design", f"{doc.BeltGrindingJob.DesignFaces[0][1][0]}")
+    take("workbench-job")
+    hands.press("OK")
+    Gui.Selection.clearSelection()
+    hands.menu("Belt machine")
+    take("workbench-belt-machine")
+    hands.press("OK")
+    hands.menu("Simulate")
+    hands.wait(lambda: doc.getObject("Simulation") is not None)
+    take("workbench-simulation")
+    hands.press("Deviation")
+    take("workbench-deviation")
+
+
+main()

@@ -128,6 +128,15 @@ def test_bad_jobs_name_the_culprit(change, culprit):
     assert culprit in bad(change)
 
 
+@pytest.mark.parametrize("scale, words", [(1000.0, "more than 10 m"), (0.001, "less than 0.1 mm")])
+def test_a_part_in_the_wrong_unit_is_warned_of(scale, words):
+    job = plate_job()
+    job["design"]["brep"] = plate(60.0 * scale, 40.0 * scale).write_brep()
+    job["sampling"]["spacing_mm"] *= scale
+    with pytest.raises(InputError, match=f"never touches.*Note: .*{words}"):
+        beltgrinding.run(job)
+
+
 def cli(*arguments, cwd):
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "Mod" / "BeltGrinding")}
     return subprocess.run(

@@ -18,6 +18,7 @@ from .result import Result, colour_scale
 
 __all__ = ["Result", "colour_scale", "load", "run", "schema", "tool_path", "validate"]
 
+NOTES = 3  # warnings shown behind an error
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
@@ -147,9 +148,18 @@ class _Phases:
 
 def run(job, context=None):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel."""
-    context = context or core.RunContext()
-    phases = _Phases()
     warnings = []
+    try:
+        return _run(job, context or core.RunContext(), warnings)
+    except InputError as error:
+        if not warnings:
+            raise
+        notes = "; ".join(warnings[:NOTES])  # they may well be the reason
+        raise InputError(f"{error}. Note: {notes}") from None
+
+
+def _run(job, context, warnings):
+    phases = _Phases()
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     phases.end("programs")
     shape = read_design(job["design"])

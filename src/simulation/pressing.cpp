@@ -101,13 +101,13 @@ Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tre
     for (int i = 0; i < kMaxPlacements; ++i) {
         localise(field, tree, kMargin, result);
         map_gap(field, kMargin, result);
-        if (map_.empty()) {
+        if (!map_.empty()) solve(true, force, result);
+        if (map_.empty() || solution_.force <= 0.0) {
             // The surface fell away from where it was at the last pose.
             if (searched || !find_touch(field, tree, result)) return nothing();
             searched = true;
             continue;
         }
-        solve(true, force, result);
         const double wanted = placed_ + solution_.approach;
         if (std::abs(wanted) > options_.force_travel) {
             const double stop = std::copysign(options_.force_travel, wanted);

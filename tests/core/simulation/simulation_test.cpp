@@ -146,6 +146,19 @@ TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
     EXPECT_TRUE(result.events.empty());
 }
 
+TEST(Simulation, RunningOffTheEdgeIsLossOfForceAndNotOfConvergence) {
+    HeightField field = testing::plate(40.0, 40.0, 0.5, 0.1);
+    ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.force_travel = 0.5;
+    const ToolPath path({pressing_down(20, 20, 0.1, 20.0), pressing_down(70, 31, 0.1, 20.0),
+                         pressing_down(20, 20, 0.1, 20.0)},
+                        {});
+    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    ASSERT_FALSE(result.events.empty());
+    for (const Event& event : result.events) EXPECT_EQ(event.kind, "force_not_reached");
+}
+
 TEST(Simulation, RefusesAPathThatNeverTouchesAndLeavesTheField) {
     HeightField field = testing::plate(20.0, 20.0, 0.5, 0.3);
     const std::vector<double> before = field.height;

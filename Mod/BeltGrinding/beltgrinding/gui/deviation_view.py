@@ -1,19 +1,19 @@
 """View provider of the deviation: vertex colours that survive reopening, legend, rest of the part."""
 
-import FreeCADGui as Gui
 from pivy import coin
 
-from ..objects.proxy import Stateless
 from . import legend
-from .icons import icon
 from .part_context import rest_of_part
+from .view import View
 
 
-class DeviationView(Stateless):
-    """Proxy of the view provider."""
+class DeviationView(View):
+    """Proxy of the Mesh view provider."""
+
+    ICON = "BeltGrinding_Deviation"
 
     def __init__(self, view):
-        view.Proxy = self
+        super().__init__(view)
         view.addProperty(
             "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
         )
@@ -21,7 +21,7 @@ class DeviationView(Stateless):
         view.Coloring = True
 
     def attach(self, view):
-        self.view = view
+        super().attach(view)
         self.legend = coin.SoSwitch()
         self.rest = coin.SoSwitch()
         view.RootNode.insertChild(
@@ -30,28 +30,10 @@ class DeviationView(Stateless):
         view.RootNode.addChild(self.legend)
         self.update_legend()
 
-    def getIcon(self):
-        return icon("BeltGrinding_Deviation")
-
-    def doubleClicked(self, view):
-        from .panel import edit
-
-        edit(view.Object)
-        return True
-
-    def setEdit(self, view, mode=0):
-        if mode != 0:
-            return None
+    def panel(self, obj):
         from .deviation_panel import DeviationPanel
 
-        Gui.Control.showDialog(DeviationPanel(view.Object))
-        return True
-
-    def unsetEdit(self, view, mode=0):
-        if mode != 0:
-            return None
-        Gui.Control.closeDialog()
-        return True
+        return DeviationPanel(obj)
 
     def finishRestoring(self):
         self.colour()

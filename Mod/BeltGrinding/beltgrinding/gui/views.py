@@ -1,12 +1,10 @@
-"""View providers: the icon in the tree, and the panel that a double click opens."""
+"""The view providers, by the names under which objects ask for them."""
 
-import FreeCADGui as Gui
 from pivy import coin
 
-from ..objects.proxy import Stateless
 from .deviation_view import DeviationView
 from .icons import icon
-from .panel import edit
+from .view import View
 
 __all__ = [
     "BeltMachineView",
@@ -16,40 +14,6 @@ __all__ = [
     "SimulationView",
     "StockView",
 ]
-
-
-class View(Stateless):
-    """Base. ``ICON`` names the icon; ``panel`` makes the task panel."""
-
-    ICON = ""
-
-    def __init__(self, view):
-        view.Proxy = self
-
-    def attach(self, view):
-        self.view = view
-
-    def getIcon(self):
-        return icon(self.ICON)
-
-    def panel(self, obj):
-        raise NotImplementedError
-
-    def doubleClicked(self, view):
-        edit(view.Object)
-        return True
-
-    def setEdit(self, view, mode=0):
-        if mode != 0:
-            return None
-        Gui.Control.showDialog(self.panel(view.Object))
-        return True
-
-    def unsetEdit(self, view, mode=0):
-        if mode != 0:
-            return None
-        Gui.Control.closeDialog()
-        return True
 
 
 class Undrawn(View):

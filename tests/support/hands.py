@@ -36,7 +36,7 @@ def menu(text):
         a for a in window.menuBar().actions() if a.text().replace("&", "") == "Belt grinding"
     )
     action = next(a for a in bar.menu().actions() if a.text().replace("&", "") == text)
-    wait(action.isEnabled, 5)  # FreeCAD looks a few times a second
+    wait(action.isEnabled, 20)  # FreeCAD looks a few times a second
     assert not action.icon().isNull() and action.toolTip()
     action.trigger()
     settle()

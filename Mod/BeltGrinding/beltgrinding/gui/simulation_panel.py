@@ -63,6 +63,7 @@ class SimulationPanel:
         self.table.setMinimumHeight(TABLE_HEIGHT)
         self.table.hide()
         body.addWidget(self.table, 1)
+        body.addStretch()
         if run:
             self.start()
         else:

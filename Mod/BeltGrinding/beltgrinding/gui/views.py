@@ -58,7 +58,22 @@ class BeltMachineView(Undrawn):
 
 
 class RobotPathView(View):
+    """The line begins at the first pose; FreeCAD's own begins at the document's origin."""
+
     ICON = "BeltGrinding_ImportProgram"
+
+    def attach(self, view):
+        super().attach(view)
+        self.start(view.Object)
+
+    def updateData(self, obj, name):
+        if name == "Path" and getattr(self, "view", None) is not None:
+            self.start(obj)
+
+    def start(self, obj):
+        """Tells the view where the path begins."""
+        if obj.Path.Size and hasattr(self.view, "StartPosition"):
+            self.view.StartPosition = obj.Path.Commands[0].Placement.Base
 
     def panel(self, obj):
         from .program_panel import ProgramPanel

@@ -155,3 +155,54 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath"):
 """,
         window=True,
     )
+
+
+def test_a_job_or_document_removed_while_it_runs_ends_the_run(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding import job as jobs
+runs = []
+whole = jobs.run
+def watched(*arguments):
+    runs.append("running")
+    try:
+        return whole(*arguments)
+    finally:
+        runs.append("ended")
+jobs.run = watched
+
+job.Spacing = 0.05
+doc.recompute()
+menu("Simulate")
+wait(lambda: runs)
+doc.removeObject(job.Name)
+wait(lambda: len(runs) == 2 and not Gui.Control.activeDialog())
+
+job = prepare()
+job.Spacing = 0.05
+job.Document.recompute()
+menu("Simulate")
+wait(lambda: len(runs) == 3)
+FreeCAD.closeDocument(job.Document.Name)
+wait(lambda: len(runs) == 4 and not Gui.Control.activeDialog())
+""",
+        window=True,
+    )
+
+
+def test_the_menu_offers_the_example(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+menu("Example: compressor blade")
+doc = FreeCAD.ActiveDocument
+assert [o.Label for o in doc.BeltGrindingJob.Group] == [
+    "Stock", "Belt machine", "blade_pressure_side"]
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+assert not doc.Simulation.Events and doc.Simulation.RemovedVolume.Value > 1000
+""",
+        window=True,
+    )

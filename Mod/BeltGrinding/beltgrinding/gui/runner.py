@@ -3,9 +3,9 @@
 import threading
 import time
 
-from .. import RunContext, job as jobs
+from .. import Cancelled, RunContext, job as jobs
 from ..objects import api, job_object
-from .compat import QtCore
+from .compat import QtCore, translate
 
 POLL = 50  # ms
 
@@ -43,7 +43,16 @@ class Runner(QtCore.QObject):
         except BaseException as error:  # handed to the window's thread
             self.error = error
 
+    def job(self):
+        """The job, or None if it or its document is no longer there."""
+        try:
+            return self.document.getObject(self.name)
+        except ReferenceError:
+            return None
+
     def _poll(self):
+        if self.job() is None:
+            self.context.cancel()
         if self.thread.is_alive():
             self.progress(self.context.progress)
             return
@@ -58,7 +67,9 @@ class Runner(QtCore.QObject):
         self.done(simulation, self.error)
 
     def _store(self):
-        job = self.document.getObject(self.name)
+        job = self.job()
+        if job is None:
+            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
         self.document.openTransaction("Simulate")
         try:
             simulation = api.store_result(job, self.result, self.fingerprint)

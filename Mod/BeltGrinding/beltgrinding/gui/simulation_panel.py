@@ -97,6 +97,9 @@ class SimulationPanel:
 
     def done(self, simulation, error):
         """The run has ended."""
+        if self.runner.job() is None:
+            Gui.Control.closeDialog()
+            return
         self.runner = None
         self._arrange(False)
         if error is None:

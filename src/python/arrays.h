@@ -47,6 +47,7 @@ Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name);
 void bind_base(py::module_& m);
 void bind_geometry(py::module_& m);
 void bind_height_field(py::module_& m);
+void bind_contact(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
 

@@ -1,44 +1,10 @@
 #include <memory>
 
-#include "python/arrays.h"
+#include "python/dict.h"
 #include "simulation/simulation.h"
 
 namespace beltgrinding::python {
 namespace {
-
-/// Takes the value of `key` out of `d`; what is left in the end is unknown.
-template <class T>
-T take(py::dict& d, const char* key, T fallback) {
-    if (!d.contains(key)) return fallback;
-    try {
-        T value = d[key].cast<T>();
-        d.attr("pop")(key);
-        return value;
-    } catch (const py::cast_error&) {
-        throw InputError(std::string("'") + key + "' has a value of the wrong type");
-    }
-}
-
-void refuse_rest(const py::dict& d, const char* where) {
-    if (d.empty()) return;
-    throw InputError(std::string(where) + ": unknown key '" +
-                     py::str((*d.begin()).first).cast<std::string>() + "'");
-}
-
-py::dict copy_of(const py::dict& d) {
-    return d.attr("copy")().cast<py::dict>();
-}
-
-std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given) {
-    py::dict d = copy_of(given);
-    const auto model = take<std::string>(d, "model", "elastic_foundation");
-    if (model != "elastic_foundation") {
-        throw InputError("compliance: there is no model '" + model + "'; use elastic_foundation");
-    }
-    auto result = std::make_unique<ElasticFoundation>(take(d, "stiffness", 0.5));
-    refuse_rest(d, "compliance");
-    return result;
-}
 
 std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
     py::dict d = copy_of(given);
@@ -52,11 +18,7 @@ std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
 
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
-    py::dict w = copy_of(wheel_given);
-    o.wheel.radius = take(w, "radius", o.wheel.radius);
-    o.wheel.width = take(w, "width", o.wheel.width);
-    o.wheel.crown_radius = take(w, "crown_radius", o.wheel.crown_radius);
-    refuse_rest(w, "wheel");
+    o.wheel = wheel_from(wheel_given);
     py::dict d = copy_of(given);
     o.force_control = take(d, "force_control", o.force_control);
     o.force = take(d, "force", o.force);
@@ -190,7 +152,7 @@ void bind_simulation(py::module_& m) {
            const py::dict& compliance, const py::dict& law, const py::dict& options,
            const RunContext* context) {
             const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = compliance_from(compliance);
+            const auto elastic = compliance_from(compliance, o.wheel);
             const auto removal = law_from(law);
             SimulationResult result;
             {

@@ -63,6 +63,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_base(m);
     bind_geometry(m);
     bind_height_field(m);
+    bind_contact(m);
     bind_simulation(m);
     bind_inspection(m);
 }

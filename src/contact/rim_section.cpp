@@ -1,0 +1,254 @@
+#include "contact/rim_section.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kGrowth = 1.7;          // of the elements' thickness, from the surface inwards
+constexpr double kLargestRatio = 0.499;  // Poisson's
+constexpr int kNodes = 8;                // of the serendipity element
+constexpr int kDofs = 3 * kNodes;
+constexpr double kCoarsest = 1.0 / 6.0;  // widest element, as a share of the rim's thickness
+
+using ElementMatrix = Eigen::Matrix<double, kDofs, kDofs>;
+using Strains = Eigen::Matrix<double, 6, kDofs>;
+
+// Corners, then the middles of the sides, in the unit square (xi along r, eta along y).
+constexpr std::array<std::array<int, 2>, kNodes> kCorner = {
+    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
+
+void shape_functions(double xi, double eta, std::array<double, kNodes>& n,
+                     std::array<double, kNodes>& n_xi, std::array<double, kNodes>& n_eta) {
+    for (std::size_t a = 0; a < kNodes; ++a) {
+        const double x = kCorner[a][0], e = kCorner[a][1];
+        if (kCorner[a][0] != 0 && kCorner[a][1] != 0) {
+            n[a] = 0.25 * (1 + x * xi) * (1 + e * eta) * (x * xi + e * eta - 1);
+            n_xi[a] = 0.25 * x * (1 + e * eta) * (2 * x * xi + e * eta);
+            n_eta[a] = 0.25 * e * (1 + x * xi) * (x * xi + 2 * e * eta);
+        } else if (kCorner[a][0] == 0) {
+            n[a] = 0.5 * (1 - xi * xi) * (1 + e * eta);
+            n_xi[a] = -xi * (1 + e * eta);
+            n_eta[a] = 0.5 * e * (1 - xi * xi);
+        } else {
+            n[a] = 0.5 * (1 + x * xi) * (1 - eta * eta);
+            n_xi[a] = 0.5 * x * (1 - eta * eta);
+            n_eta[a] = -eta * (1 + x * xi);
+        }
+    }
+}
+
+Eigen::Matrix<double, 6, 6> stiffness(const Elasticity& e) {
+    const double nu = e.poissons_ratio;
+    const double mu = 0.5 * e.youngs_modulus / (1.0 + nu);
+    const double lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
+    Eigen::Matrix<double, 6, 6> d = Eigen::Matrix<double, 6, 6>::Zero();
+    d.topLeftCorner<3, 3>().setConstant(lambda);
+    d.diagonal() << lambda + 2 * mu, lambda + 2 * mu, lambda + 2 * mu, mu, mu, mu;
+    return d;
+}
+
+/// K0, K1 and K2 of an element: K(n) = K0 + n K1 + n^2 K2.
+std::array<ElementMatrix, 3> element(double r0, double r1, double y0, double y1,
+                                     const Eigen::Matrix<double, 6, 6>& d) {
+    std::array<ElementMatrix, 3> k;
+    for (ElementMatrix& m : k) m.setZero();
+    const double half_r = 0.5 * (r1 - r0), half_y = 0.5 * (y1 - y0);
+    const double gauss = 1.0 / std::sqrt(3.0);
+    std::array<double, kNodes> n{}, n_xi{}, n_eta{};
+    for (const double xi : {-gauss, gauss}) {
+        for (const double eta : {-gauss, gauss}) {
+            shape_functions(xi, eta, n, n_xi, n_eta);
+            const double r = 0.5 * (r0 + r1) + half_r * xi;
+            Strains b0 = Strains::Zero(), b1 = Strains::Zero();
+            for (int a = 0; a < kNodes; ++a) {
+                const auto i = static_cast<std::size_t>(a);
+                const double n_r = n_xi[i] / half_r, n_y = n_eta[i] / half_y, by_r = n[i] / r;
+                const int u = 3 * a, v = u + 1, w = u + 2;
+                b0(0, u) = n_r;
+                b0(1, u) = by_r;
+                b1(1, v) = by_r;
+                b0(2, w) = n_y;
+                b1(3, u) = -by_r;
+                b0(3, v) = n_r - by_r;
+                b0(4, v) = n_y;
+                b1(4, w) = -by_r;
+                b0(5, u) = n_y;
+                b0(5, w) = n_r;
+            }
+            const double weight = r * half_r * half_y;
+            const Strains d0 = weight * d * b0, d1 = weight * d * b1;
+            k[0] += b0.transpose() * d0;
+            k[1] += b0.transpose() * d1 + b1.transpose() * d0;
+            k[2] += b1.transpose() * d1;
+        }
+    }
+    return k;
+}
+
+}  // namespace
+
+double WheelRimDesign::thickness() const {
+    double sum = 0.0;
+    for (const RimLayer& layer : layers) sum += layer.thickness;
+    return sum;
+}
+
+void WheelRimDesign::validate() const {
+    const auto positive = [](double value, const std::string& what) {
+        if (!std::isfinite(value) || value <= 0.0) {
+            throw InputError("wheel rim: " + what + " is " + std::to_string(value) +
+                             " mm; give a positive one");
+        }
+    };
+    positive(outer_radius, "the outer radius");
+    positive(width, "the width");
+    if (layers.empty()) throw InputError("wheel rim: it has no layer of rubber");
+    for (const RimLayer& layer : layers) {
+        positive(layer.thickness, "the thickness");
+        layer.elasticity.validate(kLargestRatio);
+    }
+    if (thickness() >= outer_radius) {
+        throw InputError("wheel rim: it is as thick as the wheel's radius; no core is left");
+    }
+}
+
+RimSection::RimSection(const WheelRimDesign& design, int cells, double finest)
+    : radius_(design.outer_radius), cells_(cells) {
+    design.validate();
+    make_mesh(design, finest);
+    even_ = assemble(design, true);
+    odd_ = assemble(design, false);
+}
+
+void RimSection::make_mesh(const WheelRimDesign& design, double finest) {
+    // Across the width: whole elements in every cell of the half.
+    const double dy = design.width / cells_;
+    const int parts =
+        std::max(1, static_cast<int>(std::ceil(dy / (kCoarsest * design.thickness()))));
+    y_ = {0.0};
+    for (int a = 0; a < even(); ++a) {
+        const bool middle = cells_ % 2 == 1 && a == 0;
+        cell_width_.push_back(middle ? 0.5 * dy : dy);
+        for (int p = 0; p < parts; ++p) {
+            y_.push_back(y_.back() + cell_width_.back() / parts);
+            cell_.push_back(a);
+        }
+    }
+    // Inwards: fine under the surface, growing with the depth, with a line at every layer's border.
+    double outer = design.outer_radius, size = 0.5 * finest;
+    std::vector<double> lines = {outer};
+    for (std::size_t l = design.layers.size(); l-- > 0;) {
+        const double inner = outer - design.layers[l].thickness;
+        while (lines.back() > inner) {
+            double next = lines.back() - size;
+            if (next - inner < 0.6 * size) next = inner;
+            lines.push_back(next);
+            layer_.push_back(static_cast<int>(l));
+            size *= kGrowth;
+        }
+        outer = inner;
+    }
+    r_.assign(lines.rbegin(), lines.rend());
+    std::reverse(layer_.begin(), layer_.end());
+}
+
+RimSection::Half RimSection::assemble(const WheelRimDesign& design, bool symmetric) const {
+    const int rows = static_cast<int>(r_.size()) - 1, columns = static_cast<int>(y_.size()) - 1;
+    // Nodes on a grid of half elements (the elements' middles have none), numbered column by
+    // column; -1 is held: the core, and what the symmetry holds in the middle plane.
+    const int height = 2 * rows + 1;
+    std::vector<int> dof(static_cast<std::size_t>(3 * height * (2 * columns + 1)), -1);
+    const auto at = [&](int i, int j, int c) -> int& {
+        return dof[static_cast<std::size_t>(3 * (j * height + i) + c)];
+    };
+    int size = 0;
+    for (int j = 0; j <= 2 * columns; ++j) {
+        for (int i = 1; i < height; ++i) {
+            if (i % 2 == 1 && j % 2 == 1) continue;
+            for (int c = 0; c < 3; ++c) {
+                const bool axial = c == 2;
+                if (j == 0 && axial == symmetric) continue;
+                at(i, j, c) = size++;
+            }
+        }
+    }
+    std::array<std::vector<Eigen::Triplet<double>>, 3> triplets;
+    for (int i = 0; i < rows; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        const auto d = stiffness(design.layers[static_cast<std::size_t>(layer_[row])].elasticity);
+        for (int j = 0; j < columns; ++j) {
+            const auto column = static_cast<std::size_t>(j);
+            const auto k = element(r_[row], r_[row + 1], y_[column], y_[column + 1], d);
+            std::array<int, kDofs> map{};
+            for (std::size_t a = 0; a < kNodes; ++a) {
+                for (int c = 0; c < 3; ++c) {
+                    map[3 * a + static_cast<std::size_t>(c)] =
+                        at(2 * i + 1 + kCorner[a][0], 2 * j + 1 + kCorner[a][1], c);
+                }
+            }
+            for (int p = 0; p < kDofs; ++p) {
+                for (int q = 0; q < kDofs; ++q) {
+                    const int to = map[static_cast<std::size_t>(p)];
+                    const int from = map[static_cast<std::size_t>(q)];
+                    if (to < 0 || from < 0 || to < from) continue;
+                    for (std::size_t m = 0; m < 3; ++m)
+                        triplets[m].emplace_back(to, from, k[m](p, q));
+                }
+            }
+        }
+    }
+    Half half;
+    for (const auto& [matrix, list] :
+         {std::pair{&half.k0, &triplets[0]}, {&half.k1, &triplets[1]}, {&half.k2, &triplets[2]}}) {
+        matrix->resize(size, size);
+        matrix->setFromTriplets(list->begin(), list->end());
+    }
+    const int count = symmetric ? even() : odd();
+    half.loads = Eigen::MatrixXd::Zero(size, count);
+    for (int j = 0; j < columns; ++j) {
+        const auto column = static_cast<std::size_t>(j);
+        // The middle cell of an odd number has no antisymmetric part.
+        const int load = cell_[column] - (!symmetric && cells_ % 2 == 1 ? 1 : 0);
+        if (load < 0) continue;
+        const double length = y_[column + 1] - y_[column];
+        const double scale =
+            std::sqrt(radius_ / cell_width_[static_cast<std::size_t>(cell_[column])]);
+        for (const auto& [offset, share] : {std::pair{0, 1.0 / 6}, {1, 4.0 / 6}, {2, 1.0 / 6}}) {
+            const int to = at(height - 1, 2 * j + offset, 0);
+            if (to >= 0) half.loads(to, load) += share * length * scale;
+        }
+    }
+    return half;
+}
+
+Eigen::MatrixXd RimSection::solve(const Half& half, double n) {
+    Eigen::SparseMatrix<double> k = half.k0;
+    const auto values = [](const Eigen::SparseMatrix<double>& m) {
+        return Eigen::Map<const Eigen::ArrayXd>(m.valuePtr(), m.nonZeros());
+    };
+    Eigen::Map<Eigen::ArrayXd>(k.valuePtr(), k.nonZeros()) +=
+        n * values(half.k1) + n * n * values(half.k2);
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(k);
+    if (factor.info() != Eigen::Success) {
+        throw InputError("wheel rim: its stiffness is not positive definite; check the layers");
+    }
+    // C = X' X with X = L^-1 P loads.
+    const Eigen::MatrixXd permuted = factor.permutationP() * half.loads;
+    const Eigen::MatrixXd x = factor.matrixL().solve(permuted);
+    return x.transpose() * x;
+}
+
+void RimSection::compliance(double k, Eigen::MatrixXd& even, Eigen::MatrixXd& odd) const {
+    even = solve(even_, k * radius_);
+    odd = solve(odd_, k * radius_);
+}
+
+}  // namespace beltgrinding

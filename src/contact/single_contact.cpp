@@ -1,0 +1,184 @@
+#include "contact/single_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kFirstCells = 48;  // along the circumference
+constexpr int kMaxCells = 4096;
+constexpr int kMaxPlacements = 30;
+constexpr double kPlaced = 1e-5;       // mm that the wheel may still be off its place
+constexpr int kPointsPerSide = 8;      // of a cell, for the share that the workpiece covers
+constexpr double kLargestAngle = 1.2;  // rad; farther round the wheel nothing touches
+
+/// Radius at which the ray from the wheel's centre (moved by `placed` along z) at the angle s / R
+/// meets the workpiece, mm; +inf if it does not.
+double meet(const SingleContact& contact, double placed, double s, double y) {
+    const double radius = contact.wheel.radius, angle = s / radius;
+    if (std::abs(angle) > kLargestAngle) return kInfinity;
+    double r = radius;
+    for (int i = 0; i < 20; ++i) {
+        const double depth = contact.workpiece.depth(r * std::sin(angle), y);
+        if (!std::isfinite(depth)) return kInfinity;
+        const double next = (radius - placed + depth) / std::cos(angle);
+        if (std::abs(next - r) < 1e-12 * radius) return next;
+        r = next;
+    }
+    return r;
+}
+
+class Press {
+  public:
+    Press(const SingleContact& contact, ComplianceOperator& compliance)
+        : contact_(contact), compliance_(compliance) {}
+
+    SingleContactResult run() {
+        contact_.wheel.validate();
+        contact_.workpiece.validate();
+        if (!std::isfinite(contact_.spacing) || contact_.spacing <= 0.0) {
+            throw InputError("contact: the grid's spacing must be positive, in millimetres");
+        }
+        problem_.grid.ny =
+            std::max(1, static_cast<int>(std::lround(contact_.wheel.width / contact_.spacing)));
+        problem_.grid.dy = contact_.wheel.width / problem_.grid.ny;
+        problem_.grid.ds = contact_.spacing;
+        problem_.tolerance = contact_.tolerance;
+        problem_.force = contact_.force;
+        const int most = std::min(
+            kMaxCells,
+            static_cast<int>(2.0 * kLargestAngle * contact_.wheel.radius / contact_.spacing));
+        for (int nx = kFirstCells;; nx *= 2) {
+            problem_.grid.nx = std::min(nx, most);
+            SingleContactResult result = press();
+            if (problem_.grid.nx == most || !reaches_ends(result)) return result;
+        }
+    }
+
+  private:
+    /// Gap, coverage of every cell with the wheel's centre at `placed`.
+    void set_gap(double placed) {
+        const ContactGrid& grid = problem_.grid;
+        problem_.gap.resize(grid.cells());
+        problem_.coverage.resize(grid.cells());
+        for (int j = 0; j < grid.ny; ++j) {
+            for (int i = 0; i < grid.nx; ++i) set_cell(placed, i, j);
+        }
+    }
+    void set_cell(double placed, int i, int j) {
+        const ContactGrid& grid = problem_.grid;
+        double gap = 0.0;
+        int covered = 0;
+        const auto look = [&](double s, double y) {
+            const double r = meet(contact_, placed, s, y);
+            if (!std::isfinite(r)) return;
+            gap += r - (contact_.wheel.radius - contact_.wheel.drop(y));
+            ++covered;
+        };
+        int points = 1;
+        if (contact_.workpiece.shape != Workpiece::Shape::kStrip) {
+            look(grid.s(i), grid.y(j));
+        } else {
+            points = kPointsPerSide * kPointsPerSide;
+            for (int p = 0; p < points; ++p) {
+                const double u = (p % kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
+                const double v = (p / kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
+                look(grid.s(i) + u * grid.ds, grid.y(j) + v * grid.dy);
+            }
+        }
+        const int cell = j * grid.nx + i;
+        problem_.gap[cell] = covered > 0 ? gap / covered : kInfinity;
+        problem_.coverage[cell] = static_cast<double>(covered) / points;
+    }
+
+    SingleContactResult press() {
+        compliance_.set_grid(problem_.grid);
+        set_gap(0.0);
+        const double touch = problem_.gap.minCoeff();
+        if (!std::isfinite(touch))
+            throw InputError("contact: the wheel meets the workpiece nowhere");
+        SingleContactResult result;
+        result.grid = problem_.grid;
+        problem_.force_control = contact_.force_control;
+        double placed = touch;
+        if (!contact_.force_control) {
+            placed += contact_.approach;
+            problem_.approach = 0.0;
+        }
+        Eigen::ArrayXd start;
+        for (int k = 0; k < kMaxPlacements; ++k) {
+            set_gap(placed);
+            result.time = 0.0;
+            {
+                const Stopwatch watch(result.time);
+                result.solution =
+                    solve_contact(problem_, compliance_, start.size() > 0 ? &start : nullptr);
+            }
+            if (!contact_.force_control) break;
+            placed += result.solution.approach;
+            start = result.solution.pressure;
+            if (std::abs(result.solution.approach) < kPlaced) break;
+        }
+        result.solution.approach = placed - touch;
+        return result;
+    }
+
+    bool reaches_ends(const SingleContactResult& result) const {
+        const ContactGrid& grid = result.grid;
+        for (int j = 0; j < grid.ny; ++j) {
+            for (const int i : {0, 1, grid.nx - 2, grid.nx - 1}) {
+                if (result.solution.pressure[j * grid.nx + i] > 0.0) return true;
+            }
+        }
+        return false;
+    }
+
+    const SingleContact& contact_;
+    ComplianceOperator& compliance_;
+    ContactProblem problem_;
+};
+
+}  // namespace
+
+double Workpiece::depth(double x, double y) const {
+    const double across = -x * std::sin(axis_angle) + y * std::cos(axis_angle);
+    const auto round = [&](double square) {
+        const double r2 = radius * radius;
+        if (square > r2) return kInfinity;
+        return std::copysign(std::abs(radius) - std::sqrt(r2 - square), radius);
+    };
+    switch (shape) {
+        case Shape::kPlane:
+            return 0.0;
+        case Shape::kCylinder:
+            return round(across * across);
+        case Shape::kSphere:
+            return round(x * x + y * y);
+        case Shape::kStrip:
+            return std::abs(across) <= 0.5 * width ? 0.0 : kInfinity;
+    }
+    return kInfinity;
+}
+
+void Workpiece::validate() const {
+    const bool round = shape == Shape::kCylinder || shape == Shape::kSphere;
+    if (round && (!std::isfinite(radius) || radius == 0.0)) {
+        throw InputError("workpiece: the radius must not be zero, in millimetres");
+    }
+    if (shape == Shape::kStrip && (!std::isfinite(width) || width <= 0.0)) {
+        throw InputError("workpiece: the strip's width must be positive, in millimetres");
+    }
+    if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
+}
+
+SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance) {
+    return Press(contact, compliance).run();
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+
+#include "contact/contact_solver.h"
+#include "contact/contact_wheel.h"
+
+namespace beltgrinding {
+
+/// An analytic rigid workpiece that the wheel meets at the origin of the contact frame (x along the
+/// feed, y along the wheel's axis, z into the workpiece).
+struct Workpiece {
+    enum class Shape { kPlane, kCylinder, kSphere, kStrip };
+    Shape shape = Shape::kPlane;
+    double radius = 50.0;     ///< mm, of cylinder or sphere; negative: concave
+    double width = 10.0;      ///< mm, of the strip
+    double axis_angle = 0.0;  ///< rad, of cylinder and strip about z; 0: along x
+
+    /// Depth of the surface, mm (z), at (x, y); +inf where there is none.
+    double depth(double x, double y) const;
+    /// Throws InputError for dimensions that are none.
+    void validate() const;
+};
+
+struct SingleContact {
+    ContactWheel wheel;
+    Workpiece workpiece;
+    double spacing = 0.5;  ///< mm, wanted cell; across the wheel adjusted to divide its width
+    bool force_control = true;
+    double force = 50.0;      ///< N
+    double approach = 0.0;    ///< mm, of the wheel's centre along z from first touch
+    double tolerance = 1e-4;  ///< relative error of the pressure field, L1
+};
+
+struct SingleContactResult {
+    ContactGrid grid;          ///< long enough for the whole footprint
+    ContactSolution solution;  ///< `approach` from first touch, mm
+    double time = 0.0;         ///< s for the last solve, set-up of the compliance left out
+};
+
+/// Presses a wheel on a workpiece. The gap is radial from the wheel where it stands when pressed:
+/// the wheel is placed anew until what the solution asks of it beyond that is negligible. The grid
+/// grows until the footprint does not reach its ends. Throws InputError.
+SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance);
+
+}  // namespace beltgrinding

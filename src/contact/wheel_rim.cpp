@@ -1,0 +1,278 @@
+#include "contact/wheel_rim.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr int kWaves = 24;          // sampled wavenumbers
+constexpr double kFirstWave = 0.3;  // times 1 / thickness
+constexpr double kAliases = 4.0;    // the sum along the circumference ends at 2 pi / ds times this
+constexpr double kPi = std::numbers::pi;
+
+/// Weights of natural cubic spline interpolation on unit intervals: row t, column m is the weight
+/// of value m at the place `at[t]`.
+Eigen::MatrixXd spline_weights(const std::vector<double>& at, int count) {
+    // Second derivatives from values: tridiagonal, 1 4 1.
+    Eigen::MatrixXd left = Eigen::MatrixXd::Identity(count, count);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, count);
+    for (int i = 1; i + 1 < count; ++i) {
+        left.row(i).segment(i - 1, 3) << 1.0, 4.0, 1.0;
+        right.row(i).segment(i - 1, 3) << 6.0, -12.0, 6.0;
+    }
+    const Eigen::MatrixXd second = left.partialPivLu().solve(right);
+    Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(at.size()), count);
+    for (std::size_t t = 0; t < at.size(); ++t) {
+        const int i = std::clamp(static_cast<int>(at[t]), 0, count - 2);
+        const double f = at[t] - i, g = 1.0 - f;
+        const auto row = static_cast<Eigen::Index>(t);
+        weights(row, i) += g;
+        weights(row, i + 1) += f;
+        weights.row(row) +=
+            ((g * g * g - g) * second.row(i) + (f * f * f - f) * second.row(i + 1)) / 6.0;
+    }
+    return weights;
+}
+
+/// y += A x for a complex x laid out as pairs: A is n x n, column by column.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx2,arch=haswell", "default")))
+#endif
+void multiply(const float* matrix, int n, const float* x, float* re, float* im) {
+    for (int j = 0; j < n; ++j) {
+        const float a = x[2 * j], b = x[2 * j + 1];
+        const float* column = matrix + static_cast<std::ptrdiff_t>(j) * n;
+        for (int i = 0; i < n; ++i) {
+            re[i] += column[i] * a;
+            im[i] += column[i] * b;
+        }
+    }
+}
+
+/// -d2/dy2 of cell values with free ends, for `cells` cells of width dy, 1/mm2.
+Eigen::MatrixXd second_difference(int cells, double dy) {
+    Eigen::MatrixXd l = Eigen::MatrixXd::Zero(cells, cells);
+    for (int i = 0; i + 1 < cells; ++i) {
+        l.block<2, 2>(i, i) += (Eigen::Matrix2d() << 1, -1, -1, 1).finished() / (dy * dy);
+    }
+    return l;
+}
+
+/// Orthonormal even (true) or odd combinations of cells, from the middle outwards, as columns.
+Eigen::MatrixXd combinations(int cells, bool even) {
+    const int count = even ? (cells + 1) / 2 : cells / 2;
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(cells, count);
+    const int first = cells % 2 == 1 && !even ? 1 : 0;
+    for (int a = 0; a < count; ++a) {
+        const int up = cells / 2 + a + first, down = cells - 1 - up;
+        if (up == down) {
+            basis(up, a) = 1.0;
+        } else {
+            basis(up, a) = std::sqrt(0.5);
+            basis(down, a) = even ? std::sqrt(0.5) : -std::sqrt(0.5);
+        }
+    }
+    return basis;
+}
+
+}  // namespace
+
+WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt)
+    : design_(std::move(design)), belt_(belt) {
+    design_.validate();
+    if (!(belt_.tension >= 0.0) || !(belt_.bending >= 0.0)) {
+        throw InputError(
+            "wheel rim: the belt's tension and bending stiffness must not be negative");
+    }
+}
+
+void WheelRim::set_grid(const ContactGrid& grid) {
+    if (grid == grid_ && current_) return;
+    if (grid.ny != grid_.ny || grid.dy != grid_.dy || grid.ds != grid_.ds) {
+        spectra_.clear();
+        sample(grid);
+    }
+    grid_ = grid;
+    const int length = quick_fft_length(2 * grid.nx - 1);
+    std::shared_ptr<Spectrum>& spectrum = spectra_[length];
+    if (!spectrum) spectrum = std::make_shared<Spectrum>(build(length));
+    current_ = spectrum;
+    current_->transform = RowTransform(grid.ny, grid.nx, length);
+    values_.resize(static_cast<std::size_t>(grid.cells()));
+    const auto size = static_cast<std::size_t>(current_->transform.wavenumbers() * grid.ny);
+    spectrum_.resize(size);
+    image_.resize(size);
+}
+
+void WheelRim::sample(const ContactGrid& grid) {
+    grid_ = grid;
+    const double thickness = design_.thickness();
+    const double first = kFirstWave / thickness, last = 2.0 * kPi / grid.ds;
+    waves_.resize(kWaves);
+    const double growth = std::log1p(last / first) / (kWaves - 1);
+    for (int m = 0; m < kWaves; ++m) {
+        waves_[static_cast<std::size_t>(m)] = first * std::expm1(growth * m);
+    }
+    WheelRimDesign design = design_;
+    design.width = grid.ny * grid.dy;
+    const RimSection section(design, grid.ny, grid.ds);
+    even_.assign(kWaves, {});
+    odd_.assign(kWaves, {});
+    parallel_blocks(kWaves, 1, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) section.compliance(waves_[m], even_[m], odd_[m]);
+    });
+    if (belt_.tension > 0.0 || belt_.bending > 0.0) {
+        const Eigen::MatrixXd across = second_difference(grid.ny, grid.dy);
+        for (std::size_t m = 0; m < kWaves; ++m) {
+            const double k2 = waves_[m] * waves_[m];
+            const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(grid.ny, grid.ny);
+            const Eigen::MatrixXd bend = k2 * one + across;
+            const Eigen::MatrixXd plate = belt_.tension * k2 * one + belt_.bending * bend * bend;
+            for (const bool even : {true, false}) {
+                const Eigen::MatrixXd basis = combinations(grid.ny, even);
+                Eigen::MatrixXd& c = even ? even_[m] : odd_[m];
+                if (c.size() == 0) continue;
+                c = (c.inverse() + basis.transpose() * plate * basis).inverse().eval();
+            }
+        }
+    }
+}
+
+WheelRim::Spectrum WheelRim::build(int length) const {
+    // The influence function along the circumference, of the wheel's whole numbers of waves, as
+    // weights of the sampled matrices.
+    const double radius = design_.outer_radius, ds = grid_.ds;
+    const double offset = 1.0 / design_.thickness();
+    const double first = kFirstWave / design_.thickness(), last = waves_.back();
+    const double growth = std::log1p(last / first) / (kWaves - 1);
+    const int terms = static_cast<int>(kAliases * 2.0 * kPi / ds * radius);
+    std::vector<double> place(static_cast<std::size_t>(terms) + 1);
+    for (int n = 0; n <= terms; ++n) {
+        place[static_cast<std::size_t>(n)] =
+            std::min(std::log1p(n / radius / first) / growth, kWaves - 1.0);
+    }
+    Eigen::MatrixXd weights = spline_weights(place, kWaves);
+    for (int n = 0; n <= terms; ++n) {
+        const double k = n / radius, x = 0.5 * k * ds;
+        const double sinc = x > 0.0 ? std::sin(x) / x : 1.0;
+        const double known = std::min(k, last);
+        const double beyond = k > last ? last / k : 1.0;  // as on a half-space
+        weights.row(n) *= (n == 0 ? 1.0 : 2.0) * sinc * sinc * beyond * ds / (2.0 * kPi * radius);
+        for (int m = 0; m < kWaves; ++m) {  // C (k + 1/h) is what is smooth
+            weights(n, m) *= (waves_[static_cast<std::size_t>(m)] + offset) / (known + offset);
+        }
+    }
+    const int half = length / 2;
+    Eigen::MatrixXd cosines(half + 1, terms + 1);
+    for (int n = 0; n <= terms; ++n) {
+        // cos(n d ds / R) for d = 0, 1, ... by the recurrence of Chebyshev.
+        const double step = std::cos(n * ds / radius);
+        cosines(0, n) = 1.0;
+        if (half >= 1) cosines(1, n) = step;
+        for (int d = 2; d <= half; ++d) {
+            cosines(d, n) = 2.0 * step * cosines(d - 1, n) - cosines(d - 2, n);
+        }
+    }
+    const Eigen::MatrixXd influence = cosines * weights;  // by distance, of the sampled matrices
+    Eigen::MatrixXd transform(half + 1, half + 1);
+    for (int k = 0; k <= half; ++k) {
+        for (int d = 0; d <= half; ++d) {
+            transform(k, d) = (d == 0 || d == half ? 1.0 : 2.0) *
+                              std::cos(2.0 * kPi * static_cast<double>(k) * d / length);
+        }
+    }
+    const Eigen::MatrixXd symbol = transform * influence;
+    Spectrum result;
+    result.diagonal = 0.0;
+    for (int m = 0; m < kWaves; ++m) {
+        const auto i = static_cast<std::size_t>(m);
+        result.diagonal += influence(0, m) * (even_[i].trace() + odd_[i].trace()) / grid_.ny;
+    }
+    const Eigen::Index ne = even_[0].size(), no = odd_[0].size();
+    result.matrices.resize(static_cast<std::size_t>((half + 1) * (ne + no)));
+    float* to = result.matrices.data();
+    for (int k = 0; k <= half; ++k) {
+        for (const auto* matrices : {&even_, &odd_}) {
+            const Eigen::Index n = (*matrices)[0].rows();
+            Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
+            for (int m = 0; m < kWaves; ++m) {
+                sum += symbol(k, m) * (*matrices)[static_cast<std::size_t>(m)];
+            }
+            Eigen::Map<Eigen::MatrixXf>(to, n, n) = sum.cast<float>();
+            to += n * n;
+        }
+    }
+    return result;
+}
+
+void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                     Eigen::ArrayXd& displacement) const {
+    const int nx = grid_.nx, ny = grid_.ny, ne = (ny + 1) / 2, no = ny / 2;
+    const auto root = std::sqrt(0.5);
+    using Rows = Eigen::Map<Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic>>;
+    Rows parts(values_.data(), nx, ny);  // a column is a row of the grid
+    const auto row = [&](const Eigen::ArrayXd& a, int j) { return a.segment(j * nx, nx); };
+    const int shift = ny % 2;
+    for (int a = 0; a < ne; ++a) {
+        const int up = ny / 2 + a, down = ny - 1 - up;
+        const Eigen::ArrayXd p = row(pressure, up) * row(coverage, up);
+        if (up == down) {
+            parts.col(a) = p.cast<float>();
+            continue;
+        }
+        const Eigen::ArrayXd q = row(pressure, down) * row(coverage, down);
+        parts.col(a) = (root * (p + q)).cast<float>();
+        parts.col(ne + a - shift) = (root * (p - q)).cast<float>();
+    }
+    current_->transform.forward(values_.data(), spectrum_.data());
+    const float* matrix = current_->matrices.data();
+    std::vector<float> re(static_cast<std::size_t>(ny)), im(re.size());
+    for (int k = 0; k < current_->transform.wavenumbers(); ++k) {
+        std::fill(re.begin(), re.end(), 0.0F);
+        std::fill(im.begin(), im.end(), 0.0F);
+        const auto* x = reinterpret_cast<const float*>(spectrum_.data() + k * ny);
+        multiply(matrix, ne, x, re.data(), im.data());
+        multiply(matrix + ne * ne, no, x + 2 * ne, re.data() + ne, im.data() + ne);
+        matrix += ne * ne + no * no;
+        for (int j = 0; j < ny; ++j) {
+            const auto i = static_cast<std::size_t>(j);
+            image_[static_cast<std::size_t>(k * ny + j)] = {re[i], im[i]};
+        }
+    }
+    current_->transform.backward(image_.data(), values_.data());
+    displacement.resize(pressure.size());
+    for (int a = 0; a < ne; ++a) {
+        const int up = ny / 2 + a, down = ny - 1 - up;
+        const Eigen::ArrayXd even = parts.col(a).cast<double>();
+        if (up == down) {
+            displacement.segment(up * nx, nx) = even;
+            continue;
+        }
+        const Eigen::ArrayXd odd = parts.col(ne + a - shift).cast<double>();
+        displacement.segment(up * nx, nx) = root * (even + odd);
+        displacement.segment(down * nx, nx) = root * (even - odd);
+    }
+}
+
+std::string WheelRim::describe() const {
+    std::ostringstream text;
+    text << "wheel rim, R " << design_.outer_radius << " mm, width " << design_.width << " mm";
+    for (const RimLayer& layer : design_.layers) {
+        text << ", " << layer.thickness << " mm of E " << layer.elasticity.youngs_modulus
+             << " MPa, nu " << layer.elasticity.poissons_ratio;
+    }
+    if (belt_.tension > 0.0 || belt_.bending > 0.0) {
+        text << ", belt of " << belt_.tension << " N/mm tension, " << belt_.bending
+             << " N mm bending stiffness";
+    }
+    return text.str();
+}
+
+}  // namespace beltgrinding

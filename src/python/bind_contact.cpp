@@ -1,0 +1,159 @@
+#include <numbers>
+
+#include "contact/half_space.h"
+#include "contact/single_contact.h"
+#include "contact/wheel_rim.h"
+#include "python/dict.h"
+
+namespace beltgrinding::python {
+
+void refuse_rest(const py::dict& d, const char* where) {
+    if (d.empty()) return;
+    throw InputError(std::string(where) + ": unknown key '" +
+                     py::str((*d.begin()).first).cast<std::string>() + "'");
+}
+
+py::dict copy_of(const py::dict& d) {
+    return d.attr("copy")().cast<py::dict>();
+}
+
+ContactWheel wheel_from(const py::dict& given) {
+    ContactWheel wheel;
+    py::dict d = copy_of(given);
+    wheel.radius = take(d, "radius", wheel.radius);
+    wheel.width = take(d, "width", wheel.width);
+    wheel.crown_radius = take(d, "crown_radius", wheel.crown_radius);
+    refuse_rest(d, "wheel");
+    return wheel;
+}
+
+namespace {
+
+WheelRimDesign rim_from(py::dict& d, const ContactWheel& wheel, const Elasticity& elasticity,
+                        double thickness) {
+    WheelRimDesign design;
+    design.outer_radius = wheel.radius;
+    design.width = wheel.width;
+    const auto layers = take(d, "layers", py::list());
+    if (layers.empty()) {
+        design.layers = {{thickness, elasticity}};
+        return design;
+    }
+    for (const auto& item : layers) {
+        py::dict l = copy_of(item.cast<py::dict>());
+        RimLayer layer;
+        layer.thickness = take(l, "thickness", layer.thickness);
+        layer.elasticity.youngs_modulus = take(l, "youngs_modulus", elasticity.youngs_modulus);
+        layer.elasticity.poissons_ratio = take(l, "poissons_ratio", elasticity.poissons_ratio);
+        refuse_rest(l, "layers");
+        design.layers.push_back(layer);
+    }
+    return design;
+}
+
+Workpiece workpiece_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    Workpiece workpiece;
+    const auto shape = take<std::string>(d, "shape", "plane");
+    if (shape == "cylinder") {
+        workpiece.shape = Workpiece::Shape::kCylinder;
+    } else if (shape == "sphere") {
+        workpiece.shape = Workpiece::Shape::kSphere;
+    } else if (shape == "strip") {
+        workpiece.shape = Workpiece::Shape::kStrip;
+    } else if (shape != "plane") {
+        throw InputError("workpiece: there is no shape '" + shape +
+                         "'; use plane, cylinder, sphere or strip");
+    }
+    workpiece.radius = take(d, "radius", workpiece.radius);
+    workpiece.width = take(d, "width", workpiece.width);
+    workpiece.axis_angle = take(d, "axis_angle_deg", 0.0) * std::numbers::pi / 180.0;
+    refuse_rest(d, "workpiece");
+    return workpiece;
+}
+
+}  // namespace
+
+std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
+                                                    const ContactWheel& wheel) {
+    py::dict d = copy_of(given);
+    const auto model = take<std::string>(d, "model", "wheel_rim");
+    std::unique_ptr<ComplianceOperator> result;
+    if (model == "elastic_foundation") {
+        result = std::make_unique<ElasticFoundation>(take(d, "stiffness", 0.5));
+        refuse_rest(d, "compliance");
+        return result;
+    }
+    Elasticity elasticity;
+    elasticity.youngs_modulus = take(d, "youngs_modulus", elasticity.youngs_modulus);
+    elasticity.poissons_ratio = take(d, "poissons_ratio", elasticity.poissons_ratio);
+    const double thickness = take(d, "rim_thickness", 15.0);
+    if (model == "wheel_rim") {
+        BeltPlate belt;
+        belt.tension = take(d, "belt_tension", 0.0);
+        belt.bending = take(d, "belt_bending", 0.0);
+        result = std::make_unique<WheelRim>(rim_from(d, wheel, elasticity, thickness), belt);
+    } else if (model == "bonded_layer") {
+        result = std::make_unique<BondedLayer>(elasticity, thickness);
+    } else if (model == "half_space") {
+        result = std::make_unique<HalfSpace>(elasticity);
+    } else {
+        throw InputError("compliance: there is no model '" + model +
+                         "'; use wheel_rim, bonded_layer, half_space or elastic_foundation");
+    }
+    refuse_rest(d, "compliance");
+    return result;
+}
+
+void bind_contact(py::module_& m) {
+    m.def(
+        "single_contact",
+        [](const py::dict& wheel, const py::dict& workpiece, const py::dict& compliance,
+           std::optional<double> force, std::optional<double> approach, double spacing,
+           double tolerance) {
+            SingleContact contact;
+            contact.wheel = wheel_from(wheel);
+            contact.workpiece = workpiece_from(workpiece);
+            if (force.has_value() == approach.has_value()) {
+                throw InputError("contact: give either a force or an approach");
+            }
+            contact.force_control = force.has_value();
+            contact.force = force.value_or(0.0);
+            contact.approach = approach.value_or(0.0);
+            contact.spacing = spacing;
+            contact.tolerance = tolerance;
+            const auto elastic = compliance_from(compliance, contact.wheel);
+            SingleContactResult result;
+            {
+                const py::gil_scoped_release release;
+                result = press(contact, *elastic);
+            }
+            const ContactGrid& grid = result.grid;
+            py::array_t<double> pressure({grid.ny, grid.nx}), s(grid.nx), y(grid.ny);
+            Eigen::Map<Eigen::ArrayXd>(pressure.mutable_data(), grid.cells()) =
+                result.solution.pressure;
+            for (int i = 0; i < grid.nx; ++i) s.mutable_at(i) = grid.s(i);
+            for (int j = 0; j < grid.ny; ++j) y.mutable_at(j) = grid.y(j);
+            py::dict d;
+            d["x"] = s;
+            d["y"] = y;
+            d["pressure"] = pressure;
+            d["cell_area"] = grid.cell_area();
+            d["force"] = result.solution.force;
+            d["approach"] = result.solution.approach;
+            d["contact_area"] = result.solution.area;
+            d["peak_pressure"] = result.solution.peak_pressure;
+            d["iterations"] = result.solution.iterations;
+            d["converged"] = result.solution.converged;
+            d["time"] = result.time;
+            d["model"] = elastic->describe();
+            return d;
+        },
+        py::arg("wheel"), py::arg("workpiece"), py::arg("compliance"), py::arg("force") = py::none(),
+        py::arg("approach") = py::none(), py::arg("spacing") = 0.5, py::arg("tolerance") = 1e-4,
+        "One contact of a wheel with an analytic workpiece: dict(x (nx,) along the circumference, "
+        "y (ny,), pressure (ny, nx) MPa, force N, approach mm from first touch, contact_area mm2, "
+        "peak_pressure, iterations, converged, time s of the last solve, model).");
+}
+
+}  // namespace beltgrinding::python

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "contact/compliance.h"
+#include "contact/contact_wheel.h"
+#include "python/arrays.h"
+
+namespace beltgrinding::python {
+
+/// Takes the value of `key` out of `d`; what is left in the end is unknown.
+template <class T>
+T take(py::dict& d, const char* key, T fallback) {
+    if (!d.contains(key)) return fallback;
+    try {
+        T value = d[key].cast<T>();
+        d.attr("pop")(key);
+        return value;
+    } catch (const py::cast_error&) {
+        throw InputError(std::string("'") + key + "' has a value of the wrong type");
+    }
+}
+
+/// Throws InputError naming the first key that is left in `d`.
+void refuse_rest(const py::dict& d, const char* where);
+
+py::dict copy_of(const py::dict& d);
+
+/// A contact wheel from a dict of its members.
+ContactWheel wheel_from(const py::dict& given);
+
+/// The compliance operator that a dict describes: "model" and its parameters, for `wheel`.
+std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
+                                                    const ContactWheel& wheel);
+
+}  // namespace beltgrinding::python

@@ -12,10 +12,11 @@ namespace {
 
 // The bonded layer's correction: S(x) - 1 is below 1e-12 of its value at 0 beyond kLastWave.
 constexpr double kLastWave = 20.0;
-constexpr int kWaves = 2400;        // Simpson's intervals up to it
-constexpr double kReach = 12.0;     // thicknesses; farther away the layer does not move
-constexpr int kTable = 480;         // intervals of the table up to kReach
-constexpr double kSmallWave = 0.3;  // below it, differences of hyperbolic functions by series
+constexpr int kWaves = 2400;           // Simpson's intervals up to it
+constexpr double kReach = 12.0;        // thicknesses; farther away the layer does not move
+constexpr int kTable = 480;            // intervals of the table up to kReach
+constexpr double kPerThickness = 4.0;  // points of a cell's mean
+constexpr double kSmallWave = 0.3;     // below it, differences of hyperbolic functions by series
 
 double sinh_less_argument(double z) {
     const double z2 = z * z;
@@ -189,7 +190,19 @@ double BondedLayer::correction(double r) const {
 double BondedLayer::influence(const ContactGrid& grid, double x, double y) const {
     const double r = std::hypot(x, y);
     if (r > kReach * thickness_) return 0.0;
-    return love(grid, x, y, elasticity_) + correction(r) * grid.cell_area();
+    // The correction's mean over the cell; it changes over a thickness.
+    const auto points = [&](double size) {
+        return std::clamp(static_cast<int>(std::ceil(kPerThickness * size / thickness_)), 1, 16);
+    };
+    const int across = points(grid.ds), along = points(grid.dy);
+    double sum = 0.0;
+    for (int i = 0; i < across; ++i) {
+        for (int j = 0; j < along; ++j) {
+            sum += correction(std::hypot(x + ((i + 0.5) / across - 0.5) * grid.ds,
+                                         y + ((j + 0.5) / along - 0.5) * grid.dy));
+        }
+    }
+    return love(grid, x, y, elasticity_) + sum / (across * along) * grid.cell_area();
 }
 
 std::string BondedLayer::describe() const {

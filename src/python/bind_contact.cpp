@@ -149,8 +149,9 @@ void bind_contact(py::module_& m) {
             d["model"] = elastic->describe();
             return d;
         },
-        py::arg("wheel"), py::arg("workpiece"), py::arg("compliance"), py::arg("force") = py::none(),
-        py::arg("approach") = py::none(), py::arg("spacing") = 0.5, py::arg("tolerance") = 1e-4,
+        py::arg("wheel"), py::arg("workpiece"), py::arg("compliance"),
+        py::arg("force") = py::none(), py::arg("approach") = py::none(), py::arg("spacing") = 0.5,
+        py::arg("tolerance") = 1e-4,
         "One contact of a wheel with an analytic workpiece: dict(x (nx,) along the circumference, "
         "y (ny,), pressure (ny, nx) MPa, force N, approach mm from first touch, contact_area mm2, "
         "peak_pressure, iterations, converged, time s of the last solve, model).");

@@ -1,0 +1,285 @@
+// The compliance operators against theory.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "base/error.h"
+#include "contact/contact_solver.h"
+#include "contact/half_space.h"
+#include "contact/single_contact.h"
+#include "contact/wheel_rim.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+const Elasticity kRubber{5.0, 0.45};
+
+ContactProblem problem_on(const ContactGrid& grid, double force) {
+    ContactProblem problem;
+    problem.grid = grid;
+    problem.gap.resize(grid.cells());
+    problem.coverage = Eigen::ArrayXd::Ones(grid.cells());
+    problem.force = force;
+    return problem;
+}
+
+WheelRimDesign rim(double radius, double width, double thickness, Elasticity elasticity) {
+    WheelRimDesign design;
+    design.outer_radius = radius;
+    design.width = width;
+    design.layers = {{thickness, elasticity}};
+    return design;
+}
+
+// Johnson: Contact Mechanics, section 4.2.
+TEST(HalfSpace, HertzPoint) {
+    const double radius = 100.0, force = 50.0, modulus = kRubber.plane_strain_modulus();
+    const double a = std::cbrt(0.75 * force * radius / modulus);
+    for (const auto& [cells, error] : {std::pair{16, 0.04}, {64, 0.01}}) {
+        const double size = 2.0 * a / cells;
+        const int n = cells + cells / 4;
+        ContactProblem problem = problem_on({n, n, size, size}, force);
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i < n; ++i) {
+                const double s = problem.grid.s(i), y = problem.grid.y(j);
+                problem.gap[j * n + i] = (s * s + y * y) / (2.0 * radius);
+            }
+        }
+        HalfSpace operator_(kRubber);
+        operator_.set_grid(problem.grid);
+        const ContactSolution solution = solve_contact(problem, operator_);
+        ASSERT_TRUE(solution.converged);
+        EXPECT_NEAR(solution.peak_pressure, 1.5 * force / (kPi * a * a),
+                    error * solution.peak_pressure);
+        EXPECT_NEAR(solution.approach, a * a / radius, error * solution.approach);
+        EXPECT_NEAR(solution.area, kPi * a * a, 2.0 * error * solution.area);
+    }
+}
+
+TEST(HalfSpace, HertzLine) {
+    // One row of cells, so long that the middle knows nothing of the ends; the approach of a line
+    // contact is not defined, its pressure is.
+    const double radius = 100.0, length = 1e5, line = 2.0, modulus = kRubber.plane_strain_modulus();
+    const double a = std::sqrt(4.0 * line * radius / (kPi * modulus));
+    const int n = 80;
+    ContactProblem problem = problem_on({n, 1, 2.0 * a / 64, length}, line * length);
+    for (int i = 0; i < n; ++i) problem.gap[i] = std::pow(problem.grid.s(i), 2) / (2.0 * radius);
+    HalfSpace operator_(kRubber);
+    operator_.set_grid(problem.grid);
+    const ContactSolution solution = solve_contact(problem, operator_);
+    ASSERT_TRUE(solution.converged);
+    EXPECT_NEAR(solution.peak_pressure, 2.0 * line / (kPi * a), 0.01 * solution.peak_pressure);
+    EXPECT_NEAR(solution.area / length, 2.0 * a, 0.03 * 2.0 * a);
+}
+
+TEST(BondedLayer, ShapeHasTheLimitsOfTheory) {
+    for (const double nu : {0.0, 0.3, 0.45, 0.49}) {
+        // Long waves: a column that cannot expand, h / M.
+        const double x = 1e-4;
+        const double column = (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu);
+        EXPECT_NEAR(2.0 * (1.0 - nu * nu) * BondedLayer::shape(x, nu) / x, column, 1e-4);
+        EXPECT_NEAR(BondedLayer::shape(40.0, nu), 1.0, 1e-12);
+        // No jump where the series ends.
+        EXPECT_NEAR(BondedLayer::shape(0.3 - 1e-9, nu), BondedLayer::shape(0.3 + 1e-9, nu), 1e-8);
+    }
+    // Incompressible: u = q^2 h^3 p / E.
+    const double x = 1e-2;
+    EXPECT_NEAR(1.5 * BondedLayer::shape(x, 0.5) / (x * x * x), 1.0, 1e-3);
+}
+
+TEST(BondedLayer, ThinCompressibleLine) {
+    // p = (M / h) (delta - x^2 / 2R), a = (3 P R h / 2M)^(1/3).
+    const Elasticity elasticity{5.0, 0.3};
+    const double h = 0.5, radius = 100.0, line = 4.0;
+    const double modulus = 5.0 * 0.7 / (1.3 * 0.4);
+    const double a = std::cbrt(1.5 * line * radius * h / modulus);
+    const int n = 80, rows = 40;
+    ContactProblem problem = problem_on({n, rows, 2.0 * a / 64, 0.5}, line * rows * 0.5);
+    for (int c = 0; c < n * rows; ++c) {
+        problem.gap[c] = std::pow(problem.grid.s(c % n), 2) / (2.0 * radius);
+    }
+    BondedLayer layer(elasticity, h);
+    layer.set_grid(problem.grid);
+    const ContactSolution solution = solve_contact(problem, layer);
+    ASSERT_TRUE(solution.converged);
+    const double middle = solution.pressure[rows / 2 * n + n / 2];
+    EXPECT_NEAR(middle, modulus / h * a * a / (2.0 * radius), 0.04 * middle);
+}
+
+TEST(BondedLayer, ThinIncompressibleLineConvergesAsTheSquareOfThickness) {
+    // p0 = E a^4 / (24 R h^3), delta = a^2 / 6R, in the middle of a long contact.
+    const double radius = 1000.0, a = 8.0;
+    std::vector<double> errors;
+    for (const double h : {1.0, 0.5}) {
+        const int n = 128, rows = 48;
+        ContactProblem problem = problem_on({n, rows, 2.5 * a / n, 1.0}, 0.0);
+        problem.force_control = false;
+        problem.approach = a * a / (6.0 * radius);
+        problem.max_iterations = 4000;
+        for (int c = 0; c < n * rows; ++c) {
+            problem.gap[c] = std::pow(problem.grid.s(c % n), 2) / (2.0 * radius);
+        }
+        BondedLayer layer({5.0, 0.5}, h);
+        layer.set_grid(problem.grid);
+        const ContactSolution solution = solve_contact(problem, layer);
+        const double middle = solution.pressure[rows / 2 * n + n / 2];
+        const double expected = 5.0 * std::pow(a, 4) / (24.0 * radius * h * h * h);
+        errors.push_back(std::abs(middle / expected - 1.0));
+    }
+    EXPECT_LT(errors[0], 0.2);
+    EXPECT_LT(errors[1], 0.5 * errors[0]) << errors[0];
+}
+
+TEST(WheelRim, AWideRimOnALargeWheelIsTheBondedLayer) {
+    const ContactGrid grid{32, 96, 1.0, 2.0};
+    WheelRim wheel(rim(5000.0, 192.0, 15.0, kRubber));
+    BondedLayer layer(kRubber, 15.0);
+    wheel.set_grid(grid);
+    layer.set_grid(grid);
+    Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells()), a, b;
+    const Eigen::ArrayXd coverage = Eigen::ArrayXd::Ones(grid.cells());
+    for (int j = 44; j < 52; ++j) pressure.segment(j * grid.nx + 12, 8) = 0.1;
+    wheel.apply(pressure, coverage, a);
+    layer.apply(pressure, coverage, b);
+    EXPECT_LT((a - b).abs().maxCoeff(), 0.02 * b.maxCoeff());
+}
+
+TEST(WheelRim, IsSymmetricAndPositiveDefiniteForAnyNumberOfRows) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (const int ny : {1, 2, 7, 16}) {
+        const ContactGrid grid{24, ny, 1.0, 20.0 / ny};
+        WheelRim wheel(rim(60.0, 20.0, 10.0, kRubber), {2.0, 30.0});
+        wheel.set_grid(grid);
+        Eigen::ArrayXd p(grid.cells()), q(grid.cells()), coverage(grid.cells()), cp, cq;
+        for (int trial = 0; trial < 5; ++trial) {
+            for (int c = 0; c < grid.cells(); ++c) {
+                p[c] = uniform(random) - 0.5;
+                q[c] = uniform(random) - 0.5;
+                coverage[c] = uniform(random);
+            }
+            wheel.apply(p, coverage, cp);
+            wheel.apply(q, coverage, cq);
+            const double a = (coverage * q * cp).sum(), b = (coverage * p * cq).sum();
+            EXPECT_NEAR(a, b,
+                        1e-4 * std::sqrt((coverage * p * cp).sum() * (coverage * q * cq).sum()));
+            EXPECT_GT((coverage * p * cp).sum(), 0.0);
+        }
+    }
+}
+
+TEST(WheelRim, TheBeltStiffensAndALayerOfTheSameRubberChangesNothing) {
+    const ContactGrid grid{32, 20, 1.0, 1.0};
+    Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells()), plain, belted, layered;
+    pressure[10 * 32 + 16] = 1.0;
+    const Eigen::ArrayXd coverage = Eigen::ArrayXd::Ones(grid.cells());
+    WheelRim one(rim(60.0, 20.0, 10.0, kRubber));
+    WheelRim belt(rim(60.0, 20.0, 10.0, kRubber), {5.0, 50.0});
+    WheelRimDesign design = rim(60.0, 20.0, 6.0, kRubber);
+    design.layers.push_back({4.0, kRubber});
+    WheelRim two(design);
+    one.set_grid(grid);
+    belt.set_grid(grid);
+    two.set_grid(grid);
+    one.apply(pressure, coverage, plain);
+    belt.apply(pressure, coverage, belted);
+    two.apply(pressure, coverage, layered);
+    EXPECT_LT(belted.maxCoeff(), 0.8 * plain.maxCoeff());
+    EXPECT_NEAR(belted.sum(), plain.sum(), 0.05 * plain.sum());  // it spreads, it does not hold
+    EXPECT_LT((layered - plain).abs().maxCoeff(), 0.01 * plain.maxCoeff());
+}
+
+TEST(WheelRim, RefusesWhatIsNoWheel) {
+    EXPECT_THROW(WheelRim(rim(100.0, 50.0, 100.0, kRubber)), InputError);
+    EXPECT_THROW(WheelRim(rim(100.0, 0.0, 10.0, kRubber)), InputError);
+    EXPECT_THROW(WheelRim(rim(100.0, 50.0, 10.0, {5.0, 0.5})), InputError);
+    EXPECT_THROW(WheelRim(rim(100.0, 50.0, 10.0, {-5.0, 0.4})), InputError);
+    EXPECT_THROW(WheelRim(WheelRimDesign{}), InputError);
+}
+
+/// Signorini's conditions on random rough, tilted, partly absent surfaces.
+TEST(Contact, RandomContactsKeepSignorinisConditions) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<std::unique_ptr<ComplianceOperator>> operators;
+    operators.push_back(std::make_unique<ElasticFoundation>(0.5));
+    operators.push_back(std::make_unique<HalfSpace>(kRubber));
+    operators.push_back(std::make_unique<BondedLayer>(kRubber, 15.0));
+    operators.push_back(std::make_unique<WheelRim>(rim(100.0, 30.0, 15.0, kRubber)));
+    for (int trial = 0; trial < 12; ++trial) {
+        ContactProblem problem = problem_on({40, 30, 1.0, 1.0}, 5.0 + 10.0 * trial);
+        problem.tolerance = 1e-3;
+        const double tilt = 0.02 * normal(random), concave = trial % 3 == 0 ? -1.0 : 1.0;
+        const int hole = trial % 4 == 1 ? 6 : 0;
+        for (int c = 0; c < problem.grid.cells(); ++c) {
+            const double s = problem.grid.s(c % 40), y = problem.grid.y(c / 40);
+            problem.gap[c] =
+                s * s / 200.0 + concave * y * y / 400.0 + tilt * y + 0.02 * normal(random);
+            if (trial % 2 == 1 && y > 6.0) problem.coverage[c] = 0.0;
+            if (std::hypot(s, y) < hole) problem.gap[c] = std::numeric_limits<double>::infinity();
+        }
+        for (const auto& compliance : operators) {
+            compliance->set_grid(problem.grid);
+            const ContactSolution solution = solve_contact(problem, *compliance);
+            ASSERT_TRUE(solution.converged) << compliance->describe() << trial;
+            EXPECT_NEAR(solution.force, problem.force, 1e-6 * problem.force);
+            EXPECT_GE(solution.pressure.minCoeff(), 0.0);
+            Eigen::ArrayXd u;
+            compliance->apply(solution.pressure, problem.coverage, u);
+            const double scale = solution.peak_pressure * compliance->diagonal();
+            double open = 0.0, weight = 0.0;
+            for (int c = 0; c < problem.grid.cells(); ++c) {
+                if (problem.coverage[c] == 0.0 || !std::isfinite(problem.gap[c])) continue;
+                const double g = problem.gap[c] + u[c] - solution.approach;
+                EXPECT_GT(g, -0.2 * scale);
+                open += solution.pressure[c] * std::abs(g);
+                weight += solution.pressure[c];
+            }
+            EXPECT_LT(open / weight, 0.02 * scale) << compliance->describe() << trial;
+        }
+    }
+}
+
+TEST(SingleContact, ForceAndApproachAgree) {
+    WheelRim wheel(rim(100.0, 30.0, 15.0, kRubber));
+    SingleContact contact;
+    contact.wheel = {100.0, 30.0, 0.0};
+    contact.spacing = 1.0;
+    contact.force = 60.0;
+    for (const Workpiece& workpiece :
+         {Workpiece{}, Workpiece{Workpiece::Shape::kCylinder, 50.0, 0.0, 0.0},
+          Workpiece{Workpiece::Shape::kCylinder, -150.0, 0.0, 0.0},
+          Workpiece{Workpiece::Shape::kCylinder, 40.0, 0.0, 0.7},
+          Workpiece{Workpiece::Shape::kSphere, 60.0, 0.0, 0.0},
+          Workpiece{Workpiece::Shape::kStrip, 0.0, 8.5, 0.0}}) {
+        contact.workpiece = workpiece;
+        contact.force_control = true;
+        const SingleContactResult forced = press(contact, wheel);
+        EXPECT_TRUE(forced.solution.converged);
+        EXPECT_NEAR(forced.solution.force, 60.0, 1e-6);
+        contact.force_control = false;
+        contact.approach = forced.solution.approach;
+        const SingleContactResult placed = press(contact, wheel);
+        EXPECT_NEAR(placed.solution.force, 60.0, 0.2);
+    }
+}
+
+TEST(SingleContact, AConcavePartCloserThanTheWheelTouchesAtTheEdges) {
+    WheelRim wheel(rim(100.0, 30.0, 15.0, kRubber));
+    SingleContact contact;
+    contact.wheel = {100.0, 30.0, 0.0};
+    contact.workpiece = {Workpiece::Shape::kCylinder, -40.0, 0.0, 0.0};
+    contact.spacing = 1.0;
+    contact.force = 5.0;
+    const SingleContactResult result = press(contact, wheel);
+    const int nx = result.grid.nx, middle = nx / 2;
+    EXPECT_GT(result.solution.pressure[middle], 0.05);           // the wheel's edge
+    EXPECT_EQ(result.solution.pressure[15 * nx + middle], 0.0);  // its middle hangs free
+}
+
+}  // namespace
+}  // namespace beltgrinding

@@ -37,6 +37,8 @@ class ComplianceOperator {
                        Eigen::ArrayXd& displacement) const = 0;
     /// An estimate of the diagonal of C at full coverage, mm/MPa: scales the solver's first step.
     virtual double diagonal() const = 0;
+    /// True if a cell's displacement depends on its own pressure only.
+    virtual bool local() const { return false; }
     /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
 };
@@ -52,6 +54,7 @@ class ElasticFoundation final : public ComplianceOperator {
     void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
                Eigen::ArrayXd& displacement) const override;
     double diagonal() const override { return 1.0 / stiffness_; }
+    bool local() const override { return true; }
     std::string describe() const override;
 
   private:

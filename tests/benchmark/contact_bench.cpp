@@ -1,0 +1,137 @@
+// The contact's solution by operator, on the wheel's grid: cold, and warm along a rippled surface
+// at 50 N. Peer: a Fourier transform of the padded grid, there and back, as one apply needs.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <memory>
+
+#include "contact/contact_solver.h"
+#include "contact/half_space.h"
+#include "contact/wheel_rim.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr int kPoses = 60;
+const Elasticity kRubber{5.0, 0.45};
+enum Operator { kFoundation, kHalfSpace, kLayer, kRim };
+
+std::unique_ptr<ComplianceOperator> make(int which, double width) {
+    WheelRimDesign design;
+    design.width = width;
+    design.layers = {{15.0, kRubber}};
+    switch (which) {
+        case kFoundation:
+            return std::make_unique<ElasticFoundation>(0.5);
+        case kHalfSpace:
+            return std::make_unique<HalfSpace>(kRubber);
+        case kLayer:
+            return std::make_unique<BondedLayer>(kRubber, 15.0);
+        default:
+            return std::make_unique<WheelRim>(design);
+    }
+}
+
+/// A convex part with ripples that pass under the wheel.
+ContactProblem pose(int n, double spacing, int index, double tolerance) {
+    ContactProblem problem;
+    problem.grid = {n, n, spacing, spacing};
+    problem.gap.resize(n * n);
+    problem.coverage = Eigen::ArrayXd::Ones(n * n);
+    problem.force = 50.0;
+    problem.tolerance = tolerance;
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+            const double s = problem.grid.s(i), y = problem.grid.y(j);
+            problem.gap[j * n + i] = s * s / 200.0 + y * y / 400.0 +
+                                     0.02 * std::sin(0.9 * (s + 0.5 * index)) * std::cos(0.4 * y);
+        }
+    }
+    return problem;
+}
+
+void run(benchmark::State& state, bool warm) {
+    const int n = static_cast<int>(state.range(1));
+    const double spacing = 32.0 / n, tolerance = 1.0 / static_cast<double>(state.range(2));
+    const auto compliance = make(static_cast<int>(state.range(0)), n * spacing);
+    std::vector<ContactProblem> poses;
+    for (int k = 0; k < kPoses; ++k) poses.push_back(pose(n, spacing, k, tolerance));
+    compliance->set_grid(poses[0].grid);
+    int iterations = 0, solved = 0, failed = 0;
+    ContactSolution last = solve_contact(poses[0], *compliance);
+    std::size_t k = 0;
+    for (auto _ : state) {
+        k = (k + 1) % kPoses;
+        last = solve_contact(poses[k], *compliance, warm && k > 0 ? &last.pressure : nullptr);
+        iterations += last.iterations;
+        failed += !last.converged;
+        ++solved;
+    }
+    double error = 0.0;  // of the pressure field, L1, against a far finer tolerance
+    last = solve_contact(poses[0], *compliance);
+    for (std::size_t p = 1; p < kPoses; ++p) {
+        last = solve_contact(poses[p], *compliance, warm ? &last.pressure : nullptr);
+        ContactProblem exact = poses[p];
+        exact.tolerance = 1e-6;
+        const ContactSolution truth = solve_contact(exact, *compliance, &last.pressure);
+        error += (truth.pressure - last.pressure).abs().sum() / truth.pressure.sum() / kPoses;
+    }
+    state.counters["error"] = error;
+    state.counters["iterations"] = static_cast<double>(iterations) / solved;
+    state.counters["failed"] = failed;
+}
+void contact_cold(benchmark::State& state) {
+    run(state, false);
+}
+void contact_warm(benchmark::State& state) {
+    run(state, true);
+}
+
+void arguments(benchmark::internal::Benchmark* b) {
+    b->ArgNames({"operator", "cells", "1/tolerance"})->Unit(benchmark::kMicrosecond);
+    for (const int which : {kFoundation, kHalfSpace, kLayer, kRim}) {
+        for (const int n : {64, 128}) b->Args({which, n, 1000});
+    }
+    b->Args({kRim, 64, 10000});
+}
+BENCHMARK(contact_cold)->Apply(arguments);
+BENCHMARK(contact_warm)->Apply(arguments);
+
+void contact_apply(benchmark::State& state) {
+    const int n = static_cast<int>(state.range(1));
+    const auto compliance = make(static_cast<int>(state.range(0)), 32.0);
+    const ContactProblem problem = pose(n, 32.0 / n, 0, 1e-3);
+    compliance->set_grid(problem.grid);
+    Eigen::ArrayXd u;
+    for (auto _ : state) compliance->apply(problem.coverage, problem.coverage, u);
+}
+BENCHMARK(contact_apply)
+    ->ArgNames({"operator", "cells"})
+    ->ArgsProduct({{kHalfSpace, kLayer, kRim}, {64, 128}})
+    ->Unit(benchmark::kMicrosecond);
+
+void contact_peer_fft(benchmark::State& state) {
+    const int n = static_cast<int>(state.range(0)), length = quick_fft_length(2 * n - 1);
+    RowTransform transform(n, n, length);
+    std::vector<float> values(static_cast<std::size_t>(n * n), 1.0F);
+    std::vector<std::complex<float>> spectrum(
+        static_cast<std::size_t>(transform.wavenumbers() * n));
+    for (auto _ : state) {
+        transform.forward(values.data(), spectrum.data());
+        transform.backward(spectrum.data(), values.data());
+        benchmark::DoNotOptimize(values.data());
+    }
+}
+BENCHMARK(contact_peer_fft)->ArgName("cells")->Arg(64)->Arg(128)->Unit(benchmark::kMicrosecond);
+
+void rim_set_up(benchmark::State& state) {
+    const int n = static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        const auto compliance = make(kRim, 0.5 * n);
+        compliance->set_grid({n, n, 0.5, 0.5});
+    }
+}
+BENCHMARK(rim_set_up)->ArgName("cells")->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace beltgrinding

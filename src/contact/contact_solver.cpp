@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
-
 void validate(const ContactProblem& problem) {
     const Eigen::Index n = problem.grid.cells();
     if (n <= 0 || problem.gap.size() != n || problem.coverage.size() != n) {
@@ -38,8 +36,8 @@ class ConstrainedConjugateGradients {
         : problem_(problem),
           compliance_(compliance),
           weight_(problem.coverage * problem.grid.cell_area()),
-          reachable_(problem.gap.isFinite() && problem.coverage > 0.0),
-          gap_(reachable_.select(problem.gap, 0.0)) {}
+          reachable_((problem.gap.isFinite() && problem.coverage > 0.0).cast<double>()),
+          gap_((reachable_ > 0.0).select(problem.gap, 0.0)) {}
 
     ContactSolution solve(const Eigen::ArrayXd* start);
 
@@ -55,23 +53,25 @@ class ConstrainedConjugateGradients {
     /// Sets residual and, under force control, delta: the mean that leaves the contact's residual
     /// 0.
     void update_residual();
-    /// One step along the conjugate direction, then what contact demands: no tension, pressure where
-    /// cells overlap.
+    /// One step along the conjugate direction, then what contact demands: no tension, pressure
+    /// where cells overlap.
     void step();
     /// Share of the pressure field (L1) that is wrong, by what the next step would change: the
     /// preconditioned residual times the last step's length.
     double error();
-    /// About the inverse of C on the contact, to a factor; `area` of the contact in mm2.
-    Eigen::ArrayXd precondition(const Eigen::ArrayXd& r, const Mask& contact, double area) const;
+    /// About the inverse of C on the contact, to a factor. `r` is zero beside the contact.
+    void precondition(const Eigen::ArrayXd& r, Eigen::ArrayXd& z) const;
 
     const ContactProblem& problem_;
     const ComplianceOperator& compliance_;
     Eigen::ArrayXd weight_;
-    Mask reachable_;
+    Eigen::ArrayXd reachable_, contact_;  // 1 for the cells, else 0: quicker than logical arrays
     Eigen::ArrayXd gap_;
     Eigen::ArrayXd pressure_, residual_, direction_, image_, displacement_, last_residual_;
     Eigen::ArrayXd steepest_, ones_;  // preconditioned residual; and of a constant one
-    Mask contact_;
+    Eigen::ArrayXd held_;             // residual of the contact, 0 beside it
+    Eigen::Index cells_ = -1;         // in contact
+    double area_ = 0.0;               // of the contact, mm2
     double ones_total_ = 1.0;
     double length_ = 0.0;  // of the last step, MPa/mm
     double delta_ = 0.0;
@@ -83,15 +83,14 @@ class ConstrainedConjugateGradients {
 void ConstrainedConjugateGradients::start_from(const Eigen::ArrayXd* start) {
     const Eigen::Index n = gap_.size();
     if (start != nullptr && start->size() == n && start->isFinite().all()) {
-        pressure_ = reachable_.select(start->max(0.0), 0.0);
+        pressure_ = reachable_ * start->max(0.0);
     } else {
         pressure_ = Eigen::ArrayXd::Zero(n);
     }
     if (total(pressure_) > 0.0) return;
     if (!problem_.force_control) {
         // Every cell as a spring of its own: exact for a foundation, a fair guess otherwise.
-        pressure_ =
-            reachable_.select((problem_.approach - gap_).max(0.0) / compliance_.diagonal(), 0.0);
+        pressure_ = reachable_ * (problem_.approach - gap_).max(0.0) / compliance_.diagonal();
         return;
     }
     press_foundation(compliance_.diagonal());
@@ -104,15 +103,15 @@ void ConstrainedConjugateGradients::start_from(const Eigen::ArrayXd* start) {
 void ConstrainedConjugateGradients::press_foundation(double springs) {
     // Newton's method on a convex, increasing function of delta, from above: the cells in contact
     // only become fewer.
-    Mask contact = reachable_;
-    for (Eigen::Index before = -1, count = contact.count(); count != before;) {
-        const Eigen::ArrayXd weight = contact.select(weight_, 0.0);
-        delta_ = (problem_.force * springs + (weight * gap_).sum()) / weight.sum();
+    contact_ = reachable_;
+    for (double before = -1.0, count = contact_.sum(); count != before;) {
+        delta_ = (problem_.force * springs + (contact_ * weight_ * gap_).sum()) /
+                 (contact_ * weight_).sum();
         before = count;
-        contact = contact && gap_ < delta_;
-        count = contact.count();
+        contact_ *= (gap_ < delta_).cast<double>();
+        count = contact_.sum();
     }
-    pressure_ = contact.select((delta_ - gap_) / springs, 0.0);
+    pressure_ = contact_ * (delta_ - gap_) / springs;
 }
 
 void ConstrainedConjugateGradients::scale_to_force() {
@@ -125,25 +124,23 @@ void ConstrainedConjugateGradients::update_residual() {
     compliance_.apply(pressure_, problem_.coverage, displacement_);
     residual_ = gap_ + displacement_;
     if (problem_.force_control) {
-        const Eigen::ArrayXd in_contact = (pressure_ > 0.0).select(weight_, 0.0);
-        delta_ = (in_contact * residual_).sum() / in_contact.sum();
+        contact_ = (pressure_ > 0.0).cast<double>() * weight_;
+        delta_ = (contact_ * residual_).sum() / contact_.sum();
     } else {
         delta_ = problem_.approach;
     }
     residual_ -= delta_;
 }
 
-Eigen::ArrayXd ConstrainedConjugateGradients::precondition(const Eigen::ArrayXd& r,
-                                                           const Mask& contact,
-                                                           double area) const {
-    if (compliance_.local()) return r;
+void ConstrainedConjugateGradients::precondition(const Eigen::ArrayXd& r, Eigen::ArrayXd& z) const {
+    z = r;
+    if (compliance_.local()) return;
     // The compliance falls with the wavenumber k like 1 / k between the contact's size and the
     // cell's; a + b k^2, a five-point star, levels that out. Beside the contact r is zero.
     const ContactGrid& grid = problem_.grid;
     const double cell = std::sqrt(grid.cell_area());
-    const double b = std::sqrt(area) * cell / (kPi * std::sqrt(8.0));
+    const double b = std::sqrt(area_) * cell / (kPi * std::sqrt(8.0));
     const double across = b / (grid.ds * grid.ds), along = b / (grid.dy * grid.dy);
-    Eigen::ArrayXd z = r;
     for (int j = 0; j < grid.ny; ++j) {
         const double* row = r.data() + static_cast<std::ptrdiff_t>(j) * grid.nx;
         double* to = z.data() + static_cast<std::ptrdiff_t>(j) * grid.nx;
@@ -159,69 +156,62 @@ Eigen::ArrayXd ConstrainedConjugateGradients::precondition(const Eigen::ArrayXd&
             for (int i = 0; i < grid.nx; ++i) to[i] += along * (row[i] - beside[i]);
         }
     }
-    return contact.select(z, 0.0);
+    z *= contact_;
 }
 
 double ConstrainedConjugateGradients::error() {
-    const Mask contact = pressure_ > 0.0;
-    const bool same = contact_.size() == contact.size() && (contact_ == contact).all();
-    contact_ = contact;
-    const double area = contact_.select(weight_, 0.0).sum();
-    const Eigen::ArrayXd r = contact_.select(residual_, 0.0);
-    steepest_ = precondition(r, contact_, area);
+    contact_ = (pressure_ > 0.0).cast<double>();
+    const auto cells = static_cast<Eigen::Index>(contact_.sum());
+    // While no cell comes in, the contact only loses cells: as many are the same ones.
+    const bool same = cells == cells_ && !restart_;
+    cells_ = cells;
+    area_ = total(contact_);
+    held_ = contact_ * residual_;
+    precondition(held_, steepest_);
     if (problem_.force_control) {  // a direction that leaves the force as it is
         if (!same) {
-            ones_ = precondition(contact_.cast<double>(), contact_, area);
+            precondition(contact_, ones_);
             ones_total_ = total(ones_);
         }
         steepest_ -= total(steepest_) / ones_total_ * ones_;
     }
-    const double overlap = (reachable_ && !contact_).select(weight_ * -residual_.min(0.0), 0.0).sum();
+    const double overlap = -(weight_ * (reachable_ - contact_) * residual_.min(0.0)).sum();
     const double length = length_ > 0.0 ? length_ : 1.0 / compliance_.diagonal();
     return length * (total(steepest_.abs()) + overlap) / std::max(total(pressure_), 1e-300);
 }
 
 void ConstrainedConjugateGradients::step() {
-    const Mask& contact = contact_;
-    const Eigen::ArrayXd in_contact = contact.select(weight_, 0.0);
-    const double area = in_contact.sum();
-    const double norm = dot(residual_, steepest_);
+    const double norm = dot(held_, steepest_);
     if (restart_) {
         direction_ = steepest_;
     } else {
         // Polak and Ribiere's factor, which forgets what the contact's changes have spoilt.
         const double factor = std::max(0.0, (norm - dot(last_residual_, steepest_)) / last_norm_);
-        direction_ = contact.select(steepest_ + factor * direction_, 0.0);
-        if (problem_.force_control) {
-            direction_ = contact.select(direction_ - total(direction_) / area, 0.0);
-        }
+        direction_ = contact_ * (steepest_ + factor * direction_);
+        if (problem_.force_control) direction_ -= total(direction_) / area_ * contact_;
     }
     last_norm_ = norm > 0.0 ? norm : 1.0;
-    last_residual_ = residual_;
+    last_residual_ = held_;
 
     compliance_.apply(direction_, problem_.coverage, image_);
     double mean = 0.0;
     if (problem_.force_control) {
-        mean = (in_contact * image_).sum() / area;
+        mean = dot(contact_, image_) / area_;
         image_ -= mean;
     }
-    const double curvature = dot(contact.select(image_, 0.0), direction_);
+    const double curvature = dot(image_, direction_);
     stale_ = restart_ = false;
     double length = 0.0;
     if (curvature > 0.0) {
-        length = dot(contact.select(residual_, 0.0), direction_) / curvature;
-        length_ = length;
-        pressure_ -= length * direction_;
-        const Mask lost = contact && pressure_ <= 0.0;
-        stale_ = lost.any();
-        pressure_ = pressure_.max(0.0);
+        length_ = length = dot(held_, direction_) / curvature;
+        pressure_ = (pressure_ - length * direction_).max(0.0);
+        stale_ = (pressure_ > 0.0).count() < cells_;
     }
     // Cells that overlap without pressure come into contact.
-    const Mask overlap = reachable_ && pressure_ <= 0.0 && residual_ < 0.0;
-    if (overlap.any()) {
+    held_ = (reachable_ - contact_) * residual_.min(0.0);
+    if (held_.minCoeff() < 0.0) {
         stale_ = restart_ = true;
-        const double scale = length > 0.0 ? length : 1.0 / compliance_.diagonal();
-        pressure_ = overlap.select(-scale * residual_, pressure_);
+        pressure_ -= (length > 0.0 ? length : 1.0 / compliance_.diagonal()) * held_;
     }
     if (!stale_) {
         residual_ -= length * image_;
@@ -233,7 +223,7 @@ ContactSolution ConstrainedConjugateGradients::solve(const Eigen::ArrayXd* start
     ContactSolution solution;
     const Eigen::Index n = gap_.size();
     solution.pressure = Eigen::ArrayXd::Zero(n);
-    if (!reachable_.any() || (problem_.force_control && problem_.force == 0.0)) {
+    if (reachable_.sum() == 0.0 || (problem_.force_control && problem_.force == 0.0)) {
         solution.converged = !problem_.force_control || problem_.force == 0.0;
         solution.approach = problem_.force_control ? 0.0 : problem_.approach;
         return solution;

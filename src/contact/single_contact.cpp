@@ -177,6 +177,19 @@ void Workpiece::validate() const {
     if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
 }
 
+double foundation_stiffness(const ContactWheel& wheel, ComplianceOperator& compliance,
+                            double force) {
+    SingleContact contact;
+    contact.wheel = wheel;
+    contact.spacing = std::max(0.5, wheel.width / 64);
+    contact.force = force;
+    contact.tolerance = 1e-3;
+    contact.approach = press(contact, compliance).solution.approach;
+    contact.force_control = false;
+    ElasticFoundation unit(1.0);  // whose force is proportional to its stiffness
+    return force / press(contact, unit).solution.force;
+}
+
 SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance) {
     return Press(contact, compliance).run();
 }

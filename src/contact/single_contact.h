@@ -43,4 +43,9 @@ struct SingleContactResult {
 /// grows until the footprint does not reach its ends. Throws InputError.
 SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance);
 
+/// Stiffness (MPa/mm) of the elastic foundation that meets a plane under `force` (N) at the same
+/// approach as `compliance` does. Its patch is still another: see docs/methods.md.
+double foundation_stiffness(const ContactWheel& wheel, ComplianceOperator& compliance,
+                            double force);
+
 }  // namespace beltgrinding

@@ -29,6 +29,8 @@ ContactWheel wheel_from(const py::dict& given) {
 
 namespace {
 
+constexpr double kUsualForce = 50.0;  // N, for a foundation as stiff as the rim if none is given
+
 WheelRimDesign rim_from(py::dict& d, const ContactWheel& wheel, const Elasticity& elasticity,
                         double thickness) {
     WheelRimDesign design;
@@ -75,34 +77,29 @@ Workpiece workpiece_from(const py::dict& given) {
 }  // namespace
 
 std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
-                                                    const ContactWheel& wheel) {
+                                                    const ContactWheel& wheel, double force) {
     py::dict d = copy_of(given);
     const auto model = take<std::string>(d, "model", "wheel_rim");
-    std::unique_ptr<ComplianceOperator> result;
-    if (model == "elastic_foundation") {
-        result = std::make_unique<ElasticFoundation>(take(d, "stiffness", 0.5));
-        refuse_rest(d, "compliance");
-        return result;
-    }
     Elasticity elasticity;
     elasticity.youngs_modulus = take(d, "youngs_modulus", elasticity.youngs_modulus);
     elasticity.poissons_ratio = take(d, "poissons_ratio", elasticity.poissons_ratio);
     const double thickness = take(d, "rim_thickness", 15.0);
-    if (model == "wheel_rim") {
-        BeltPlate belt;
-        belt.tension = take(d, "belt_tension", 0.0);
-        belt.bending = take(d, "belt_bending", 0.0);
-        result = std::make_unique<WheelRim>(rim_from(d, wheel, elasticity, thickness), belt);
-    } else if (model == "bonded_layer") {
-        result = std::make_unique<BondedLayer>(elasticity, thickness);
-    } else if (model == "half_space") {
-        result = std::make_unique<HalfSpace>(elasticity);
-    } else {
-        throw InputError("compliance: there is no model '" + model +
-                         "'; use wheel_rim, bonded_layer, half_space or elastic_foundation");
-    }
+    const double stiffness = take(d, "stiffness", 0.0);
+    BeltPlate belt;
+    belt.tension = take(d, "belt_tension", 0.0);
+    belt.bending = take(d, "belt_bending", 0.0);
+    const WheelRimDesign design = rim_from(d, wheel, elasticity, thickness);
     refuse_rest(d, "compliance");
-    return result;
+    if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt);
+    if (model == "bonded_layer") return std::make_unique<BondedLayer>(elasticity, thickness);
+    if (model == "half_space") return std::make_unique<HalfSpace>(elasticity);
+    if (model == "elastic_foundation") {
+        if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
+        WheelRim rim(design, belt);
+        return std::make_unique<ElasticFoundation>(foundation_stiffness(wheel, rim, force));
+    }
+    throw InputError("compliance: there is no model '" + model +
+                     "'; use wheel_rim, bonded_layer, half_space or elastic_foundation");
 }
 
 void bind_contact(py::module_& m) {
@@ -122,7 +119,8 @@ void bind_contact(py::module_& m) {
             contact.approach = approach.value_or(0.0);
             contact.spacing = spacing;
             contact.tolerance = tolerance;
-            const auto elastic = compliance_from(compliance, contact.wheel);
+            const auto elastic =
+                compliance_from(compliance, contact.wheel, force.value_or(kUsualForce));
             SingleContactResult result;
             {
                 const py::gil_scoped_release release;

@@ -152,7 +152,7 @@ void bind_simulation(py::module_& m) {
            const py::dict& compliance, const py::dict& law, const py::dict& options,
            const RunContext* context) {
             const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = compliance_from(compliance, o.wheel);
+            const auto elastic = compliance_from(compliance, o.wheel, o.force);
             const auto removal = law_from(law);
             SimulationResult result;
             {

@@ -30,8 +30,9 @@ py::dict copy_of(const py::dict& d);
 /// A contact wheel from a dict of its members.
 ContactWheel wheel_from(const py::dict& given);
 
-/// The compliance operator that a dict describes: "model" and its parameters, for `wheel`.
+/// The compliance operator that a dict describes: "model" and the parameters of any, for `wheel`
+/// under about `force` N.
 std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
-                                                    const ContactWheel& wheel);
+                                                    const ContactWheel& wheel, double force);
 
 }  // namespace beltgrinding::python

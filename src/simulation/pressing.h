@@ -27,6 +27,8 @@ class Pressing {
     State press_again(const HeightField& field, double force, SimulationResult& result);
 
     const ContactSolution& solution() const { return solution_; }
+    /// mm by which the wheel reaches into the surface where that is highest.
+    double indentation() const { return solution_.approach - map_.lowest(); }
     /// mm along z from the programmed pose to the wheel as pressed.
     double approach() const { return placed_ + solution_.approach; }
     GapMap& map() { return map_; }

@@ -67,8 +67,8 @@ class HeightGuard {
 /// Removes what the law says for the pressed wheel during one step, in as many parts as the
 /// pressure needs to follow. Returns the volume, mm3.
 double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, const PathStep& step,
-             const SimulationOptions& options, const ComplianceOperator& compliance,
-             std::vector<std::uint32_t>& changed, SimulationResult& result) {
+             const SimulationOptions& options, std::vector<std::uint32_t>& changed,
+             SimulationResult& result) {
     double volume = 0.0;
     double left = step.duration;
     Eigen::ArrayXd rate;
@@ -81,7 +81,7 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
                                      contact.force, contact.area};
             law.rate(contact.pressure, state, rate);
             const double fastest = rate.maxCoeff();
-            const double indentation = contact.peak_pressure * compliance.diagonal();
+            const double indentation = pressing.indentation();
             if (fastest > 0.0) {
                 part =
                     std::clamp(kRecession * indentation / fastest, step.duration / kMaxParts, left);
@@ -163,8 +163,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
                 }
             }
             changed.clear();
-            const double volume =
-                grind(field, pressing, law, step, options, compliance, changed, result);
+            const double volume = grind(field, pressing, law, step, options, changed, result);
             record.removal_rate = static_cast<float>(volume / step.duration);
             const Stopwatch watch(result.refit_s);
             std::sort(changed.begin(), changed.end());

@@ -13,7 +13,7 @@ def test_the_readme_macro_runs_as_it_stands(freecad):
     make = "from beltgrinding.examples import blade\nblade.make('build/demo')\n"
     output = freecad.run(make + "\n".join(lines) + "\n")
     share = float(re.search(r"^(\d+\.\d+) -\d+", output, re.M).group(1))
-    assert 30 < share < 95
+    assert 5 < share < 95
     assert (freecad.folder / "blade.FCStd").is_file()
 
 
@@ -22,7 +22,7 @@ def keys(rule, name=""):
     for key, value in rule.get("properties", {}).items():
         full = f"{name}.{key}" if name else key
         array = value.get("type") == "array" and "properties" in value.get("items", {})
-        if "$ref" not in value and not array:
+        if "$ref" not in value:
             yield full, value
         yield from keys(value["items"] if array else value, full + ("[]" if array else ""))
 
@@ -39,7 +39,7 @@ def test_the_job_files_page_has_every_key_with_its_default():
             assert rows[name] == f"`{json.dumps(rule['default'])}`", name
     ours = {name for name in rows if name not in ("key", "---")}
     frames = {name for name in ours if "a frame" in page.split(f"| {name} |")[1].split("\n")[0]}
-    assert ours - frames <= set(found) | {"programs", "programs[].poses"}
+    assert ours - frames <= set(found)
 
 
 def test_every_link_of_the_documentation_leads_somewhere():

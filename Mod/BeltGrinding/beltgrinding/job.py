@@ -289,14 +289,34 @@ def tool_path(job, index, warnings):
         raise InputError(f"{where}: {error}") from None
 
 
+def compliance_arguments(compliance):
+    """The dict that core takes for the elasticity of a wheel."""
+    names = {
+        "youngs_modulus_MPa": "youngs_modulus",
+        "poissons_ratio": "poissons_ratio",
+        "rim_thickness_mm": "rim_thickness",
+        "belt_tension_N_per_mm": "belt_tension",
+        "belt_bending_N_mm": "belt_bending",
+        "stiffness_MPa_per_mm": "stiffness",
+    }
+    result = {name: float(compliance[key]) for key, name in names.items()}
+    result["model"] = compliance["model"]
+    result["layers"] = [
+        {
+            "thickness": float(layer["thickness_mm"]),
+            "youngs_modulus": float(layer["youngs_modulus_MPa"]),
+            "poissons_ratio": float(layer["poissons_ratio"]),
+        }
+        for layer in compliance["layers"]
+    ]
+    return result
+
+
 def engine_arguments(job):
     """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
     machine = job["belt_machine"]
     wheel = {name[:-3]: float(value) for name, value in machine["wheel"].items()}
-    compliance = {
-        "model": machine["compliance"]["model"],
-        "stiffness": float(machine["compliance"]["stiffness_MPa_per_mm"]),
-    }
+    compliance = compliance_arguments(machine["compliance"])
     law = {
         "model": job["law"]["model"],
         "coefficient": float(job["law"]["coefficient_mm2_per_N"]),

@@ -11,9 +11,15 @@ QUANTITIES = {
     "App::PropertyAngle",
     "App::PropertySpeed",
     "App::PropertyForce",
+    "App::PropertyPressure",
 }
 MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
-NOT_NEGATIVE = {"App::PropertyLength", "App::PropertySpeed", "App::PropertyForce"}
+NOT_NEGATIVE = {
+    "App::PropertyLength",
+    "App::PropertySpeed",
+    "App::PropertyForce",
+    "App::PropertyPressure",
+}
 
 
 def quantity_field(quantity):

@@ -69,7 +69,21 @@ class BeltMachinePanel(Panel):
         wheel.add("WheelRadius", translate("BeltGrinding", "Radius"))
         wheel.add("WheelWidth", translate("BeltGrinding", "Width"))
         wheel.add("CrownRadius", translate("BeltGrinding", "Crown radius (0: cylinder)"))
-        wheel.add("Stiffness", translate("BeltGrinding", "Stiffness"), unit="MPa/mm")
+        models = {
+            "wheel_rim": translate("BeltGrinding", "Wheel rim"),
+            "bonded_layer": translate("BeltGrinding", "Bonded layer"),
+            "half_space": translate("BeltGrinding", "Half-space"),
+            "elastic_foundation": translate("BeltGrinding", "Elastic foundation"),
+        }
+        wheel.add("Compliance", translate("BeltGrinding", "Elasticity"), models)
+        wheel.add("YoungsModulus", translate("BeltGrinding", "Young's modulus"))
+        wheel.add("PoissonsRatio", translate("BeltGrinding", "Poisson's ratio"))
+        wheel.add("RimThickness", translate("BeltGrinding", "Rim thickness"))
+        wheel.add("BeltTension", translate("BeltGrinding", "Belt tension"), unit="N/mm")
+        wheel.add("BeltBending", translate("BeltGrinding", "Belt bending"), unit="N mm")
+        wheel.add(
+            "Stiffness", translate("BeltGrinding", "Stiffness (0: of the rim)"), unit="MPa/mm"
+        )
         belt = Form(obj, translate("BeltGrinding", "Belt and control"))
         belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
         belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
@@ -93,7 +107,7 @@ class BeltMachinePanel(Panel):
         for form in (wheel, belt, cell):
             form.changed = self.arrange
             self.body.addWidget(form)
-        self.belt = belt
+        self.belt, self.wheel = belt, wheel
         self.finish()
         self.arrange()
 
@@ -105,6 +119,18 @@ class BeltMachinePanel(Panel):
         }
         self.cell.show_rows({"Holding"} | frames[self.obj.Holding])
         force = {"Force", "ForceTravel"} if self.obj.Control == "force" else set()
+        rubber = {"YoungsModulus", "PoissonsRatio"}
+        rim = rubber | {"RimThickness"}
+        belt = {"BeltTension", "BeltBending"}
+        used = {
+            "wheel_rim": rim | belt,
+            "bonded_layer": rim,
+            "half_space": rubber,
+            "elastic_foundation": {"Stiffness"}
+            | (rim | belt if self.obj.Stiffness <= 0 else set()),
+        }
+        shape = {"WheelRadius", "WheelWidth", "CrownRadius", "Compliance"}
+        self.wheel.show_rows(shape | used[self.obj.Compliance])
         self.belt.show_rows({"BeltSpeed", "BeltWear", "Control"} | force)
         self.tell("")
 
@@ -116,5 +142,12 @@ class BeltMachinePanel(Panel):
         ):
             if getattr(self.obj, name).Value <= 0:
                 raise InputError(text)
-        if self.obj.Stiffness <= 0:
-            raise InputError(translate("BeltGrinding", "The stiffness must be positive."))
+        rim = self.obj.Compliance in ("wheel_rim", "bonded_layer")
+        if rim and not 0 < self.obj.RimThickness.Value < self.obj.WheelRadius.Value:
+            raise InputError(
+                translate("BeltGrinding", "The rim must be thinner than the wheel's radius.")
+            )
+        if self.obj.Compliance != "elastic_foundation" and self.obj.YoungsModulus.Value <= 0:
+            raise InputError(translate("BeltGrinding", "Young's modulus must be positive."))
+        if not 0 <= self.obj.PoissonsRatio <= 0.499:
+            raise InputError(translate("BeltGrinding", "Poisson's ratio lies from 0 to 0.499."))

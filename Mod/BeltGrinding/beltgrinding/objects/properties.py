@@ -7,8 +7,9 @@ from typing import NamedTuple
 from .. import InputError
 from ..job import schema
 
-# FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N.
-FACTOR = {"Force": 1000.0}
+# FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
+# pressure in kPa.
+FACTOR = {"Force": 1000.0, "Pressure": 1000.0}
 
 
 class Key(NamedTuple):
@@ -59,6 +60,7 @@ def add_keys(obj, keys):
     """Adds what ``obj`` lacks, with the schema's defaults."""
     for key in keys:
         if key.name in obj.PropertiesList:
+            _widen(obj, key)
             continue
         found, default = rule(key.key)
         obj.addProperty(f"App::Property{key.kind}", key.name, key.group, found["description"])
@@ -66,6 +68,15 @@ def add_keys(obj, keys):
             setattr(obj, key.name, found["enum"])
         if default is not None:
             set_value(obj, key, default)
+
+
+def _widen(obj, key):
+    """Gives an enumeration of an older file the choices that have come since."""
+    if key.kind == "Enumeration":
+        choices, value = rule(key.key)[0]["enum"], getattr(obj, key.name)
+        if obj.getEnumerationsOfProperty(key.name) != choices:
+            setattr(obj, key.name, choices)
+            setattr(obj, key.name, value)
 
 
 def add_outputs(obj, outputs):

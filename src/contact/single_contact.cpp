@@ -112,20 +112,22 @@ class Press {
             problem_.approach = 0.0;
         }
         Eigen::ArrayXd start;
+        int iterations = 0;
         for (int k = 0; k < kMaxPlacements; ++k) {
             set_gap(placed);
-            result.time = 0.0;
             {
                 const Stopwatch watch(result.time);
                 result.solution =
                     solve_contact(problem_, compliance_, start.size() > 0 ? &start : nullptr);
             }
+            iterations += result.solution.iterations;
             if (!contact_.force_control) break;
             placed += result.solution.approach;
             start = result.solution.pressure;
             if (std::abs(result.solution.approach) < kPlaced) break;
         }
         result.solution.approach = placed - touch;
+        result.solution.iterations = iterations;
         return result;
     }
 

@@ -34,8 +34,8 @@ struct SingleContact {
 
 struct SingleContactResult {
     ContactGrid grid;          ///< long enough for the whole footprint
-    ContactSolution solution;  ///< `approach` from first touch, mm
-    double time = 0.0;         ///< s for the last solve, set-up of the compliance left out
+    ContactSolution solution;  ///< `approach` from first touch, mm; all iterations
+    double time = 0.0;         ///< s of all solves, without setting up the compliance
 };
 
 /// Presses a wheel on a workpiece. The gap is radial from the wheel where it stands when pressed:

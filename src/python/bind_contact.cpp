@@ -152,7 +152,7 @@ void bind_contact(py::module_& m) {
         py::arg("tolerance") = 1e-4,
         "One contact of a wheel with an analytic workpiece: dict(x (nx,) along the circumference, "
         "y (ny,), pressure (ny, nx) MPa, force N, approach mm from first touch, contact_area mm2, "
-        "peak_pressure, iterations, converged, time s of the last solve, model).");
+        "peak_pressure, iterations, converged, time s of all solves, model).");
 }
 
 }  // namespace beltgrinding::python

@@ -21,7 +21,11 @@ def _parser():
     run.add_argument("job", help="job.json")
     run.add_argument("-o", "--output", required=True, help="folder for the results")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
-    commands.add_parser("schema", help="print the JSON Schema of job.json")
+    contact = commands.add_parser("contact", help="press the wheel on an analytic workpiece")
+    contact.add_argument("contact", help="contact.json")
+    contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
+    printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
+    printed.add_argument("name", nargs="?", choices=("job", "contact"), default="job")
     return parser
 
 
@@ -65,6 +69,15 @@ def _run(arguments):
         _report(outcome["result"].summary, arguments.output)
 
 
+def _contact(arguments):
+    from . import contact
+
+    result = contact.run(contact.load(arguments.contact))
+    if arguments.output:
+        contact.write_csv(result, arguments.output)
+    print(contact.to_json(result))
+
+
 def _report(summary, output):
     for warning in summary["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
@@ -83,7 +96,7 @@ def main(argv=None):
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
-        from . import Cancelled, InputError, core, job
+        from . import Cancelled, InputError, core, schemas
     except ImportError as error:
         print(f"beltgrind: {error}", file=sys.stderr)
         return 1
@@ -91,7 +104,9 @@ def main(argv=None):
         if arguments.version:
             print(json.dumps(core.versions()))
         elif arguments.command == "schema":
-            print(json.dumps(job.schema(), indent=2))
+            print(json.dumps(schemas.schema(arguments.name), indent=2))
+        elif arguments.command == "contact":
+            _contact(arguments)
         elif arguments.command == "run":
             _run(arguments)
         else:

@@ -3,16 +3,13 @@
 The format is Resources/schema/job.schema.json; every default stands there and nowhere else.
 """
 
-import copy
-import difflib
-import json
 import math
 import time
 from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, resources
+from . import InputError, core, frames, schemas
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -25,39 +22,17 @@ CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from
 
 def schema():
     """The JSON Schema of a job, as a dict."""
-    with open(resources() / "schema" / "job.schema.json", encoding="utf-8") as file:
-        return json.load(file)
+    return schemas.schema("job")
 
 
 def load(path):
     """Reads and validates a job file; its paths come back absolute. Raises InputError."""
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
-    try:
-        job = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}: line {error.lineno}: no JSON: {error.msg}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: {error}") from None
+    job = schemas.read_json(path)
     try:
         return validate(job, path.resolve().parent)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-
-
-def _refuse_constant(name):
-    raise ValueError(f"{name} is no number that a job can use")
-
-
-def _finite(text):
-    value = float(text)
-    if not math.isfinite(value):
-        raise ValueError(f"{text} is too large a number")
-    return value
 
 
 def validate(job, folder="."):
@@ -65,17 +40,7 @@ def validate(job, folder="."):
 
     Raises InputError naming the key that is unknown, missing or wrong.
     """
-    import jsonschema
-
-    rules = schema()
-    errors = jsonschema.Draft7Validator(rules).iter_errors(job)
-    first = min(errors, key=lambda e: (len(e.absolute_path), str(e.absolute_path)), default=None)
-    if first is not None:
-        raise InputError(_explain(first))
-    job = copy.deepcopy(job)
-    _fill(job, rules)
-    if not all(math.isfinite(value) for value in _numbers(job)):
-        raise InputError("the job holds a number that is not finite")
+    job = schemas.checked(job, schema(), "job")
     for holder in [job["design"], job["stock"], *job["programs"]]:
         if "file" in holder:
             holder["file"] = str(Path(folder, holder["file"]).resolve())
@@ -88,47 +53,6 @@ def validate(job, folder="."):
     if lower > upper:
         raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
     return job
-
-
-def _explain(error):
-    """One sentence for a jsonschema error, naming the key."""
-    where = ".".join(str(part) for part in error.absolute_path) or "job"
-    if error.validator == "additionalProperties":
-        known = list(error.schema["properties"])
-        unknown = next(key for key in error.instance if key not in known)
-        near = difflib.get_close_matches(unknown, known, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
-        return f"{where}: unknown key '{unknown}'; {hint}"
-    if error.validator == "required":
-        missing = next(key for key in error.validator_value if key not in error.instance)
-        return f"{where}: the key '{missing}' is missing"
-    if error.validator == "oneOf":
-        keys = " or ".join(f"'{rule['required'][0]}'" for rule in error.validator_value)
-        return f"{where}: give exactly one of {keys}"
-    return f"{where}: {error.message[:200]}"
-
-
-def _fill(value, rule):
-    """Puts the schema's defaults in where ``value`` has nothing (frames have no defaults here)."""
-    if isinstance(value, dict):
-        for key, sub in rule.get("properties", {}).items():
-            if key not in value and "default" in sub:
-                value[key] = copy.deepcopy(sub["default"])
-            if key in value:
-                _fill(value[key], sub)
-    elif isinstance(value, list):
-        for item in value:
-            _fill(item, rule.get("items", {}))
-
-
-def _numbers(value):
-    if isinstance(value, dict):
-        value = list(value.values())
-    if isinstance(value, list):
-        for item in value:
-            yield from _numbers(item)
-    elif isinstance(value, (int, float)):
-        yield value
 
 
 class _Phases:

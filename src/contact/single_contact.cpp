@@ -126,6 +126,8 @@ class Press {
             start = result.solution.pressure;
             if (std::abs(result.solution.approach) < kPlaced) break;
         }
+        result.gap = problem_.gap;
+        result.coverage = problem_.coverage;
         result.solution.approach = placed - touch;
         result.solution.iterations = iterations;
         return result;

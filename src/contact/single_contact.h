@@ -35,6 +35,8 @@ struct SingleContact {
 struct SingleContactResult {
     ContactGrid grid;          ///< long enough for the whole footprint
     ContactSolution solution;  ///< `approach` from first touch, mm; all iterations
+    Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where it stands; +inf: nothing there
+    Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
     double time = 0.0;         ///< s of all solves, without setting up the compliance
 };
 

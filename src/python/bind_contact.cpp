@@ -102,6 +102,30 @@ std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
                      "'; use wheel_rim, bonded_layer, half_space or elastic_foundation");
 }
 
+py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {
+    py::array_t<double> array({grid.ny, grid.nx});
+    Eigen::Map<Eigen::ArrayXd>(array.mutable_data(), grid.cells()) = values;
+    return array;
+}
+
+py::dict contact_to_dict(const ContactGrid& grid, const ContactSolution& solution) {
+    py::array_t<double> s(grid.nx), y(grid.ny);
+    for (int i = 0; i < grid.nx; ++i) s.mutable_at(i) = grid.s(i);
+    for (int j = 0; j < grid.ny; ++j) y.mutable_at(j) = grid.y(j);
+    py::dict d;
+    d["x"] = s;
+    d["y"] = y;
+    d["pressure"] = cells(grid, solution.pressure);
+    d["cell_area"] = grid.cell_area();
+    d["force"] = solution.force;
+    d["approach"] = solution.approach;
+    d["contact_area"] = solution.area;
+    d["peak_pressure"] = solution.peak_pressure;
+    d["iterations"] = solution.iterations;
+    d["converged"] = solution.converged;
+    return d;
+}
+
 void bind_contact(py::module_& m) {
     m.def(
         "single_contact",
@@ -126,23 +150,10 @@ void bind_contact(py::module_& m) {
                 const py::gil_scoped_release release;
                 result = press(contact, *elastic);
             }
-            const ContactGrid& grid = result.grid;
-            py::array_t<double> pressure({grid.ny, grid.nx}), s(grid.nx), y(grid.ny);
-            Eigen::Map<Eigen::ArrayXd>(pressure.mutable_data(), grid.cells()) =
-                result.solution.pressure;
-            for (int i = 0; i < grid.nx; ++i) s.mutable_at(i) = grid.s(i);
-            for (int j = 0; j < grid.ny; ++j) y.mutable_at(j) = grid.y(j);
-            py::dict d;
-            d["x"] = s;
-            d["y"] = y;
-            d["pressure"] = pressure;
-            d["cell_area"] = grid.cell_area();
-            d["force"] = result.solution.force;
-            d["approach"] = result.solution.approach;
-            d["contact_area"] = result.solution.area;
-            d["peak_pressure"] = result.solution.peak_pressure;
-            d["iterations"] = result.solution.iterations;
-            d["converged"] = result.solution.converged;
+            py::dict d = contact_to_dict(result.grid, result.solution);
+            d["gap"] = cells(result.grid, result.gap);
+            d["coverage"] = cells(result.grid, result.coverage);
+            d["beyond_placed"] = 0.0;
             d["time"] = result.time;
             d["model"] = elastic->describe();
             return d;

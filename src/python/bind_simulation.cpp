@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "python/dict.h"
@@ -29,6 +30,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.contact_tolerance = take(d, "contact_tolerance", o.contact_tolerance);
     o.stepping.max_travel = take(d, "max_travel", o.stepping.max_travel);
     o.stepping.max_angle = take(d, "max_angle", o.stepping.max_angle);
+    o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
     return o;
 }
@@ -130,6 +132,14 @@ void bind_simulation(py::module_& m) {
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
              "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source.")
         .def("__len__", [](const ToolPath& path) { return path.poses().size(); })
+        .def(
+            "grinds",
+            [](const ToolPath& path) {
+                const auto& poses = path.poses();
+                return std::any_of(poses.begin() + 1, poses.end(),
+                                   [](const PathPose& pose) { return !pose.rapid; });
+            },
+            "Whether any motion is no rapid one.")
         .def("duration", &ToolPath::duration, "s")
         .def(
             "work_from_contact",
@@ -169,6 +179,32 @@ void bind_simulation(py::module_& m) {
         py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
         "Grinds field along path; see simulation/simulation.h for units.");
+    m.def(
+        "contact_at",
+        [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,
+           const py::dict& compliance, const py::dict& options) {
+            const SimulationOptions o = options_from(wheel, options);
+            const auto elastic = compliance_from(compliance, o.wheel, o.force);
+            PoseContact contact;
+            {
+                const py::gil_scoped_release release;
+                contact = contact_at(field, path, pose, *elastic, o);
+            }
+            py::dict d = contact_to_dict(contact.grid, contact.solution);
+            d["approach"] = contact.placed + contact.solution.approach;
+            d["beyond_placed"] = contact.solution.approach;
+            d["commanded_force"] = contact.commanded;
+            d["gap"] = cells(contact.grid, contact.gap);
+            d["coverage"] = cells(contact.grid, contact.coverage);
+            d["model"] = elastic->describe();
+            return d;
+        },
+        py::arg("field"), py::arg("path"), py::arg("pose"), py::arg("wheel"), py::arg("compliance"),
+        py::arg("options"),
+        "The contact at pose number `pose` (from 0), nothing is ground: as single_contact, and gap "
+        "(ny, nx) mm with the wheel `beyond_placed` mm short of where it stands, coverage (ny, "
+        "nx); "
+        "approach: mm along z from the programmed pose.");
 }
 
 }  // namespace beltgrinding::python

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "contact/compliance.h"
+#include "contact/contact_solver.h"
 #include "contact/contact_wheel.h"
 #include "python/arrays.h"
 
@@ -34,5 +35,11 @@ ContactWheel wheel_from(const py::dict& given);
 /// under about `force` N.
 std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
                                                     const ContactWheel& wheel, double force);
+
+/// (ny, nx) array of one value per cell.
+py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values);
+
+/// x, y, pressure, cell_area, force, approach, contact_area, peak_pressure, iterations, converged.
+py::dict contact_to_dict(const ContactGrid& grid, const ContactSolution& solution);
 
 }  // namespace beltgrinding::python

@@ -181,7 +181,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
         }
         result.steps.push_back(record);
     }
-    if (!touched) {
+    if (!touched && options.must_touch) {
         throw InputError(
             "the wheel never touches the stock on this path; check the frames of the "
             "cell (tool in hand or part in hand), the unit and the travel of the force "
@@ -194,6 +194,33 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
     result.events = events.take();
     guard.keep();
     return result;
+}
+
+PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
+                       ComplianceOperator& compliance, const SimulationOptions& options) {
+    validate(field, options);
+    if (pose >= path.poses().size()) {
+        throw InputError("there is no pose " + std::to_string(pose + 1) + "; the path has " +
+                         std::to_string(path.poses().size()));
+    }
+    const PathPose& at = path.poses()[pose];
+    PoseContact contact;
+    contact.commanded = at.force >= 0.0 ? at.force : options.force;
+    const SegmentTree tree(field);
+    Pressing pressing(options, std::max(options.contact_spacing, kSamplesPerCell * field.spacing),
+                      compliance);
+    SimulationResult phases;
+    const auto state = pressing.press(
+        field, tree, path.frames().work_from_contact(at.base_from_tcp), contact.commanded, phases);
+    if (state == Pressing::State::kNoContact) {
+        throw InputError("the wheel does not touch the stock at pose " + std::to_string(pose + 1));
+    }
+    contact.grid = pressing.map().grid();
+    contact.gap = pressing.map().gap();
+    contact.coverage = pressing.map().coverage();
+    contact.solution = pressing.solution();
+    contact.placed = pressing.approach() - contact.solution.approach;
+    return contact;
 }
 
 }  // namespace beltgrinding

@@ -7,6 +7,7 @@
 
 #include "base/run_context.h"
 #include "contact/compliance.h"
+#include "contact/contact_solver.h"
 #include "contact/contact_wheel.h"
 #include "heightfield/height_field.h"
 #include "removal/removal_law.h"
@@ -46,6 +47,7 @@ struct SimulationOptions {
     double belt_wear = 1.0;        ///< k_t
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
     double contact_tolerance = 1e-3;  ///< relative error of the pressure field
+    bool must_touch = true;           ///< a path that never touches the stock is an error
     SteppingOptions stepping;
 };
 
@@ -66,5 +68,20 @@ struct SimulationResult {
 SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOperator& compliance,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});
+
+/// The contact at one programmed pose, on the field as it is.
+struct PoseContact {
+    ContactGrid grid;
+    Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where `placed` says; +inf: nothing
+    Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
+    ContactSolution solution;  ///< its approach counts from `placed`
+    double placed = 0.0;       ///< mm along z from the programmed pose
+    double commanded = 0.0;    ///< N; what is missing to it lies beyond the travel
+};
+
+/// Presses the wheel at the pose number `pose` (from 0) without grinding. Throws InputError if the
+/// wheel does not touch there.
+PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
+                       ComplianceOperator& compliance, const SimulationOptions& options);
 
 }  // namespace beltgrinding

@@ -21,9 +21,13 @@ def _parser():
     run.add_argument("job", help="job.json")
     run.add_argument("-o", "--output", required=True, help="folder for the results")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
-    contact = commands.add_parser("contact", help="press the wheel on an analytic workpiece")
-    contact.add_argument("contact", help="contact.json")
+    contact = commands.add_parser("contact", help="press the wheel on a workpiece, at one place")
+    contact.add_argument("contact", help="contact.json; or a job.json, with --pose")
+    contact.add_argument("--pose", type=int, help="pose of the job's program, from 1")
+    contact.add_argument("--program", type=int, default=1, help="program of the job, from 1")
     contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
+    contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
+    contact.add_argument("--keep", help="folder for CalculiX's deck and results")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument("name", nargs="?", choices=("job", "contact"), default="job")
     return parser
@@ -70,12 +74,23 @@ def _run(arguments):
 
 
 def _contact(arguments):
-    from . import contact
+    from . import contact, job
 
-    result = contact.run(contact.load(arguments.contact))
+    if arguments.pose is None:
+        given = contact.load(arguments.contact)
+        result = contact.run(given)
+    else:
+        given = job.load(arguments.contact)
+        result = contact.at_pose(given, arguments.pose, arguments.program)
+    figures, truth = contact.summary(result), None
+    if arguments.reference:
+        from . import reference
+
+        truth = reference.solve(result, contact.rim(given), arguments.keep)
+        figures.update(reference.compare(result, truth))
     if arguments.output:
-        contact.write_csv(result, arguments.output)
-    print(contact.to_json(result))
+        contact.write_csv(result, arguments.output, truth)
+    print(contact.to_json(figures))
 
 
 def _report(summary, output):

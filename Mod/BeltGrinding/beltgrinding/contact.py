@@ -1,6 +1,7 @@
 """Single contacts of a wheel, for people who study it: with an analytic workpiece, or at a pose."""
 
 import json
+import time
 from pathlib import Path
 
 import numpy as np
@@ -48,9 +49,6 @@ def run(contact):
     iterations, converged, time s, model, cell_area mm2).
     """
     wheel, workpiece = contact["wheel"], contact["workpiece"]
-    modulus = wheel.get("youngs_modulus_MPa", DEFAULT_MODULUS)
-    if "shore_a" in wheel:
-        modulus = gent(wheel["shore_a"])
     given = {"shape": workpiece["shape"], "axis_angle_deg": float(workpiece["axis_angle_deg"])}
     for key, name in (("radius_mm", "radius"), ("width_mm", "width")):
         if key in workpiece:
@@ -65,7 +63,7 @@ def run(contact):
         jobs.compliance_arguments(
             {
                 "model": contact["model"],
-                "youngs_modulus_MPa": modulus,
+                "youngs_modulus_MPa": modulus(wheel),
                 "poissons_ratio": wheel["poissons_ratio"],
                 "rim_thickness_mm": wheel["rim_thickness_mm"],
                 "belt_tension_N_per_mm": wheel["belt_tension_N_per_mm"],
@@ -79,6 +77,63 @@ def run(contact):
         float(contact["spacing_mm"]),
         float(contact["tolerance"]),
     )
+
+
+def at_pose(job, pose, program=1):
+    """The contact of a validated job at a pose of a program (both numbered from 1), on the surface
+    as it is when the robot gets there. Returns what ``run`` does, and gap (ny, nx), coverage.
+    """
+    if not 1 <= program <= len(job["programs"]):
+        raise InputError(f"there is no program {program}; the job has {len(job['programs'])}")
+    warnings = []
+    path = jobs.tool_path(job, program - 1, warnings)
+    if not 1 <= pose <= len(path):
+        raise InputError(f"there is no pose {pose}; the program has {len(path)}")
+    context = core.RunContext()
+    field = jobs.make_field(job, jobs.read_design(job["design"]), warnings, context)
+    jobs.apply_stock(field, job["stock"], warnings, context)
+    wheel, compliance, law, options = jobs.engine_arguments(job)
+    before = [jobs.tool_path(job, i, warnings) for i in range(program - 1)]
+    if pose > 1:
+        before.append(jobs.tool_path(job, program - 1, warnings, pose))
+    for ground in before:
+        without = {**options, "must_touch": False}
+        if ground.grinds():
+            core.simulate(field, ground, wheel, compliance, law, without)
+    start = time.perf_counter()
+    result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
+    result["time"] = time.perf_counter() - start
+    return result
+
+
+def rim_of(wheel_radius_mm, elasticity):
+    """The rim that ``reference.solve`` takes. ``elasticity``: a dict with the keys of a job's
+    compliance. Raises InputError for a rim of several rubbers.
+    """
+    if elasticity.get("layers"):
+        raise InputError("the finite-element reference knows rims of one rubber only")
+    return {
+        "radius": float(wheel_radius_mm),
+        "thickness": float(elasticity["rim_thickness_mm"]),
+        "youngs_modulus": float(elasticity["youngs_modulus_MPa"]),
+        "poissons_ratio": float(elasticity["poissons_ratio"]),
+    }
+
+
+def rim(contact):
+    """The rim of a validated contact, or of a validated job."""
+    if "belt_machine" in contact:
+        machine = contact["belt_machine"]
+        return rim_of(machine["wheel"]["radius_mm"], machine["compliance"])
+    wheel = contact["wheel"]
+    return rim_of(wheel["outer_radius_mm"], {**wheel, "youngs_modulus_MPa": modulus(wheel)})
+
+
+def modulus(wheel):
+    """Young's modulus of a contact's wheel, MPa."""
+    if "shore_a" in wheel:
+        return gent(wheel["shore_a"])
+    return wheel.get("youngs_modulus_MPa", DEFAULT_MODULUS)
 
 
 def summary(result):
@@ -95,17 +150,22 @@ def summary(result):
     }
 
 
-def write_csv(result, path):
-    """Writes x_mm, y_mm, p_MPa of every cell of the footprint. Raises InputError."""
+def write_csv(result, path, reference=None):
+    """Writes x_mm, y_mm, p_MPa of every cell of the footprint, and p_reference_MPa if there is one.
+    Raises InputError.
+    """
     x, y = np.meshgrid(result["x"], result["y"])
-    rows = np.column_stack([x.ravel(), y.ravel(), result["pressure"].ravel() + 0.0])
-    lines = ["x_mm,y_mm,p_MPa", *(f"{a:.6g},{b:.6g},{p:.8g}" for a, b, p in rows.tolist()), ""]
+    columns = {"x_mm": x, "y_mm": y, "p_MPa": result["pressure"] + 0.0}
+    if reference is not None:
+        columns["p_reference_MPa"] = reference["pressure"] + 0.0
+    rows = np.column_stack([values.ravel() for values in columns.values()])
+    lines = [",".join(columns), *(",".join(f"{v:.8g}" for v in row) for row in rows.tolist()), ""]
     try:
         write_whole(Path(path), "\n".join(lines).encode())
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
 
 
-def to_json(result):
+def to_json(figures):
     """One line of JSON for the command line."""
-    return json.dumps(summary(result))
+    return json.dumps(figures)

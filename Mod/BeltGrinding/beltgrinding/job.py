@@ -202,10 +202,11 @@ def _frame(data, where):
         raise InputError(f"{where}: {error}") from None
 
 
-def tool_path(job, index, warnings):
-    """core.ToolPath of the job's program number ``index``."""
+def tool_path(job, index, warnings, count=None):
+    """core.ToolPath of the job's program number ``index``; of its first ``count`` poses."""
     where = program_name(job, index)
     arrays = program_arrays(job["programs"][index], where, warnings)
+    arrays = {name: values[:count] for name, values in arrays.items()}
     cell = {name: _frame(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
     try:
         return core.ToolPath(**arrays, holding=job["cell"]["holding"], **cell)

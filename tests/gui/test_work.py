@@ -206,3 +206,23 @@ assert not doc.Simulation.Events and doc.Simulation.RemovedVolume.Value > 1000
 """,
         window=True,
     )
+
+
+def test_the_pressure_at_any_pose(freecad):
+    freecad.run(
+        PREPARE
+        + """
+menu("Contact at a pose...")
+wait(lambda: "Highest pressure" in field("contactState").text())
+assert "Force: 30.0 N" in field("contactState").text()
+first = field("footprint").pixmap().toImage()
+assert first.width() > 50 and first.height() > 50
+colours = {first.pixel(x, first.height() // 2) for x in range(first.width())}
+assert len(colours) > 3  # a footprint, not one colour
+field("pose").setValue(6)
+wait(lambda: "Grinding up to pose 6" in field("contactState").text())
+wait(lambda: "Highest pressure" in field("contactState").text())
+press("Close")
+""",
+        window=True,
+    )

@@ -79,9 +79,10 @@ def run(contact):
     )
 
 
-def at_pose(job, pose, program=1):
+def at_pose(job, pose, program=1, context=None):
     """The contact of a validated job at a pose of a program (both numbered from 1), on the surface
     as it is when the robot gets there. Returns what ``run`` does, and gap (ny, nx), coverage.
+    Raises InputError, Cancelled.
     """
     if not 1 <= program <= len(job["programs"]):
         raise InputError(f"there is no program {program}; the job has {len(job['programs'])}")
@@ -89,7 +90,7 @@ def at_pose(job, pose, program=1):
     path = jobs.tool_path(job, program - 1, warnings)
     if not 1 <= pose <= len(path):
         raise InputError(f"there is no pose {pose}; the program has {len(path)}")
-    context = core.RunContext()
+    context = context or core.RunContext()
     field = jobs.make_field(job, jobs.read_design(job["design"]), warnings, context)
     jobs.apply_stock(field, job["stock"], warnings, context)
     wheel, compliance, law, options = jobs.engine_arguments(job)
@@ -99,7 +100,7 @@ def at_pose(job, pose, program=1):
     for ground in before:
         without = {**options, "must_touch": False}
         if ground.grinds():
-            core.simulate(field, ground, wheel, compliance, law, without)
+            core.simulate(field, ground, wheel, compliance, law, without, context)
     start = time.perf_counter()
     result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
     result["time"] = time.perf_counter() - start

@@ -228,6 +228,19 @@ class Deviation(Command):
         edit(found)
 
 
+class Contact(Command):
+    NAME = "BeltGrinding_Contact"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Contact", "Contact at a pose...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Contact", "Shows the pressure on the wheel's footprint at any pose"
+    )
+
+    def run(self):
+        from .contact_panel import ContactPanel
+
+        Gui.Control.showDialog(ContactPanel(active_job()))
+
+
 class ExampleBlade(Command):
     NAME = "BeltGrinding_ExampleBlade"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleBlade", "Example: compressor blade")
@@ -311,7 +324,7 @@ class ReadAgain(Command):
 
 
 WORK = (NewJob, Stock, BeltMachine, ImportProgram, Simulate, Deviation)
-MORE = (ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
+MORE = (Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
 
 
 def register():

@@ -10,7 +10,39 @@ from .compat import QtCore, translate
 POLL = 50  # ms
 
 
-class Runner(QtCore.QObject):
+class Background(QtCore.QObject):
+    """Runs ``work(context)`` in a thread; ``done(result or None, error or None)`` follows on the
+    window's thread.
+    """
+
+    def __init__(self, work, done):
+        super().__init__()
+        self.context = RunContext()
+        self.outcome = (None, None)
+        self.done = done
+        self.thread = threading.Thread(target=self._work, args=(work,), daemon=True)
+        self.thread.start()
+        self.timer = QtCore.QTimer(self)
+        self.timer.timeout.connect(self._poll)
+        self.timer.start(POLL)
+
+    def cancel(self):
+        """Asks the work to end; ``done`` follows with Cancelled."""
+        self.context.cancel()
+
+    def _work(self, work):
+        try:
+            self.outcome = (work(self.context), None)
+        except BaseException as error:  # handed to the window's thread
+            self.outcome = (None, error)
+
+    def _poll(self):
+        if not self.thread.is_alive():
+            self.timer.stop()
+            self.done(*self.outcome)
+
+
+class Runner(Background):
     """One run. The job's data are collected here and now (raises InputError); the document is
     written only in the end, on the window's thread, in one undo transaction.
 
@@ -18,30 +50,13 @@ class Runner(QtCore.QObject):
     """
 
     def __init__(self, job, progress, done):
-        super().__init__()
         self.document, self.name = job.Document, job.Name
-        self.progress, self.done = progress, done
+        self.progress, self.ended = progress, done
         self.folder = job_object.scratch_folder()
         self.data = job_object.to_data(job, self.folder.name)
         self.fingerprint = job_object.fingerprint(job)
-        self.context = RunContext()
-        self.result = self.error = None
         self.start = time.monotonic()
-        self.thread = threading.Thread(target=self._work, daemon=True)
-        self.thread.start()
-        self.timer = QtCore.QTimer(self)
-        self.timer.timeout.connect(self._poll)
-        self.timer.start(POLL)
-
-    def cancel(self):
-        """Asks the run to end; ``done`` follows with Cancelled."""
-        self.context.cancel()
-
-    def _work(self):
-        try:
-            self.result = jobs.run(self.data, self.context)
-        except BaseException as error:  # handed to the window's thread
-            self.error = error
+        super().__init__(lambda context: jobs.run(self.data, context), self._finish)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""
@@ -55,24 +70,25 @@ class Runner(QtCore.QObject):
             self.context.cancel()
         if self.thread.is_alive():
             self.progress(self.context.progress)
-            return
-        self.timer.stop()
+        super()._poll()
+
+    def _finish(self, result, error):
         self.folder.cleanup()
         simulation = None
-        if self.error is None:
+        if error is None:
             try:
-                simulation = self._store()
-            except Exception as error:
-                self.error = error
-        self.done(simulation, self.error)
+                simulation = self._store(result)
+            except Exception as problem:
+                error = problem
+        self.ended(simulation, error)
 
-    def _store(self):
+    def _store(self, result):
         job = self.job()
         if job is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
         self.document.openTransaction("Simulate")
         try:
-            simulation = api.store_result(job, self.result, self.fingerprint)
+            simulation = api.store_result(job, result, self.fingerprint)
             self.document.commitTransaction()
             return simulation
         except BaseException:

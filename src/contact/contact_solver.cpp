@@ -22,6 +22,9 @@ void validate(const ContactProblem& problem) {
     if (problem.force_control && (!std::isfinite(problem.force) || problem.force < 0.0)) {
         throw InputError("contact: the commanded force must be zero or positive, in newtons");
     }
+    if (!(problem.robot_compliance >= 0.0) || !std::isfinite(problem.robot_compliance)) {
+        throw InputError("contact: the robot's compliance must be zero or positive, in mm/N");
+    }
     if (!problem.force_control && !std::isfinite(problem.approach)) {
         throw InputError("contact: the commanded approach must be finite, in millimetres");
     }
@@ -89,7 +92,8 @@ void ConstrainedConjugateGradients::start_from(const Eigen::ArrayXd* start) {
     }
     if (total(pressure_) > 0.0) return;
     if (!problem_.force_control) {
-        // Every cell as a spring of its own: exact for a foundation, a fair guess otherwise.
+        // Every cell as a spring of its own: exact for a foundation and a rigid robot, a fair guess
+        // otherwise.
         pressure_ = reachable_ * (problem_.approach - gap_).max(0.0) / compliance_.diagonal();
         return;
     }
@@ -127,7 +131,7 @@ void ConstrainedConjugateGradients::update_residual() {
         contact_ = (pressure_ > 0.0).cast<double>() * weight_;
         delta_ = (contact_ * residual_).sum() / contact_.sum();
     } else {
-        delta_ = problem_.approach;
+        delta_ = problem_.approach - problem_.robot_compliance * total(pressure_);
     }
     residual_ -= delta_;
 }
@@ -197,6 +201,9 @@ void ConstrainedConjugateGradients::step() {
     double mean = 0.0;
     if (problem_.force_control) {
         mean = dot(contact_, image_) / area_;
+        image_ -= mean;
+    } else if (problem_.robot_compliance > 0.0) {
+        mean = -problem_.robot_compliance * total(direction_);
         image_ -= mean;
     }
     const double curvature = dot(image_, direction_);

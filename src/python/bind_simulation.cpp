@@ -24,6 +24,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.force_control = take(d, "force_control", o.force_control);
     o.force = take(d, "force", o.force);
     o.force_travel = take(d, "force_travel", o.force_travel);
+    o.robot_stiffness = take(d, "robot_stiffness", o.robot_stiffness);
     o.belt_speed = take(d, "belt_speed", o.belt_speed);
     o.belt_wear = take(d, "belt_wear", o.belt_wear);
     o.contact_spacing = take(d, "contact_spacing", o.contact_spacing);

@@ -55,7 +55,13 @@ void Pressing::solve(bool force_control, double force, SimulationResult& result)
     problem.coverage = map_.coverage();
     problem.force_control = force_control;
     problem.force = force;
-    problem.approach = 0.0;
+    // The programmed pose, seen from where the wheel is placed; at an end stop that is the pose.
+    if (!options_.force_control) {
+        problem.approach = -placed_;
+        if (options_.robot_stiffness > 0.0) {
+            problem.robot_compliance = 1.0 / options_.robot_stiffness;
+        }
+    }
     problem.tolerance = options_.contact_tolerance;
     Eigen::ArrayXd start;
     if (warm_) start = recentre(solution_.pressure, solution_grid_, problem.grid);
@@ -75,17 +81,26 @@ bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree,
     return true;
 }
 
+Pressing::State Pressing::press_position(const HeightField& field, const SegmentTree& tree,
+                                         SimulationResult& result) {
+    placed_ = 0.0;
+    for (int i = 0; i < kMaxPlacements; ++i) {
+        localise(field, tree, kMargin, result);
+        map_gap(field, kMargin, result);
+        solve(false, 0.0, result);
+        if (solution_.force <= 0.0) return State::kNoContact;
+        // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
+        if (std::abs(solution_.approach) <= kPlacement) break;
+        placed_ += solution_.approach;
+    }
+    return State::kPressed;
+}
+
 Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tree,
                                 const Frame& work_from_contact, double force,
                                 SimulationResult& result) {
     programmed_ = work_from_contact;
-    if (!options_.force_control) {
-        placed_ = 0.0;
-        localise(field, tree, kMargin, result);
-        map_gap(field, kMargin, result);
-        solve(false, 0.0, result);
-        return solution_.force > 0.0 ? State::kPressed : State::kNoContact;
-    }
+    if (!options_.force_control) return press_position(field, tree, result);
     const auto nothing = [&] {
         warm_ = false;
         placed_ = 0.0;

@@ -35,6 +35,8 @@ class Pressing {
     std::size_t localised() const { return hits_.size(); }
 
   private:
+    State press_position(const HeightField& field, const SegmentTree& tree,
+                         SimulationResult& result);
     Frame placed_frame() const;
     void localise(const HeightField& field, const SegmentTree& tree, double margin,
                   SimulationResult& result);

@@ -34,6 +34,9 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     positive(options.contact_spacing, "the contact grid's spacing");
     positive(options.contact_tolerance, "the contact tolerance");
     if (options.force_control) positive(options.force_travel, "the travel of the force control");
+    if (!std::isfinite(options.robot_stiffness) || options.robot_stiffness < 0.0) {
+        throw InputError("the robot's stiffness must be zero (rigid) or positive");
+    }
     if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
         throw InputError("the belt's wear factor must be zero or positive");
     }

@@ -43,6 +43,7 @@ struct SimulationOptions {
     bool force_control = true;
     double force = 50.0;           ///< N, where the path has none
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
+    double robot_stiffness = 0.0;  ///< N/mm along z under position control; 0: rigid
     double belt_speed = 20000.0;   ///< mm/s
     double belt_wear = 1.0;        ///< k_t
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)

@@ -250,6 +250,7 @@ def engine_arguments(job):
         "force_control": machine["control"] == "force",
         "force": float(machine["force_N"]),
         "force_travel": float(machine["force_travel_mm"]),
+        "robot_stiffness": float(machine["robot_stiffness_N_per_mm"]),
         "belt_speed": 1000.0 * machine["belt_speed_m_s"],
         "belt_wear": float(machine["belt_wear"]),
         "contact_spacing": float(machine["contact_spacing_mm"]),

@@ -244,6 +244,29 @@ TEST(Contact, RandomContactsKeepSignorinisConditions) {
     }
 }
 
+TEST(Contact, ARobotOfGivenStiffnessStandsBetweenForceAndPosition) {
+    ContactProblem problem = problem_on({40, 30, 1.0, 1.0}, 0.0);
+    for (int c = 0; c < problem.grid.cells(); ++c) {
+        problem.gap[c] = std::pow(problem.grid.s(c % 40), 2) / 200.0;
+    }
+    problem.force_control = false;
+    problem.approach = 0.8;
+    problem.tolerance = 1e-6;
+    WheelRim wheel(rim(100.0, 30.0, 15.0, kRubber));
+    wheel.set_grid(problem.grid);
+    const double rigid = solve_contact(problem, wheel).force;
+    double last = rigid;
+    for (const double stiffness : {1e6, 1000.0, 100.0, 10.0}) {
+        problem.robot_compliance = 1.0 / stiffness;
+        const ContactSolution solution = solve_contact(problem, wheel);
+        EXPECT_TRUE(solution.converged);
+        EXPECT_NEAR(solution.force, stiffness * (0.8 - solution.approach), 1e-4 * rigid + 1e-3);
+        EXPECT_LE(solution.force, last * (1.0 + 1e-5));
+        last = solution.force;
+    }
+    EXPECT_LT(last, 0.5 * rigid);
+}
+
 TEST(SingleContact, ForceAndApproachAgree) {
     WheelRim wheel(rim(100.0, 30.0, 15.0, kRubber));
     SingleContact contact;

@@ -133,6 +133,25 @@ TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
     EXPECT_NEAR(result.events[0].duration, 1.0, 1e-6);
 }
 
+TEST(Simulation, ASoftRobotGivesWayUnderPositionControl) {
+    ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.force_control = false;
+    const ToolPath path({pressing_down(15, 20, -0.5, 20.0), pressing_down(25, 20, -0.5, 20.0)}, {});
+    std::vector<double> forces;
+    for (const double stiffness : {0.0, 1e5, 100.0}) {
+        HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
+        o.robot_stiffness = stiffness;
+        const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-9), o);
+        forces.push_back(result.steps[5].force);
+        if (stiffness > 0.0) {
+            EXPECT_NEAR(result.steps[5].approach, -result.steps[5].force / stiffness, 1e-3);
+        }
+    }
+    EXPECT_NEAR(forces[1], forces[0], 0.01 * forces[0]);
+    EXPECT_LT(forces[2], 0.7 * forces[0]);
+}
+
 TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
     ElasticFoundation foundation(0.5);

@@ -94,6 +94,8 @@ class BeltMachinePanel(Panel):
         belt.add("Control", translate("BeltGrinding", "Control"), control)
         belt.add("Force", translate("BeltGrinding", "Force"))
         belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
+        text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
+        belt.add("RobotStiffness", text, unit="N/mm")
         cell = self.cell = Form(obj, translate("BeltGrinding", "Cell"))
         holding = {
             "tool_in_hand": translate("BeltGrinding", "Tool in hand"),
@@ -118,7 +120,9 @@ class BeltMachinePanel(Panel):
             "part_in_hand": {"TcpFromWork", "BaseFromContact"},
         }
         self.cell.show_rows({"Holding"} | frames[self.obj.Holding])
-        force = {"Force", "ForceTravel"} if self.obj.Control == "force" else set()
+        force = {"force": {"Force", "ForceTravel"}, "position": {"RobotStiffness"}}[
+            self.obj.Control
+        ]
         rubber = {"YoungsModulus", "PoissonsRatio"}
         rim = rubber | {"RimThickness"}
         belt = {"BeltTension", "BeltBending"}

@@ -22,6 +22,7 @@ KEYS = (
     Key("Control", "Enumeration", "Control", "belt_machine.control"),
     Key("Force", "Force", "Control", "belt_machine.force_N"),
     Key("ForceTravel", "Length", "Control", "belt_machine.force_travel_mm"),
+    Key("RobotStiffness", "Float", "Control", "belt_machine.robot_stiffness_N_per_mm"),
     Key("ContactSpacing", "Length", "Contact", "belt_machine.contact_spacing_mm"),
     Key("ContactTolerance", "Float", "Contact", "belt_machine.contact_tolerance"),
     Key("Holding", "Enumeration", "Cell", "cell.holding"),

@@ -120,13 +120,28 @@ void WheelRim::sample(const ContactGrid& grid) {
     for (int m = 0; m < kWaves; ++m) {
         waves_[static_cast<std::size_t>(m)] = first * std::expm1(growth * m);
     }
+    std::ostringstream key;
+    key.precision(17);
+    key << describe_design() << "; cells " << grid.ny << " x " << grid.dy << " mm, " << grid.ds
+        << " mm; waves " << kWaves << " from " << first << "\n";
+    key_ = key.str();
+    if (read_rim_cache(key_, samples_) && samples_.even.size() == kWaves &&
+        samples_.odd.size() == kWaves && samples_.even[0].rows() == (grid.ny + 1) / 2) {
+        return;
+    }
+    compute(grid);
+    write_rim_cache(key_, samples_);
+}
+
+void WheelRim::compute(const ContactGrid& grid) {
     WheelRimDesign design = design_;
     design.width = grid.ny * grid.dy;
     const RimSection section(design, grid.ny, grid.ds);
-    even_.assign(kWaves, {});
-    odd_.assign(kWaves, {});
+    samples_.even.assign(kWaves, {});
+    samples_.odd.assign(kWaves, {});
     parallel_blocks(kWaves, 1, {}, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) section.compliance(waves_[m], even_[m], odd_[m]);
+        for (std::size_t m = begin; m < end; ++m)
+            section.compliance(waves_[m], samples_.even[m], samples_.odd[m]);
     });
     if (belt_.tension > 0.0 || belt_.bending > 0.0) {
         const Eigen::MatrixXd across = second_difference(grid.ny, grid.dy);
@@ -137,7 +152,7 @@ void WheelRim::sample(const ContactGrid& grid) {
             const Eigen::MatrixXd plate = belt_.tension * k2 * one + belt_.bending * bend * bend;
             for (const bool even : {true, false}) {
                 const Eigen::MatrixXd basis = combinations(grid.ny, even);
-                Eigen::MatrixXd& c = even ? even_[m] : odd_[m];
+                Eigen::MatrixXd& c = even ? samples_.even[m] : samples_.odd[m];
                 if (c.size() == 0) continue;
                 c = (c.inverse() + basis.transpose() * plate * basis).inverse().eval();
             }
@@ -193,13 +208,14 @@ WheelRim::Spectrum WheelRim::build(int length) const {
     result.diagonal = 0.0;
     for (int m = 0; m < kWaves; ++m) {
         const auto i = static_cast<std::size_t>(m);
-        result.diagonal += influence(0, m) * (even_[i].trace() + odd_[i].trace()) / grid_.ny;
+        result.diagonal +=
+            influence(0, m) * (samples_.even[i].trace() + samples_.odd[i].trace()) / grid_.ny;
     }
-    const Eigen::Index ne = even_[0].size(), no = odd_[0].size();
+    const Eigen::Index ne = samples_.even[0].size(), no = samples_.odd[0].size();
     result.matrices.resize(static_cast<std::size_t>((half + 1) * (ne + no)));
     float* to = result.matrices.data();
     for (int k = 0; k <= half; ++k) {
-        for (const auto* matrices : {&even_, &odd_}) {
+        for (const auto* matrices : {&samples_.even, &samples_.odd}) {
             const Eigen::Index n = (*matrices)[0].rows();
             Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
             for (int m = 0; m < kWaves; ++m) {
@@ -262,6 +278,10 @@ void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& cover
 }
 
 std::string WheelRim::describe() const {
+    return describe_design() + (key_.empty() ? "" : " (cached as " + rim_cache_name(key_) + ")");
+}
+
+std::string WheelRim::describe_design() const {
     std::ostringstream text;
     text << "wheel rim, R " << design_.outer_radius << " mm, width " << design_.width << " mm";
     for (const RimLayer& layer : design_.layers) {

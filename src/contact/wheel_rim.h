@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact/convolution.h"
+#include "contact/rim_cache.h"
 #include "contact/rim_section.h"
 
 namespace beltgrinding {
@@ -32,23 +33,28 @@ class WheelRim final : public ComplianceOperator {
     void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
                Eigen::ArrayXd& displacement) const override;
     double diagonal() const override { return current_ ? current_->diagonal : 1.0; }
+    /// Also names the cache's entry, once a grid is set.
     std::string describe() const override;
 
   private:
+    std::string describe_design() const;
     /// What belongs to one padded length: for each wavenumber both matrices, one after the other.
     struct Spectrum {
         std::vector<float> matrices;
         double diagonal = 1.0;  // mm/MPa, mean over the cells
         RowTransform transform;
     };
+    /// The samples for a grid's cells: from the user's cache, or computed and put there.
     void sample(const ContactGrid& grid);
+    void compute(const ContactGrid& grid);
     Spectrum build(int length) const;
 
     WheelRimDesign design_;
     BeltPlate belt_;
     ContactGrid grid_;
     std::vector<double> waves_;                         // sampled wavenumbers, 1/mm
-    std::vector<Eigen::MatrixXd> even_, odd_;           // compliance there
+    RimSamples samples_;                                // compliance there
+    std::string key_;                                   // of the samples in the cache
     std::map<int, std::shared_ptr<Spectrum>> spectra_;  // by padded length
     std::shared_ptr<Spectrum> current_;
     mutable std::vector<float> values_;

@@ -1,7 +1,12 @@
 // The compliance operators against theory.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -191,6 +196,39 @@ TEST(WheelRim, TheBeltStiffensAndALayerOfTheSameRubberChangesNothing) {
     EXPECT_LT(belted.maxCoeff(), 0.8 * plain.maxCoeff());
     EXPECT_NEAR(belted.sum(), plain.sum(), 0.05 * plain.sum());  // it spreads, it does not hold
     EXPECT_LT((layered - plain).abs().maxCoeff(), 0.01 * plain.maxCoeff());
+}
+
+TEST(WheelRim, IsReadFromTheCacheAndComputedAgainWhereThatIsDamaged) {
+    namespace fs = std::filesystem;
+    const fs::path cache = fs::temp_directory_path() / ("rim" + std::to_string(::getpid()));
+    const char* old = std::getenv("XDG_CACHE_HOME");
+    const std::string before = old != nullptr ? old : "";
+    ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+    const ContactGrid grid{16, 11, 1.0, 2.0};
+    const Eigen::ArrayXd pressure = Eigen::ArrayXd::LinSpaced(grid.cells(), 0.0, 1.0);
+    const Eigen::ArrayXd coverage = Eigen::ArrayXd::Ones(grid.cells());
+    std::vector<Eigen::ArrayXd> results;
+    const auto solve = [&](double thickness) {
+        WheelRim wheel(rim(60.0, 22.0, thickness, kRubber));
+        wheel.set_grid(grid);
+        results.emplace_back();
+        wheel.apply(pressure, coverage, results.back());
+        return wheel.describe();
+    };
+    const std::string name = solve(10.0);
+    EXPECT_NE(name.find("cached as"), std::string::npos);
+    const fs::path file = fs::directory_iterator(cache / "beltgrinding")->path();
+    const auto size = fs::file_size(file);
+    solve(10.0);
+    fs::resize_file(file, size / 2);
+    solve(10.0);
+    EXPECT_EQ(fs::file_size(file), size);  // mended
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(400).put('x');
+    solve(10.0);
+    for (const Eigen::ArrayXd& result : results) EXPECT_TRUE((result == results[0]).all());
+    EXPECT_NE(solve(11.0), name);
+    fs::remove_all(cache);
+    old != nullptr ? ::setenv("XDG_CACHE_HOME", before.c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(WheelRim, RefusesWhatIsNoWheel) {

@@ -10,7 +10,7 @@ namespace {
 
 // mm beyond the wheel's surface in which the gap is mapped: more than the approach may change
 // between two placements of the wheel, and enough for whole cells around the contact.
-constexpr double kMargin = 0.5;
+constexpr double kMargin = 0.2;
 // mm: below this change of approach the radial gap need not be mapped anew (it would change by
 // the approach times 1 - cos of the contact's half angle, 0.4 % at 5 degrees).
 constexpr double kPlacement = 0.05;

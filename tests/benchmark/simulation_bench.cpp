@@ -3,6 +3,7 @@
 // the contact costs, so they should hardly change with the size of the field.
 #include <benchmark/benchmark.h>
 
+#include "contact/wheel_rim.h"
 #include "simulation/simulation.h"
 #include "support/synthetic_field.h"
 
@@ -15,6 +16,11 @@ void step_cost(benchmark::State& state) {
     const double side = kSpacing * std::sqrt(static_cast<double>(state.range(0)));
     HeightField field = testing::plate(side, side, kSpacing, 0.3);
     ElasticFoundation foundation(0.5);
+    WheelRimDesign design;
+    design.layers = {{15.0, {5.0, 0.45}}};
+    WheelRim rim(design);
+    ComplianceOperator& elastic = state.range(1) == 0 ? static_cast<ComplianceOperator&>(foundation)
+                                                      : static_cast<ComplianceOperator&>(rim);
     const LocalLinearLaw law(1e-5);
     SimulationOptions options;
     options.wheel = {100.0, 50.0, 0.0};
@@ -29,7 +35,7 @@ void step_cost(benchmark::State& state) {
     SimulationResult result;
     double steps = 0, localise = 0, gap = 0, contact = 0, removal = 0, refit = 0, segments = 0;
     for (auto _ : state) {
-        result = simulate(field, path, foundation, law, options);
+        result = simulate(field, path, elastic, law, options);
         steps += static_cast<double>(result.steps.size());
         localise += result.localise_s;
         gap += result.gap_s;
@@ -50,9 +56,8 @@ void step_cost(benchmark::State& state) {
     state.counters["refit_us"] = 1e6 * refit / steps;
 }
 BENCHMARK(step_cost)
-    ->Arg(250'000)
-    ->Arg(1'000'000)
-    ->Arg(4'000'000)
+    ->ArgNames({"samples", "rim"})
+    ->ArgsProduct({{250'000, 1'000'000, 4'000'000}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
 

@@ -39,8 +39,26 @@ class ComplianceOperator {
     virtual double diagonal() const = 0;
     /// True if a cell's displacement depends on its own pressure only.
     virtual bool local() const { return false; }
+    /// True if there is no elasticity at all: no pressure can be solved for, and the tool's
+    /// envelope is what remains.
+    virtual bool rigid() const { return false; }
     /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
+};
+
+/// A rigid tool that cuts all that its envelope meets, as a milling cutter does (Jerard et al., The
+/// Visual Computer 5, 1989). Under position control only; there is no pressure and no force.
+class Geometric final : public ComplianceOperator {
+  public:
+    void set_grid(const ContactGrid&) override {}
+    void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd&,
+               Eigen::ArrayXd& displacement) const override {
+        displacement = 0.0 * pressure;
+    }
+    double diagonal() const override { return 1.0; }
+    bool local() const override { return true; }
+    bool rigid() const override { return true; }
+    std::string describe() const override { return "geometric: rigid envelope of the tool"; }
 };
 
 /// Elastic foundation (Winkler): u = p / stiffness, each cell for itself.

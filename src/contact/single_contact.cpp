@@ -40,6 +40,7 @@ class Press {
         : contact_(contact), compliance_(compliance) {}
 
     SingleContactResult run() {
+        if (compliance_.rigid()) throw InputError("contact: a rigid tool has no pressure");
         contact_.wheel.validate();
         contact_.workpiece.validate();
         if (!std::isfinite(contact_.spacing) || contact_.spacing <= 0.0) {

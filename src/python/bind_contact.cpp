@@ -93,13 +93,14 @@ std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
     if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt);
     if (model == "bonded_layer") return std::make_unique<BondedLayer>(elasticity, thickness);
     if (model == "half_space") return std::make_unique<HalfSpace>(elasticity);
+    if (model == "geometric") return std::make_unique<Geometric>();
     if (model == "elastic_foundation") {
         if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
         WheelRim rim(design, belt);
         return std::make_unique<ElasticFoundation>(foundation_stiffness(wheel, rim, force));
     }
     throw InputError("compliance: there is no model '" + model +
-                     "'; use wheel_rim, bonded_layer, half_space or elastic_foundation");
+                     "'; use wheel_rim, bonded_layer, half_space, elastic_foundation or geometric");
 }
 
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {

@@ -87,6 +87,14 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
     for (int i = 0; i < kMaxPlacements; ++i) {
         localise(field, tree, kMargin, result);
         map_gap(field, kMargin, result);
+        if (compliance_.rigid()) {
+            solution_ = ContactSolution{};
+            solution_.converged = true;
+            solution_.pressure = Eigen::ArrayXd::Zero(map_.gap().size());
+            solution_.area =
+                (map_.gap() < 0.0).select(map_.coverage(), 0.0).sum() * map_.grid().cell_area();
+            return solution_.area > 0.0 ? State::kPressed : State::kNoContact;
+        }
         solve(false, 0.0, result);
         if (solution_.force <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.

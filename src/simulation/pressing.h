@@ -26,6 +26,8 @@ class Pressing {
     /// Solves again at the same place after the surface was lowered (no new localisation).
     State press_again(const HeightField& field, double force, SimulationResult& result);
 
+    /// A rigid tool: `solution` has an area and no pressure.
+    bool rigid() const { return compliance_.rigid(); }
     const ContactSolution& solution() const { return solution_; }
     /// mm by which the wheel reaches into the surface where that is highest.
     double indentation() const { return solution_.approach - map_.lowest(); }

@@ -42,6 +42,12 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     }
 }
 
+void refuse_force_of_rigid(const ComplianceOperator& compliance, const SimulationOptions& options) {
+    if (compliance.rigid() && options.force_control) {
+        throw InputError("a geometric (rigid) tool has no force; set the control to position");
+    }
+}
+
 std::string newtons(const char* before, double force, const char* after) {
     std::ostringstream text;
     text.precision(3);
@@ -75,6 +81,12 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
     double volume = 0.0;
     double left = step.duration;
     Eigen::ArrayXd rate;
+    if (pressing.rigid()) {  // all that overlaps goes, whatever the law
+        rate = (-pressing.map().gap()).max(0.0) / step.duration;
+        volume = pressing.map().remove(field, rate, step.duration, changed);
+        result.integrated_rate += volume;
+        return volume;
+    }
     while (left > 0.0) {
         double part = left;
         {
@@ -126,6 +138,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
         tree = std::make_unique<SegmentTree>(field, context);
     }
     const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
+    refuse_force_of_rigid(compliance, options);
     Pressing pressing(options, cell, compliance);
     std::vector<std::uint32_t> changed;
     bool touched = false;
@@ -207,6 +220,9 @@ PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size
                          std::to_string(path.poses().size()));
     }
     const PathPose& at = path.poses()[pose];
+    if (compliance.rigid()) {
+        throw InputError("a geometric (rigid) tool has no pressure; choose an elastic model");
+    }
     PoseContact contact;
     contact.commanded = at.force >= 0.0 ? at.force : options.force;
     const SegmentTree tree(field);

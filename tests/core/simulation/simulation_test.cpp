@@ -152,6 +152,27 @@ TEST(Simulation, ASoftRobotGivesWayUnderPositionControl) {
     EXPECT_LT(forces[2], 0.7 * forces[0]);
 }
 
+TEST(Simulation, ARigidToolLeavesItsEnvelope) {
+    HeightField field = testing::plate(40.0, 40.0, 0.5, 0.3);
+    Geometric tool;
+    SimulationOptions o = options();
+    const ToolPath path({pressing_down(10, 20, 0.1, 20.0), pressing_down(30, 20, 0.1, 20.0)}, {});
+    EXPECT_THROW(simulate(field, path, tool, LocalLinearLaw(1e-4), o), InputError);
+    o.force_control = false;
+    const SimulationResult result = simulate(field, path, tool, LocalLinearLaw(1e-4), o);
+    EXPECT_TRUE(result.events.empty());
+    EXPECT_NEAR(result.integrated_rate, result.removed_volume, 0.01 * result.removed_volume);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const Vec3& p = field.point[i];
+        if (std::abs(p.x() - 20.0) < 9.0 && std::abs(p.y() - 20.0) < 8.0) {
+            EXPECT_NEAR(field.height[i], 0.1, 0.005);
+        }
+        if (std::abs(p.y() - 20.0) > 12.0) {
+            EXPECT_EQ(field.height[i], 0.3);
+        }
+    }
+}
+
 TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
     ElasticFoundation foundation(0.5);

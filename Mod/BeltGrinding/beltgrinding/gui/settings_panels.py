@@ -74,6 +74,7 @@ class BeltMachinePanel(Panel):
             "bonded_layer": translate("BeltGrinding", "Bonded layer"),
             "half_space": translate("BeltGrinding", "Half-space"),
             "elastic_foundation": translate("BeltGrinding", "Elastic foundation"),
+            "geometric": translate("BeltGrinding", "Rigid (geometric)"),
         }
         wheel.add("Compliance", translate("BeltGrinding", "Elasticity"), models)
         wheel.add("YoungsModulus", translate("BeltGrinding", "Young's modulus"))
@@ -130,6 +131,7 @@ class BeltMachinePanel(Panel):
             "wheel_rim": rim | belt,
             "bonded_layer": rim,
             "half_space": rubber,
+            "geometric": set(),
             "elastic_foundation": {"Stiffness"}
             | (rim | belt if self.obj.Stiffness <= 0 else set()),
         }
@@ -153,5 +155,9 @@ class BeltMachinePanel(Panel):
             )
         if self.obj.Compliance != "elastic_foundation" and self.obj.YoungsModulus.Value <= 0:
             raise InputError(translate("BeltGrinding", "Young's modulus must be positive."))
+        if self.obj.Compliance == "geometric" and self.obj.Control == "force":
+            raise InputError(
+                translate("BeltGrinding", "A rigid tool has no force: set the control to position.")
+            )
         if not 0 <= self.obj.PoissonsRatio <= 0.499:
             raise InputError(translate("BeltGrinding", "Poisson's ratio lies from 0 to 0.499."))

@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #define POCKETFFT_NO_MULTITHREADING
+#ifdef __SANITIZE_ADDRESS__
+#define POCKETFFT_NO_VECTORS  // its aligned_alloc takes sizes that the sanitizer forbids
+#endif
 #include <pocketfft.hpp>
 
 namespace beltgrinding {

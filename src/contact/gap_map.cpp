@@ -7,6 +7,9 @@ namespace beltgrinding {
 namespace {
 
 // A surface steeper than this against the wheel is its flank or back, which the wheel cannot press.
+// Samples stand for about as much area as the cells that they share; where a gouge's walls leave
+// far less, no volume is squeezed out of what is left.
+constexpr double kLargestScale = 1.5;
 constexpr double kSteepest = 0.2;  // cosine of the angle between surface normal and wheel's radius
 constexpr int kGridQuantum = 8;    // grid lengths are multiples, so that warm starts mostly fit
 // Coverage from sums over samples carries their sampling noise; near full it is full.
@@ -144,13 +147,13 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
         unscaled += lowering_[k] * f.area;
     }
     if (!(unscaled > 0.0)) return 0.0;
-    const double scale = volume / unscaled;
+    const double scale = std::min(volume / unscaled, kLargestScale);
     for (std::size_t k = 0; k < footprints_.size(); ++k) {
         if (lowering_[k] <= 0.0) continue;
         field.height[footprints_[k].sample] -= scale * lowering_[k];
         changed.push_back(footprints_[k].sample);
     }
-    return volume;
+    return scale * unscaled;
 }
 
 Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,

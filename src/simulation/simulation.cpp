@@ -101,6 +101,8 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
                 part =
                     std::clamp(kRecession * indentation / fastest, step.duration / kMaxParts, left);
             }
+            // No cell recedes below the unloaded wheel, however far beyond reason the force is.
+            rate = rate.min((contact.approach - pressing.map().gap()).max(0.0) / part);
             volume += pressing.map().remove(field, rate, part, changed);
             result.integrated_rate +=
                 (rate * pressing.map().coverage()).sum() * pressing.map().grid().cell_area() * part;

@@ -1,7 +1,9 @@
 #include "simulation/simulation.h"
+#include "contact/wheel_rim.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -150,6 +152,24 @@ TEST(Simulation, ASoftRobotGivesWayUnderPositionControl) {
     }
     EXPECT_NEAR(forces[1], forces[0], 0.01 * forces[0]);
     EXPECT_LT(forces[2], 0.7 * forces[0]);
+}
+
+TEST(Simulation, NothingIsGroundBelowTheUnloadedWheel) {
+    // Far too deep and far too eager a law: what remains is the wheel's envelope.
+    HeightField field = testing::plate(40.0, 40.0, 0.5, 0.3);
+    field.depth = 10.0;
+    WheelRimDesign design;
+    design.outer_radius = options().wheel.radius;
+    design.width = options().wheel.width;
+    design.layers = {{15.0, {5.0, 0.45}}};
+    WheelRim rim(design);
+    SimulationOptions o = options();
+    o.force_control = false;
+    const ToolPath path({pressing_down(18, 20, -5.0, 5.0), pressing_down(22, 20, -5.0, 5.0)}, {});
+    simulate(field, path, rim, LocalLinearLaw(1.0), o);
+    const double lowest = *std::min_element(field.height.begin(), field.height.end());
+    EXPECT_LT(lowest, -4.5);
+    EXPECT_GT(lowest, -5.5);  // the cells' interpolation to the samples
 }
 
 TEST(Simulation, ARigidToolLeavesItsEnvelope) {

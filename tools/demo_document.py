@@ -7,12 +7,11 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from beltgrinding.examples import blade
 from beltgrinding.gui.camera import look_at
 from beltgrinding.objects import api
 
 out = Path(os.environ["BELTGRINDING_OUT"])
-job = blade.make_document(out)
+job = api.open_example(out)
 simulation = api.simulate(job, write_to=out)
 api.make_deviation(job)
 for part, _ in job.DesignFaces:

@@ -215,10 +215,10 @@ void ConstrainedConjugateGradients::step() {
         stale_ = (pressure_ > 0.0).count() < cells_;
     }
     // Cells that overlap without pressure come into contact.
-    held_ = (reachable_ - contact_) * residual_.min(0.0);
-    if (held_.minCoeff() < 0.0) {
+    const Eigen::ArrayXd overlap = (reachable_ - contact_) * residual_.min(0.0);
+    if (overlap.minCoeff() < 0.0) {
         stale_ = restart_ = true;
-        pressure_ -= (length > 0.0 ? length : 1.0 / compliance_.diagonal()) * held_;
+        pressure_ -= (length > 0.0 ? length : 1.0 / compliance_.diagonal()) * overlap;
     }
     if (!stale_) {
         residual_ -= length * image_;

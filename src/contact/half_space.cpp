@@ -57,22 +57,23 @@ double Elasticity::plane_strain_modulus() const {
 
 void ConvolutionCompliance::set_grid(const ContactGrid& grid) {
     if (grid == grid_) return;
+    if (grid.ny != grid_.ny || grid.dy != grid_.dy || grid.ds != grid_.ds) symbols_.clear();
     grid_ = grid;
     build(grid);
 }
 
 void ConvolutionCompliance::build(const ContactGrid& grid) {
     const int length = quick_fft_length(2 * grid.nx - 1);
-    const int rows = quick_fft_length(2 * grid.ny - 1);
+    const int rows = rows_ = quick_fft_length(2 * grid.ny - 1);
     transform_ = RowTransform(grid.ny, grid.nx, length);
     values_.resize(static_cast<std::size_t>(grid.cells()));
     const auto waves = static_cast<std::size_t>(transform_.wavenumbers());
     spectrum_.resize(waves * static_cast<std::size_t>(rows));
-    const bool same = built_.ds == grid.ds && built_.dy == grid.dy && rows == rows_ &&
-                      symbol_.size() == spectrum_.size();
-    if (same) return;
-    built_ = grid;
-    rows_ = rows;
+    const auto known = symbols_.find(length);
+    if (known != symbols_.end()) {
+        symbol_ = &known->second;
+        return;
+    }
     // The influence function wrapped around the padded grid; even, so that its spectrum is real.
     std::vector<float> kernel(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length));
     for (int j = 0; j <= rows / 2; ++j) {
@@ -91,9 +92,11 @@ void ConvolutionCompliance::build(const ContactGrid& grid) {
     std::vector<std::complex<float>> spectrum(spectrum_.size());
     whole.forward(kernel.data(), spectrum.data());
     transform_rows(spectrum.data(), whole.wavenumbers(), rows, true);
-    symbol_.resize(spectrum.size());
+    std::vector<float>& symbol = symbols_[length];
+    symbol_ = &symbol;
+    symbol.resize(spectrum.size());
     const float scale = 1.0F / static_cast<float>(rows);
-    std::transform(spectrum.begin(), spectrum.end(), symbol_.begin(),
+    std::transform(spectrum.begin(), spectrum.end(), symbol.begin(),
                    [&](std::complex<float> c) { return c.real() * scale; });
 }
 
@@ -111,7 +114,7 @@ void ConvolutionCompliance::apply(const Eigen::ArrayXd& pressure, const Eigen::A
         std::copy_n(narrow.data() + k * ny, ny, spectrum_.data() + k * rows);
     }
     transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, true);
-    for (std::size_t i = 0; i < spectrum_.size(); ++i) spectrum_[i] *= symbol_[i];
+    for (std::size_t i = 0; i < spectrum_.size(); ++i) spectrum_[i] *= (*symbol_)[i];
     transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, false);
     for (std::size_t k = 0; k < waves; ++k) {
         std::copy_n(spectrum_.data() + k * rows, ny, narrow.data() + k * ny);

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <complex>
-#include <functional>
-#include <memory>
+#include <map>
 #include <vector>
 
 #include "contact/compliance.h"
@@ -38,10 +37,13 @@ class ConvolutionCompliance : public ComplianceOperator {
   private:
     void build(const ContactGrid& grid);
 
-    ContactGrid grid_, built_;
+    ContactGrid grid_;
     int rows_ = 0;  // padded
     double centre_ = 1.0;
-    std::vector<float> symbol_;  // real: the influence function is even
+    // Spectra of the influence function by padded length: the grid's length changes from step to
+    // step. Real, as the function is even.
+    std::map<int, std::vector<float>> symbols_;
+    const std::vector<float>* symbol_ = nullptr;  // one of them
     mutable RowTransform transform_;
     mutable std::vector<float> values_;
     mutable std::vector<std::complex<float>> spectrum_;

@@ -15,6 +15,8 @@ namespace beltgrinding {
 namespace {
 
 namespace fs = std::filesystem;
+// Another number for another way to compute them: what older programs have kept is then computed
+// anew.
 constexpr std::string_view kMagic = "beltgrinding wheel rim 1\n";
 
 std::uint64_t fnv1a(std::string_view data) {

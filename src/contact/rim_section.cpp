@@ -1,6 +1,5 @@
 #include "contact/rim_section.h"
 
-#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <memory>
 #include <vector>
 
 #include "contact/half_space.h"

@@ -16,6 +16,18 @@ constexpr int kWaves = 24;          // sampled wavenumbers
 constexpr double kFirstWave = 0.3;  // times 1 / thickness
 constexpr double kAliases = 4.0;    // the sum along the circumference ends at 2 pi / ds times this
 constexpr double kPi = std::numbers::pi;
+constexpr int kReadable = 6, kExact = 17;  // digits: for the report; that tell two doubles apart
+
+/// The sampled wavenumbers: 0 to `last` (1/mm), close together where waves are long.
+struct WaveScale {
+    double first, growth;
+
+    WaveScale(double thickness, double last)
+        : first(kFirstWave / thickness), growth(std::log1p(last / first) / (kWaves - 1)) {}
+    double wave(int m) const { return first * std::expm1(growth * m); }
+    /// Where a wavenumber lies between the sampled ones, from 0 to kWaves - 1.
+    double place(double k) const { return std::min(std::log1p(k / first) / growth, kWaves - 1.0); }
+};
 
 /// Weights of natural cubic spline interpolation on unit intervals: row t, column m is the weight
 /// of value m at the place `at[t]`.
@@ -96,34 +108,31 @@ WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt)
 void WheelRim::set_grid(const ContactGrid& grid) {
     if (grid == grid_ && current_) return;
     if (grid.ny != grid_.ny || grid.dy != grid_.dy || grid.ds != grid_.ds) {
+        current_ = nullptr;
         spectra_.clear();
         sample(grid);
     }
     grid_ = grid;
     const int length = quick_fft_length(2 * grid.nx - 1);
-    std::shared_ptr<Spectrum>& spectrum = spectra_[length];
-    if (!spectrum) spectrum = std::make_shared<Spectrum>(build(length));
-    current_ = spectrum;
-    current_->transform = RowTransform(grid.ny, grid.nx, length);
+    const auto known = spectra_.find(length);
+    current_ = known != spectra_.end() ? &known->second
+                                       : &spectra_.emplace(length, build(length)).first->second;
+    transform_ = RowTransform(grid.ny, grid.nx, length);
     values_.resize(static_cast<std::size_t>(grid.cells()));
-    const auto size = static_cast<std::size_t>(current_->transform.wavenumbers() * grid.ny);
+    const auto size = static_cast<std::size_t>(transform_.wavenumbers() * grid.ny);
     spectrum_.resize(size);
     image_.resize(size);
 }
 
 void WheelRim::sample(const ContactGrid& grid) {
     grid_ = grid;
-    const double thickness = design_.thickness();
-    const double first = kFirstWave / thickness, last = 2.0 * kPi / grid.ds;
+    const WaveScale scale(design_.thickness(), 2.0 * kPi / grid.ds);
     waves_.resize(kWaves);
-    const double growth = std::log1p(last / first) / (kWaves - 1);
-    for (int m = 0; m < kWaves; ++m) {
-        waves_[static_cast<std::size_t>(m)] = first * std::expm1(growth * m);
-    }
+    for (int m = 0; m < kWaves; ++m) waves_[static_cast<std::size_t>(m)] = scale.wave(m);
     std::ostringstream key;
-    key.precision(17);
-    key << describe_design() << "; cells " << grid.ny << " x " << grid.dy << " mm, " << grid.ds
-        << " mm; waves " << kWaves << " from " << first << "\n";
+    key.precision(kExact);
+    key << describe_design(kExact) << "; cells " << grid.ny << " x " << grid.dy << " mm, "
+        << grid.ds << " mm; waves " << kWaves << " from " << scale.first << "\n";
     key_ = key.str();
     if (read_rim_cache(key_, samples_) && samples_.even.size() == kWaves &&
         samples_.odd.size() == kWaves && samples_.even[0].rows() == (grid.ny + 1) / 2) {
@@ -165,13 +174,12 @@ WheelRim::Spectrum WheelRim::build(int length) const {
     // weights of the sampled matrices.
     const double radius = design_.outer_radius, ds = grid_.ds;
     const double offset = 1.0 / design_.thickness();
-    const double first = kFirstWave / design_.thickness(), last = waves_.back();
-    const double growth = std::log1p(last / first) / (kWaves - 1);
+    const double last = waves_.back();
+    const WaveScale scale(design_.thickness(), last);
     const int terms = static_cast<int>(kAliases * 2.0 * kPi / ds * radius);
     std::vector<double> place(static_cast<std::size_t>(terms) + 1);
     for (int n = 0; n <= terms; ++n) {
-        place[static_cast<std::size_t>(n)] =
-            std::min(std::log1p(n / radius / first) / growth, kWaves - 1.0);
+        place[static_cast<std::size_t>(n)] = scale.place(n / radius);
     }
     Eigen::MatrixXd weights = spline_weights(place, kWaves);
     for (int n = 0; n <= terms; ++n) {
@@ -247,10 +255,10 @@ void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& cover
         parts.col(a) = (root * (p + q)).cast<float>();
         parts.col(ne + a - shift) = (root * (p - q)).cast<float>();
     }
-    current_->transform.forward(values_.data(), spectrum_.data());
+    transform_.forward(values_.data(), spectrum_.data());
     const float* matrix = current_->matrices.data();
     std::vector<float> re(static_cast<std::size_t>(ny)), im(re.size());
-    for (int k = 0; k < current_->transform.wavenumbers(); ++k) {
+    for (int k = 0; k < transform_.wavenumbers(); ++k) {
         std::fill(re.begin(), re.end(), 0.0F);
         std::fill(im.begin(), im.end(), 0.0F);
         const auto* x = reinterpret_cast<const float*>(spectrum_.data() + k * ny);
@@ -262,7 +270,7 @@ void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& cover
             image_[static_cast<std::size_t>(k * ny + j)] = {re[i], im[i]};
         }
     }
-    current_->transform.backward(image_.data(), values_.data());
+    transform_.backward(image_.data(), values_.data());
     displacement.resize(pressure.size());
     for (int a = 0; a < ne; ++a) {
         const int up = ny / 2 + a, down = ny - 1 - up;
@@ -278,11 +286,13 @@ void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& cover
 }
 
 std::string WheelRim::describe() const {
-    return describe_design() + (key_.empty() ? "" : " (cached as " + rim_cache_name(key_) + ")");
+    return describe_design(kReadable) +
+           (key_.empty() ? "" : " (cached as " + rim_cache_name(key_) + ")");
 }
 
-std::string WheelRim::describe_design() const {
+std::string WheelRim::describe_design(int digits) const {
     std::ostringstream text;
+    text.precision(digits);
     text << "wheel rim, R " << design_.outer_radius << " mm, width " << design_.width << " mm";
     for (const RimLayer& layer : design_.layers) {
         text << ", " << layer.thickness << " mm of E " << layer.elasticity.youngs_modulus

@@ -2,7 +2,6 @@
 
 #include <complex>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include "contact/convolution.h"
@@ -37,12 +36,11 @@ class WheelRim final : public ComplianceOperator {
     std::string describe() const override;
 
   private:
-    std::string describe_design() const;
+    std::string describe_design(int digits) const;
     /// What belongs to one padded length: for each wavenumber both matrices, one after the other.
     struct Spectrum {
         std::vector<float> matrices;
         double diagonal = 1.0;  // mm/MPa, mean over the cells
-        RowTransform transform;
     };
     /// The samples for a grid's cells: from the user's cache, or computed and put there.
     void sample(const ContactGrid& grid);
@@ -52,11 +50,12 @@ class WheelRim final : public ComplianceOperator {
     WheelRimDesign design_;
     BeltPlate belt_;
     ContactGrid grid_;
-    std::vector<double> waves_;                         // sampled wavenumbers, 1/mm
-    RimSamples samples_;                                // compliance there
-    std::string key_;                                   // of the samples in the cache
-    std::map<int, std::shared_ptr<Spectrum>> spectra_;  // by padded length
-    std::shared_ptr<Spectrum> current_;
+    std::vector<double> waves_;          // sampled wavenumbers, 1/mm
+    RimSamples samples_;                 // compliance there
+    std::string key_;                    // of the samples in the cache
+    std::map<int, Spectrum> spectra_;    // by padded length
+    const Spectrum* current_ = nullptr;  // one of them
+    mutable RowTransform transform_;
     mutable std::vector<float> values_;
     mutable std::vector<std::complex<float>> spectrum_, image_;
 };

@@ -191,6 +191,26 @@ wait(lambda: len(runs) == 4 and not Gui.Control.activeDialog())
     )
 
 
+def test_a_panel_closed_while_it_computes_leaves_nothing(freecad):
+    output = freecad.run(
+        PREPARE
+        + """
+job.Spacing = 0.05
+doc.recompute()
+for name in ("Simulate", "Contact at a pose..."):
+    menu(name)
+    press("Close")
+    end = time.monotonic() + 2
+    while time.monotonic() < end:
+        settle()
+        time.sleep(0.01)
+    assert doc.getObject("Simulation") is None, name
+""",
+        window=True,
+    )
+    assert "Traceback" not in output, output
+
+
 def test_the_menu_offers_the_example(freecad):
     freecad.run(
         """

@@ -90,7 +90,7 @@ def _contact(arguments):
         figures.update(reference.compare(result, truth))
     if arguments.output:
         contact.write_csv(result, arguments.output, truth)
-    print(contact.to_json(figures))
+    print(json.dumps(figures))
 
 
 def _report(summary, output):

@@ -1,6 +1,5 @@
 """Single contacts of a wheel, for people who study it: with an analytic workpiece, or at a pose."""
 
-import json
 import time
 from pathlib import Path
 
@@ -165,8 +164,3 @@ def write_csv(result, path, reference=None):
         write_whole(Path(path), "\n".join(lines).encode())
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
-
-
-def to_json(figures):
-    """One line of JSON for the command line."""
-    return json.dumps(figures)

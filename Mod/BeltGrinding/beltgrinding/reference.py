@@ -26,8 +26,8 @@ def solve(contact, rim, keep=None):
     """Solves ``contact`` (as ``contact.run`` gives it) again; ``rim``: dict(radius, thickness,
     youngs_modulus, poissons_ratio), mm and MPa. ``keep``: a folder for the deck and its results.
 
-    Returns dict(force N, pressure (ny, nx) MPa, corner_pressure (ny + 1, nx + 1), nodes, time s). Raises InputError if CalculiX is not
-    installed or does not converge.
+    Returns dict(force N, pressure (ny, nx) MPa, corner_pressure (ny + 1, nx + 1), nodes, time s).
+    Raises InputError if CalculiX is not installed or does not converge.
     """
     program = shutil.which("ccx")
     if program is None:

@@ -227,6 +227,9 @@ TEST(WheelRim, IsReadFromTheCacheAndComputedAgainWhereThatIsDamaged) {
     solve(10.0);
     for (const Eigen::ArrayXd& result : results) EXPECT_TRUE((result == results[0]).all());
     EXPECT_NE(solve(11.0), name);
+    // A wheel that differs by less than a report shows is another wheel.
+    solve(10.0 + 1e-9);
+    EXPECT_EQ(std::distance(fs::directory_iterator(cache / "beltgrinding"), {}), 3);
     fs::remove_all(cache);
     old != nullptr ? ::setenv("XDG_CACHE_HOME", before.c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
 }

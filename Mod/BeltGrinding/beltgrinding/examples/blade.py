@@ -1,7 +1,6 @@
 """Example: a compressor blade whose pressure side is ground on a belt, tool in hand.
 
-``make(folder)`` writes blade.step, blade_pressure_side.src and job.json; ``make_document(folder)``
-opens them as a document. Needs FreeCAD's Part.
+``make(folder)`` writes blade.step, blade_pressure_side.src and job.json. Needs FreeCAD's Part.
 """
 
 import json
@@ -108,13 +107,3 @@ def make(folder):
     }
     (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
     return folder / "job.json"
-
-
-def make_document(folder):
-    """A new document with the blade and its job, ready to be simulated; returns the job."""
-    import FreeCAD
-
-    from ..objects import api
-
-    document = FreeCAD.newDocument("Blade")
-    return api.open_job(document, make(folder))

@@ -250,10 +250,8 @@ class ExampleBlade(Command):
     NEEDS_JOB = False
 
     def run(self):
-        from ..examples import blade
-
         folder = Path(FreeCAD.getUserAppDataDir(), "BeltGrinding", "blade")
-        expand(blade.make_document(folder))
+        expand(api.open_example(folder))
         Gui.activeDocument().activeView().viewIsometric()
         Gui.SendMsgToActiveView("ViewFit")
 

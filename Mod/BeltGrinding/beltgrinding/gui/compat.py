@@ -3,7 +3,7 @@
 import FreeCAD
 from PySide import QtCore, QtGui  # FreeCAD's shim: PySide2 or 6; 0.20 has the widgets in QtGui
 
-__all__ = ["QtCore", "QtGui", "VERSION", "buttons", "set_shape_colour", "translate"]
+__all__ = ["QtCore", "QtGui", "VERSION", "buttons", "translate"]
 
 VERSION = tuple(int("".join(c for c in part if c.isdigit()) or 0) for part in FreeCAD.Version()[:2])
 translate = FreeCAD.Qt.translate
@@ -16,8 +16,3 @@ def buttons(*names):
     for name in names[1:]:
         both = both | getattr(box, name)
     return int(both) if VERSION < (1, 0) else both
-
-
-def set_shape_colour(view, rgb):
-    """Colours a whole shape; rgb in 0..1."""
-    view.ShapeColor = tuple(rgb)

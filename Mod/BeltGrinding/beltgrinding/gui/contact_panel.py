@@ -134,7 +134,8 @@ class ContactPanel:
     def reject(self):
         self.timer.stop()
         if self.task is not None:
-            self.task.cancel()
-        self.folder.cleanup()
+            self.task.abandon(self.folder.cleanup)
+        else:
+            self.folder.cleanup()
         Gui.Control.closeDialog()
         return True

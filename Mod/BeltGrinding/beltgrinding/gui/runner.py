@@ -30,6 +30,11 @@ class Background(QtCore.QObject):
         """Asks the work to end; ``done`` follows with Cancelled."""
         self.context.cancel()
 
+    def abandon(self, then=lambda: None):
+        """Cancels for one who goes away: in the end only ``then`` is called."""
+        self.done = lambda *_: then()
+        self.cancel()
+
     def _work(self, work):
         try:
             self.outcome = (work(self.context), None)
@@ -64,6 +69,11 @@ class Runner(Background):
             return self.document.getObject(self.name)
         except ReferenceError:
             return None
+
+    def abandon(self):
+        """Cancels, and stores nothing even if the run has just ended."""
+        self.progress = lambda _: None
+        super().abandon(self.folder.cleanup)
 
     def _poll(self):
         if self.job() is None:

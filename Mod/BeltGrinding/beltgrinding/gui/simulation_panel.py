@@ -180,7 +180,8 @@ class SimulationPanel:
 
     def reject(self):
         """Close: a run that still goes on is cancelled."""
-        self.stop()
+        if self.runner:
+            self.runner.abandon()  # this panel's widgets are gone before the run has ended
         Gui.Control.closeDialog()
         return True
 

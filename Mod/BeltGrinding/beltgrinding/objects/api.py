@@ -12,6 +12,7 @@ import FreeCAD
 import Part
 
 from .. import InputError, job as jobs
+from ..examples import blade
 from ..poses import listed_poses
 from ..result import Result, write_whole
 from . import belt_machine, deviation as deviations, job_object, robot_path, simulation as results
@@ -169,6 +170,11 @@ def open_job(doc, path):
         for obj in reversed(made):
             doc.removeObject(obj.Name)
         raise
+
+
+def open_example(folder):
+    """A new document with the example blade, whose files are written to ``folder``; its job."""
+    return open_job(FreeCAD.newDocument("Blade"), blade.make(folder))
 
 
 def _open_job(doc, data, path, made):

@@ -4,31 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
-
 namespace beltgrinding {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-void validate(const ContactProblem& problem) {
-    const Eigen::Index n = problem.grid.cells();
-    if (n <= 0 || problem.gap.size() != n || problem.coverage.size() != n) {
-        throw InputError("contact: gap and coverage must have one value per cell of the grid");
-    }
-    if (problem.gap.isNaN().any() || !problem.coverage.isFinite().all()) {
-        throw InputError("contact: the gap or the coverage holds a value that is not a number");
-    }
-    if (problem.force_control && (!std::isfinite(problem.force) || problem.force < 0.0)) {
-        throw InputError("contact: the commanded force must be zero or positive, in newtons");
-    }
-    if (!(problem.robot_compliance >= 0.0) || !std::isfinite(problem.robot_compliance)) {
-        throw InputError("contact: the robot's compliance must be zero or positive, in mm/N");
-    }
-    if (!problem.force_control && !std::isfinite(problem.approach)) {
-        throw InputError("contact: the commanded approach must be finite, in millimetres");
-    }
-}
 
 /// The state of one solve. Residual t = g + C p - delta; inner products are weighted by coverage,
 /// in which C is symmetric.
@@ -262,8 +241,13 @@ ContactSolution ConstrainedConjugateGradients::solve(const Eigen::ArrayXd* start
 
 ContactSolution solve_contact(const ContactProblem& problem, const ComplianceOperator& compliance,
                               const Eigen::ArrayXd* start) {
-    validate(problem);
+    problem.validate();
     return ConstrainedConjugateGradients(problem, compliance).solve(start);
+}
+
+ContactSolution ComplianceOperator::solve(const ContactProblem& problem,
+                                          const Eigen::ArrayXd* start) const {
+    return solve_contact(problem, *this, start);
 }
 
 }  // namespace beltgrinding

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "contact/compliance.h"
 
 namespace beltgrinding {
 namespace {
@@ -36,11 +37,10 @@ double meet(const SingleContact& contact, double placed, double s, double y) {
 
 class Press {
   public:
-    Press(const SingleContact& contact, ComplianceOperator& compliance)
-        : contact_(contact), compliance_(compliance) {}
+    Press(const SingleContact& contact, ContactModel& model) : contact_(contact), model_(model) {}
 
     SingleContactResult run() {
-        if (compliance_.rigid()) throw InputError("contact: a rigid tool has no pressure");
+        if (model_.rigid()) throw InputError("contact: a rigid tool has no pressure");
         contact_.wheel.validate();
         contact_.workpiece.validate();
         if (!std::isfinite(contact_.spacing) || contact_.spacing <= 0.0) {
@@ -99,7 +99,7 @@ class Press {
     }
 
     SingleContactResult press() {
-        compliance_.set_grid(problem_.grid);
+        model_.set_grid(problem_.grid);
         set_gap(0.0);
         const double touch = problem_.gap.minCoeff();
         if (!std::isfinite(touch))
@@ -118,8 +118,7 @@ class Press {
             set_gap(placed);
             {
                 const Stopwatch watch(result.time);
-                result.solution =
-                    solve_contact(problem_, compliance_, start.size() > 0 ? &start : nullptr);
+                result.solution = model_.solve(problem_, start.size() > 0 ? &start : nullptr);
             }
             iterations += result.solution.iterations;
             if (!contact_.force_control) break;
@@ -145,7 +144,7 @@ class Press {
     }
 
     const SingleContact& contact_;
-    ComplianceOperator& compliance_;
+    ContactModel& model_;
     ContactProblem problem_;
 };
 
@@ -182,21 +181,20 @@ void Workpiece::validate() const {
     if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
 }
 
-double foundation_stiffness(const ContactWheel& wheel, ComplianceOperator& compliance,
-                            double force) {
+double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force) {
     SingleContact contact;
     contact.wheel = wheel;
     contact.spacing = std::max(0.5, wheel.width / 64);
     contact.force = force;
     contact.tolerance = 1e-3;
-    contact.approach = press(contact, compliance).solution.approach;
+    contact.approach = press(contact, model).solution.approach;
     contact.force_control = false;
     ElasticFoundation unit(1.0);  // whose force is proportional to its stiffness
     return force / press(contact, unit).solution.force;
 }
 
-SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance) {
-    return Press(contact, compliance).run();
+SingleContactResult press(const SingleContact& contact, ContactModel& model) {
+    return Press(contact, model).run();
 }
 
 }  // namespace beltgrinding

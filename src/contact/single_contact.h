@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "contact/contact_solver.h"
+#include "contact/contact_model.h"
 #include "contact/contact_wheel.h"
 
 namespace beltgrinding {
@@ -37,17 +37,16 @@ struct SingleContactResult {
     ContactSolution solution;  ///< `approach` from first touch, mm; all iterations
     Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where it stands; +inf: nothing there
     Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
-    double time = 0.0;         ///< s of all solves, without setting up the compliance
+    double time = 0.0;         ///< s of all solves, without setting up the model
 };
 
 /// Presses a wheel on a workpiece. The gap is radial from the wheel where it stands when pressed:
 /// the wheel is placed anew until what the solution asks of it beyond that is negligible. The grid
 /// grows until the footprint does not reach its ends. Throws InputError.
-SingleContactResult press(const SingleContact& contact, ComplianceOperator& compliance);
+SingleContactResult press(const SingleContact& contact, ContactModel& model);
 
 /// Stiffness (MPa/mm) of the elastic foundation that meets a plane under `force` (N) at the same
-/// approach as `compliance` does. Its patch is still another: see docs/methods.md.
-double foundation_stiffness(const ContactWheel& wheel, ComplianceOperator& compliance,
-                            double force);
+/// approach as `model` does. Its patch is still another: see docs/methods.md.
+double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force);
 
 }  // namespace beltgrinding

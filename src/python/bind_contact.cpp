@@ -2,6 +2,7 @@
 
 #include "contact/half_space.h"
 #include "contact/single_contact.h"
+#include "contact/surrogate.h"
 #include "contact/wheel_rim.h"
 #include "python/dict.h"
 
@@ -76,8 +77,8 @@ Workpiece workpiece_from(const py::dict& given) {
 
 }  // namespace
 
-std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
-                                                    const ContactWheel& wheel, double force) {
+std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
+                                              double force) {
     py::dict d = copy_of(given);
     const auto model = take<std::string>(d, "model", "wheel_rim");
     Elasticity elasticity;
@@ -88,11 +89,17 @@ std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
     BeltPlate belt;
     belt.tension = take(d, "belt_tension", 0.0);
     belt.bending = take(d, "belt_bending", 0.0);
+    const auto learnt = take(d, "regression", py::dict());
+    const auto name = take<std::string>(d, "name", "surrogate");
+    ContactFeatures features{take(d, "cell", 1.0), thickness};
     const WheelRimDesign design = rim_from(d, wheel, elasticity, thickness);
     refuse_rest(d, "compliance");
     if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt);
     if (model == "bonded_layer") return std::make_unique<BondedLayer>(elasticity, thickness);
     if (model == "half_space") return std::make_unique<HalfSpace>(elasticity);
+    if (model == "surrogate") {
+        return std::make_unique<Surrogate>(features, regression_from(learnt), name);
+    }
     if (model == "geometric") return std::make_unique<Geometric>();
     if (model == "elastic_foundation") {
         if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
@@ -100,7 +107,8 @@ std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
         return std::make_unique<ElasticFoundation>(foundation_stiffness(wheel, rim, force));
     }
     throw InputError("compliance: there is no model '" + model +
-                     "'; use wheel_rim, bonded_layer, half_space, elastic_foundation or geometric");
+                     "'; use wheel_rim, bonded_layer, half_space, elastic_foundation, "
+                     "surrogate or geometric");
 }
 
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {

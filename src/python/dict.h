@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "contact/compliance.h"
-#include "contact/contact_solver.h"
+#include "contact/contact_model.h"
 #include "contact/contact_wheel.h"
+#include "contact/regression.h"
 #include "python/arrays.h"
 
 namespace beltgrinding::python {
@@ -31,10 +31,13 @@ py::dict copy_of(const py::dict& d);
 /// A contact wheel from a dict of its members.
 ContactWheel wheel_from(const py::dict& given);
 
-/// The compliance operator that a dict describes: "model" and the parameters of any, for `wheel`
+/// A surrogate's regression from what `train_regression` gives.
+TrainedRegression regression_from(const py::dict& given);
+
+/// The contact model that a dict describes: "model" and the parameters of any, for `wheel`
 /// under about `force` N.
-std::unique_ptr<ComplianceOperator> compliance_from(const py::dict& given,
-                                                    const ContactWheel& wheel, double force);
+std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
+                                              double force);
 
 /// (ny, nx) array of one value per cell.
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values);

@@ -64,6 +64,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_geometry(m);
     bind_height_field(m);
     bind_contact(m);
+    bind_surrogate(m);
     bind_simulation(m);
     bind_inspection(m);
 }

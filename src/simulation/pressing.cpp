@@ -20,8 +20,8 @@ constexpr double kAhead = 0.5;
 
 }  // namespace
 
-Pressing::Pressing(const SimulationOptions& options, double spacing, ComplianceOperator& compliance)
-    : options_(options), compliance_(compliance), map_(options.wheel, spacing) {}
+Pressing::Pressing(const SimulationOptions& options, double spacing, ContactModel& model)
+    : options_(options), model_(model), map_(options.wheel, spacing) {}
 
 Frame Pressing::placed_frame() const {
     return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
@@ -48,7 +48,7 @@ void Pressing::map_gap(const HeightField& field, double reach, SimulationResult&
 
 void Pressing::solve(bool force_control, double force, SimulationResult& result) {
     const Stopwatch watch(result.contact_s);
-    compliance_.set_grid(map_.grid());
+    model_.set_grid(map_.grid());
     ContactProblem problem;
     problem.grid = map_.grid();
     problem.gap = map_.gap();
@@ -65,7 +65,7 @@ void Pressing::solve(bool force_control, double force, SimulationResult& result)
     problem.tolerance = options_.contact_tolerance;
     Eigen::ArrayXd start;
     if (warm_) start = recentre(solution_.pressure, solution_grid_, problem.grid);
-    solution_ = solve_contact(problem, compliance_, warm_ ? &start : nullptr);
+    solution_ = model_.solve(problem, warm_ ? &start : nullptr);
     solution_grid_ = problem.grid;
     warm_ = solution_.force > 0.0;
 }
@@ -87,16 +87,8 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
     for (int i = 0; i < kMaxPlacements; ++i) {
         localise(field, tree, kMargin, result);
         map_gap(field, kMargin, result);
-        if (compliance_.rigid()) {
-            solution_ = ContactSolution{};
-            solution_.converged = true;
-            solution_.pressure = Eigen::ArrayXd::Zero(map_.gap().size());
-            solution_.area =
-                (map_.gap() < 0.0).select(map_.coverage(), 0.0).sum() * map_.grid().cell_area();
-            return solution_.area > 0.0 ? State::kPressed : State::kNoContact;
-        }
         solve(false, 0.0, result);
-        if (solution_.force <= 0.0) return State::kNoContact;
+        if (solution_.area <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
         if (std::abs(solution_.approach) <= kPlacement) break;
         placed_ += solution_.approach;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/contact_solver.h"
+#include "contact/contact_model.h"
 #include "contact/gap_map.h"
 #include "heightfield/kdop_tree.h"
 #include "simulation/simulation.h"
@@ -14,7 +14,7 @@ namespace beltgrinding {
 /// contact. Keeps the approach and the pressure of the last pose to start the next one from.
 class Pressing {
   public:
-    Pressing(const SimulationOptions& options, double spacing, ComplianceOperator& compliance);
+    Pressing(const SimulationOptions& options, double spacing, ContactModel& model);
 
     /// What pressing ended in. `kBeyondTravel`: force control met its end stop, the force is what
     /// the wheel has there.
@@ -27,7 +27,7 @@ class Pressing {
     State press_again(const HeightField& field, double force, SimulationResult& result);
 
     /// A rigid tool: `solution` has an area and no pressure.
-    bool rigid() const { return compliance_.rigid(); }
+    bool rigid() const { return model_.rigid(); }
     const ContactSolution& solution() const { return solution_; }
     /// mm by which the wheel reaches into the surface where that is highest.
     double indentation() const { return solution_.approach - map_.lowest(); }
@@ -47,7 +47,7 @@ class Pressing {
     bool find_touch(const HeightField& field, const SegmentTree& tree, SimulationResult& result);
 
     const SimulationOptions& options_;
-    ComplianceOperator& compliance_;
+    ContactModel& model_;
     GapMap map_;
     ContactSolution solution_;
     ContactGrid solution_grid_;

@@ -42,8 +42,8 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     }
 }
 
-void refuse_force_of_rigid(const ComplianceOperator& compliance, const SimulationOptions& options) {
-    if (compliance.rigid() && options.force_control) {
+void refuse_force_of_rigid(const ContactModel& model, const SimulationOptions& options) {
+    if (model.rigid() && options.force_control) {
         throw InputError("a geometric (rigid) tool has no force; set the control to position");
     }
 }
@@ -116,7 +116,7 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
 
 }  // namespace
 
-SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOperator& compliance,
+SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context) {
     validate(field, options);
@@ -140,8 +140,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
         tree = std::make_unique<SegmentTree>(field, context);
     }
     const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
-    refuse_force_of_rigid(compliance, options);
-    Pressing pressing(options, cell, compliance);
+    refuse_force_of_rigid(model, options);
+    Pressing pressing(options, cell, model);
     std::vector<std::uint32_t> changed;
     bool touched = false;
 
@@ -215,21 +215,21 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOp
 }
 
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
-                       ComplianceOperator& compliance, const SimulationOptions& options) {
+                       ContactModel& model, const SimulationOptions& options) {
     validate(field, options);
     if (pose >= path.poses().size()) {
         throw InputError("there is no pose " + std::to_string(pose + 1) + "; the path has " +
                          std::to_string(path.poses().size()));
     }
     const PathPose& at = path.poses()[pose];
-    if (compliance.rigid()) {
+    if (model.rigid()) {
         throw InputError("a geometric (rigid) tool has no pressure; choose an elastic model");
     }
     PoseContact contact;
     contact.commanded = at.force >= 0.0 ? at.force : options.force;
     const SegmentTree tree(field);
     Pressing pressing(options, std::max(options.contact_spacing, kSamplesPerCell * field.spacing),
-                      compliance);
+                      model);
     SimulationResult phases;
     const auto state = pressing.press(
         field, tree, path.frames().work_from_contact(at.base_from_tcp), contact.commanded, phases);

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "base/run_context.h"
-#include "contact/compliance.h"
-#include "contact/contact_solver.h"
+#include "contact/contact_model.h"
 #include "contact/contact_wheel.h"
 #include "heightfield/height_field.h"
 #include "removal/removal_law.h"
@@ -66,7 +65,7 @@ struct SimulationResult {
 /// `field.height` changes. On cancel or error the field is left as it was before the call.
 /// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
 /// path, bad options) and Cancelled.
-SimulationResult simulate(HeightField& field, const ToolPath& path, ComplianceOperator& compliance,
+SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});
 
@@ -83,6 +82,6 @@ struct PoseContact {
 /// Presses the wheel at the pose number `pose` (from 0) without grinding. Throws InputError if the
 /// wheel does not touch there.
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
-                       ComplianceOperator& compliance, const SimulationOptions& options);
+                       ContactModel& model, const SimulationOptions& options);
 
 }  // namespace beltgrinding

@@ -28,6 +28,16 @@ def _parser():
     contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
     contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
     contact.add_argument("--keep", help="folder for CalculiX's deck and results")
+    learn = commands.add_parser(
+        "surrogate", help="train a surrogate of the contact on a database of solved contacts"
+    )
+    learn.add_argument("contact", nargs="?", help="contact.json: the wheel, the force, the cells")
+    learn.add_argument("-o", "--output", required=True, help="file for the surrogate (.npz)")
+    learn.add_argument("--contacts", type=int, default=2000, help="to solve (default 2000)")
+    learn.add_argument("--source", choices=("wheel_rim", "ccx"), default="wheel_rim")
+    learn.add_argument("--seed", type=int, default=1, help="of the random contacts (default 1)")
+    learn.add_argument("--database", help="file that keeps the database (.npz)")
+    learn.add_argument("--train-on", help="a database of your own in place of a contact.json")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument("name", nargs="?", choices=("job", "contact"), default="job")
     return parser
@@ -93,6 +103,32 @@ def _contact(arguments):
     print(json.dumps(figures))
 
 
+def _surrogate(arguments):
+    from . import InputError, contact, surrogate
+
+    if (arguments.contact is None) == (arguments.train_on is None):
+        raise InputError("give either a contact.json or --train-on with a database")
+
+    def tell(done, count):
+        print(f"\r{done} of {count} contacts", end="", file=sys.stderr, flush=True)
+
+    if arguments.train_on:
+        database = surrogate.load_database(arguments.train_on)
+    else:
+        database = surrogate.make_database(
+            contact.load(arguments.contact),
+            arguments.contacts,
+            arguments.source,
+            arguments.seed,
+            tell if sys.stderr.isatty() else None,
+        )
+        if arguments.database:
+            surrogate.save_database(database, arguments.database)
+    trained, report = surrogate.train(database, arguments.seed)
+    surrogate.save(trained, arguments.output)
+    print(json.dumps(report))
+
+
 def _report(summary, output):
     for warning in summary["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
@@ -122,6 +158,8 @@ def main(argv=None):
             print(json.dumps(schemas.schema(arguments.name), indent=2))
         elif arguments.command == "contact":
             _contact(arguments)
+        elif arguments.command == "surrogate":
+            _surrogate(arguments)
         elif arguments.command == "run":
             _run(arguments)
         else:

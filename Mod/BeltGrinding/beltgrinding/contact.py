@@ -22,13 +22,15 @@ def load(path):
     """Reads and validates a contact file (contact.schema.json). Raises InputError."""
     path = Path(path)
     try:
-        return validate(schemas.read_json(path))
+        return validate(schemas.read_json(path), path.resolve().parent)
     except InputError as error:
         raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
 
 
-def validate(contact):
-    """A copy of ``contact`` with all defaults. Raises InputError naming the key that is wrong."""
+def validate(contact, folder="."):
+    """A copy of ``contact`` with all defaults and paths absolute (relative to ``folder``). Raises
+    InputError naming the key that is wrong.
+    """
     contact = schemas.checked(contact, schemas.schema("contact"), "contact")
     if ("force_N" in contact) == ("approach_mm" in contact):
         raise InputError("contact: give exactly one of 'force_N' or 'approach_mm'")
@@ -39,6 +41,10 @@ def validate(contact):
         raise InputError(f"workpiece: a {workpiece['shape']} needs a 'radius_mm' other than 0")
     if workpiece["shape"] == "strip" and "width_mm" not in workpiece:
         raise InputError("workpiece: a strip needs a 'width_mm'")
+    if contact["surrogate_file"]:
+        contact["surrogate_file"] = str(Path(folder, contact["surrogate_file"]).resolve())
+    elif contact["model"] == "surrogate":
+        raise InputError("contact: a surrogate needs the key 'surrogate_file'")
     return contact
 
 
@@ -52,12 +58,13 @@ def run(contact):
     for key, name in (("radius_mm", "radius"), ("width_mm", "width")):
         if key in workpiece:
             given[name] = float(workpiece[key])
+    shape = {
+        "radius": float(wheel["outer_radius_mm"]),
+        "width": float(wheel["width_mm"]),
+        "crown_radius": float(wheel["crown_radius_mm"]),
+    }
     return core.single_contact(
-        {
-            "radius": float(wheel["outer_radius_mm"]),
-            "width": float(wheel["width_mm"]),
-            "crown_radius": float(wheel["crown_radius_mm"]),
-        },
+        shape,
         given,
         jobs.compliance_arguments(
             {
@@ -68,8 +75,10 @@ def run(contact):
                 "belt_tension_N_per_mm": wheel["belt_tension_N_per_mm"],
                 "belt_bending_N_mm": wheel["belt_bending_N_mm"],
                 "stiffness_MPa_per_mm": wheel["stiffness_MPa_per_mm"],
+                "surrogate_file": contact["surrogate_file"],
                 "layers": [],
-            }
+            },
+            shape,
         ),
         contact.get("force_N"),
         contact.get("approach_mm"),

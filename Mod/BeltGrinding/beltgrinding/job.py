@@ -44,6 +44,11 @@ def validate(job, folder="."):
     for holder in [job["design"], job["stock"], *job["programs"]]:
         if "file" in holder:
             holder["file"] = str(Path(folder, holder["file"]).resolve())
+    compliance = job["belt_machine"]["compliance"]
+    if compliance["surrogate_file"]:
+        compliance["surrogate_file"] = str(Path(folder, compliance["surrogate_file"]).resolve())
+    elif compliance["model"] == "surrogate":
+        raise InputError("belt_machine.compliance: a surrogate needs the key 'surrogate_file'")
     stock = job["stock"]
     if stock["kind"] == "mesh" and "file" not in stock:
         raise InputError("stock: a mesh stock needs the key 'file'")
@@ -214,8 +219,20 @@ def tool_path(job, index, warnings, count=None):
         raise InputError(f"{where}: {error}") from None
 
 
-def compliance_arguments(compliance):
-    """The dict that core takes for the elasticity of a wheel."""
+def compliance_arguments(compliance, wheel):
+    """The dict that core takes for the elasticity of a wheel (dict of radius, width, crown_radius,
+    mm). Raises InputError for a surrogate's file that does not fit.
+    """
+    if compliance["model"] == "surrogate":
+        from . import surrogate
+
+        asked = {
+            **compliance,
+            "outer_radius_mm": wheel["radius"],
+            "width_mm": wheel["width"],
+            "crown_radius_mm": wheel["crown_radius"],
+        }
+        return surrogate.arguments(compliance["surrogate_file"], asked)
     names = {
         "youngs_modulus_MPa": "youngs_modulus",
         "poissons_ratio": "poissons_ratio",
@@ -241,7 +258,7 @@ def engine_arguments(job):
     """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
     machine = job["belt_machine"]
     wheel = {name[:-3]: float(value) for name, value in machine["wheel"].items()}
-    compliance = compliance_arguments(machine["compliance"])
+    compliance = compliance_arguments(machine["compliance"], wheel)
     law = {
         "model": job["law"]["model"],
         "coefficient": float(job["law"]["coefficient_mm2_per_N"]),

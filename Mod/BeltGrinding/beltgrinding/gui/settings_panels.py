@@ -74,6 +74,7 @@ class BeltMachinePanel(Panel):
             "bonded_layer": translate("BeltGrinding", "Bonded layer"),
             "half_space": translate("BeltGrinding", "Half-space"),
             "elastic_foundation": translate("BeltGrinding", "Elastic foundation"),
+            "surrogate": translate("BeltGrinding", "Surrogate (trained)"),
             "geometric": translate("BeltGrinding", "Rigid (geometric)"),
         }
         wheel.add("Compliance", translate("BeltGrinding", "Elasticity"), models)
@@ -85,6 +86,8 @@ class BeltMachinePanel(Panel):
         wheel.add(
             "Stiffness", translate("BeltGrinding", "Stiffness (0: of the rim)"), unit="MPa/mm"
         )
+        trained = translate("BeltGrinding", "Surrogate")
+        wheel.add("SurrogateFile", trained, f"{trained} (*.npz)")
         belt = Form(obj, translate("BeltGrinding", "Belt and control"))
         belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
         belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
@@ -131,6 +134,7 @@ class BeltMachinePanel(Panel):
             "wheel_rim": rim | belt,
             "bonded_layer": rim,
             "half_space": rubber,
+            "surrogate": rim | belt | {"SurrogateFile"},
             "geometric": set(),
             "elastic_foundation": {"Stiffness"}
             | (rim | belt if self.obj.Stiffness <= 0 else set()),
@@ -155,6 +159,10 @@ class BeltMachinePanel(Panel):
             )
         if self.obj.Compliance != "elastic_foundation" and self.obj.YoungsModulus.Value <= 0:
             raise InputError(translate("BeltGrinding", "Young's modulus must be positive."))
+        if self.obj.Compliance == "surrogate" and not self.obj.SurrogateFile:
+            raise InputError(
+                translate("BeltGrinding", "Choose the file that `beltgrind surrogate` wrote.")
+            )
         if self.obj.Compliance == "geometric" and self.obj.Control == "force":
             raise InputError(
                 translate("BeltGrinding", "A rigid tool has no force: set the control to position.")

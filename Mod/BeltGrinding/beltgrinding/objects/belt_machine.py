@@ -17,6 +17,7 @@ KEYS = (
     Key("BeltTension", "Float", "Elasticity", "belt_machine.compliance.belt_tension_N_per_mm"),
     Key("BeltBending", "Float", "Elasticity", "belt_machine.compliance.belt_bending_N_mm"),
     Key("Stiffness", "Float", "Elasticity", "belt_machine.compliance.stiffness_MPa_per_mm"),
+    Key("SurrogateFile", "File", "Elasticity", "belt_machine.compliance.surrogate_file"),
     Key("BeltSpeed", "Speed", "Belt", "belt_machine.belt_speed_m_s", 1000.0),
     Key("BeltWear", "Float", "Belt", "belt_machine.belt_wear"),
     Key("Control", "Enumeration", "Control", "belt_machine.control"),

@@ -9,6 +9,7 @@ from ..job import schema
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
 # pressure in kPa.
+AS_IS = ("Bool", "Enumeration", "String", "File")  # kinds without a unit
 FACTOR = {"Force": 1000.0, "Pressure": 1000.0}
 
 
@@ -92,7 +93,7 @@ def add_outputs(obj, outputs):
 def get_value(obj, key):
     """The property in the job's unit."""
     value = getattr(obj, key.name)
-    if key.kind in ("Bool", "Enumeration", "String"):
+    if key.kind in AS_IS:
         return value
     value = float(getattr(value, "Value", value)) / key.scale
     return float(f"{value:.15g}")  # 0.05 stays 0.05 on its way through FreeCAD's units
@@ -100,7 +101,7 @@ def get_value(obj, key):
 
 def set_value(obj, key, value):
     """Sets the property from a value in the job's unit."""
-    if key.kind not in ("Bool", "Enumeration", "String"):
+    if key.kind not in AS_IS:
         value = value * key.scale
     setattr(obj, key.name, value)
 

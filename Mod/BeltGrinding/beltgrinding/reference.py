@@ -217,16 +217,20 @@ def _deck(mesh, contact, rim):
 
 
 def _read_forces(path, mesh):
-    """Pressing force of every surface node, (y, s), N; None if there is no result."""
-    count, forces, numbers = len(mesh.points), np.zeros(mesh.shape[::-1]), 0
+    """Pressing force of every surface node, (y, s), N, at the end of the step; None if it was not
+    reached. CalculiX prints every increment that it took.
+    """
+    count, forces, numbers, at = len(mesh.points), np.zeros(mesh.shape[::-1]), 0, 0.0
     if not path.is_file():
         return None
     for line in path.read_text(errors="replace").splitlines():
         words = line.split()
+        if "time" in words:
+            numbers, at = 0, float(words[-1])
         if len(words) != 4 or not words[0].isdigit():
             continue
         number = int(words[0]) - count - 1
         j, i = divmod(number, mesh.shape[0])
         forces[j, i] = -np.dot(list(map(float, words[1:])), mesh.normals[mesh.first + i])
         numbers += 1
-    return forces if numbers == forces.size else None
+    return forces if numbers == forces.size and at > 0.999 else None

@@ -35,24 +35,27 @@ void GapMap::fit_grid(double half_length) {
     at_boundary_.assign(static_cast<std::size_t>(n), 0);
 }
 
-std::array<GapMap::Corner, 4> GapMap::corners(const Footprint& f) const {
+void GapMap::put_on_grid(Footprint& f) const {
+    // Beyond the outermost centres all weight goes to the outermost cell.
     const double u = f.s / grid_.ds + 0.5 * (grid_.nx - 1);
     const double v = f.y / grid_.dy + 0.5 * (grid_.ny - 1);
-    const int i = static_cast<int>(std::floor(u));
-    const int j = static_cast<int>(std::floor(v));
-    std::array<Corner, 4> result;
-    for (int b = 0; b < 2; ++b) {
-        for (int a = 0; a < 2; ++a) {
-            // Beyond the outermost centres all weight goes to the outermost cell.
-            const int ci = std::clamp(i + a, 0, grid_.nx - 1);
-            const int cj = std::clamp(j + b, 0, grid_.ny - 1);
-            const double wu = a == 0 ? 1.0 - (u - i) : u - i;
-            const double wv = b == 0 ? 1.0 - (v - j) : v - j;
-            result[static_cast<std::size_t>(2 * b + a)] = {cj * grid_.nx + ci, wu * wv,
-                                                           grid_.s(ci) - f.s, grid_.y(cj) - f.y};
-        }
-    }
-    return result;
+    const int i = std::clamp(static_cast<int>(u), 0, grid_.nx - 2);
+    const int j = std::clamp(static_cast<int>(v), 0, std::max(0, grid_.ny - 2));
+    f.cell = j * grid_.nx + i;
+    f.u = static_cast<float>(std::clamp(u - i, 0.0, 1.0));
+    f.v = grid_.ny > 1 ? static_cast<float>(std::clamp(v - j, 0.0, 1.0)) : 0.0f;
+    f.slope_s *= grid_.ds;
+    f.slope_y *= grid_.dy;
+    f.gap += f.slope_s * (i - u) + f.slope_y * (j - v);
+}
+
+template <class Visit>
+void GapMap::for_cells(const Footprint& f, Visit visit) const {
+    const int above = f.cell + (grid_.ny > 1 ? grid_.nx : 0);
+    visit(f.cell, (1.0f - f.u) * (1.0f - f.v), f.gap);
+    visit(f.cell + 1, f.u * (1.0f - f.v), f.gap + f.slope_s);
+    visit(above, (1.0f - f.u) * f.v, f.gap + f.slope_y);
+    visit(above + 1, f.u * f.v, f.gap + f.slope_s + f.slope_y);
 }
 
 void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hits,
@@ -97,28 +100,26 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
     }
     fit_grid(half_length);
 
-    const auto carried = [](const Footprint& f, const Corner& c) {
-        return f.gap + f.slope_s * c.ds + f.slope_y * c.dy;
-    };
-    for (const Footprint& f : footprints_) {
-        for (const Corner& c : corners(f)) {
-            if (c.weight > 0.0) nearest_[c.cell] = std::min(nearest_[c.cell], carried(f, c));
-        }
+    for (Footprint& f : footprints_) {
+        put_on_grid(f);
+        for_cells(f, [&](int cell, float weight, double carried) {
+            if (weight > 0.0f) nearest_[cell] = std::min(nearest_[cell], carried);
+        });
     }
     const double layer = kLayer * std::max(grid_.ds, grid_.dy);
     for (Footprint& f : footprints_) {
         double behind = 0.0;
-        for (const Corner& c : corners(f)) {
-            behind += c.weight * std::min(carried(f, c) - nearest_[c.cell], 2.0 * layer);
-        }
+        for_cells(f, [&](int cell, float weight, double carried) {
+            if (weight > 0.0f) behind += weight * std::min(carried - nearest_[cell], 2.0 * layer);
+        });
         f.nearest = behind <= layer;
         if (!f.nearest) continue;
-        for (const Corner& c : corners(f)) {
-            const double weight = c.weight * f.projected_area;
-            gap_[c.cell] += weight * carried(f, c);
-            weight_[c.cell] += weight;
-            if (f.boundary && c.weight > 0.0) at_boundary_[static_cast<std::size_t>(c.cell)] = 1;
-        }
+        for_cells(f, [&](int cell, float share, double carried) {
+            const double weight = static_cast<double>(share) * f.projected_area;
+            gap_[cell] += weight * carried;
+            weight_[cell] += weight;
+            if (f.boundary && share > 0.0f) at_boundary_[static_cast<std::size_t>(cell)] = 1;
+        });
     }
     for (Eigen::Index cell = 0; cell < gap_.size(); ++cell) {
         double share = weight_[cell] / grid_.cell_area();
@@ -142,7 +143,7 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
         const Footprint& f = footprints_[k];
         if (!f.nearest) continue;
         double lowering = 0.0;
-        for (const Corner& c : corners(f)) lowering += c.weight * rate[c.cell];
+        for_cells(f, [&](int cell, float weight, double) { lowering += weight * rate[cell]; });
         lowering_[k] = f.inside * lowering * duration;
         unscaled += lowering_[k] * f.area;
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -51,25 +50,25 @@ class GapMap {
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-    /// A sample on the grid: lower left cell of the four that it belongs to, and where between
-    /// them.
+    /// A sample on the grid, shared by four cells.
     struct Footprint {
         std::uint32_t sample;
         double s, y;  // mm
-        double gap;   // mm, at (s, y)
-        double slope_s, slope_y;
-        double inside;         // share of the sample's extent that lies within the wheel's width
-        float area;            // mm2, of the design surface
-        float projected_area;  // mm2, on the wheel
+        double gap;   // mm, at (s, y); once on the grid, carried to the first cell's centre
+        double slope_s, slope_y;  // once on the grid, by a cell
+        double inside;            // share of the sample's extent that lies within the wheel's width
+        int cell;                 // the first of the four: lower s, lower y
+        float u, v;               // weights of the cells of higher s, of higher y
+        float area;               // mm2, of the design surface
+        float projected_area;     // mm2, on the wheel
         bool boundary;
         bool nearest = true;  // belongs to the layer nearest to the wheel
     };
-    struct Corner {
-        int cell;
-        double weight;
-        double ds, dy;  // from the sample to the cell's centre, mm
-    };
-    std::array<Corner, 4> corners(const Footprint& f) const;
+    /// Finds the four cells.
+    void put_on_grid(Footprint& f) const;
+    /// Calls visit(cell, weight, gap carried to its centre) for each of the four.
+    template <class Visit>
+    void for_cells(const Footprint& f, Visit visit) const;
     void fit_grid(double half_length);
 
     ContactWheel wheel_;

@@ -7,14 +7,38 @@
 
 namespace beltgrinding {
 
+namespace {
+
+/// The profile's stretch that y lies on.
+std::pair<Eigen::Vector2d, Eigen::Vector2d> stretch(const std::vector<Eigen::Vector2d>& profile,
+                                                    double y) {
+    std::size_t k = 1;
+    while (k + 1 < profile.size() && profile[k].x() < y) ++k;
+    return {profile[k - 1], profile[k]};
+}
+
+}  // namespace
+
 double ContactWheel::drop(double y) const {
-    if (crown_radius <= 0.0) return 0.0;
-    return crown_radius - std::sqrt(crown_radius * crown_radius - y * y);
+    double drop = 0.0;
+    if (crown_radius > 0.0) {
+        drop = crown_radius - std::sqrt(crown_radius * crown_radius - y * y);
+    }
+    if (!profile.empty()) {
+        const auto [a, b] = stretch(profile, y);
+        drop += a.y() + (b.y() - a.y()) * (y - a.x()) / (b.x() - a.x());
+    }
+    return drop;
 }
 
 double ContactWheel::drop_slope(double y) const {
-    if (crown_radius <= 0.0) return 0.0;
-    return y / std::sqrt(crown_radius * crown_radius - y * y);
+    double slope = 0.0;
+    if (crown_radius > 0.0) slope = y / std::sqrt(crown_radius * crown_radius - y * y);
+    if (!profile.empty()) {
+        const auto [a, b] = stretch(profile, y);
+        slope += (b.y() - a.y()) / (b.x() - a.x());
+    }
+    return slope;
 }
 
 void ContactWheel::validate() const {
@@ -29,6 +53,21 @@ void ContactWheel::validate() const {
     if (!std::isfinite(crown_radius) || crown_radius < 0.0) {
         throw InputError("contact wheel: crown radius is " + std::to_string(crown_radius) +
                          " mm; give a positive one, or 0 for a cylinder");
+    }
+    if (!profile.empty()) {
+        const double half = 0.5 * width * (1.0 - 1e-9);
+        bool usable =
+            profile.size() >= 2 && profile.front().x() <= -half && profile.back().x() >= half;
+        for (std::size_t k = 0; k < profile.size(); ++k) {
+            usable = usable && profile[k].allFinite() && profile[k].y() >= 0.0 &&
+                     profile[k].y() < radius && (k == 0 || profile[k].x() > profile[k - 1].x());
+        }
+        if (!usable) {
+            throw InputError(
+                "contact wheel: the profile needs points (y, drop) with y ascending from " +
+                std::to_string(-0.5 * width) + " to " + std::to_string(0.5 * width) +
+                " mm at least, and drops from 0 to below the radius");
+        }
     }
     if (crown_radius > 0.0 && (crown_radius <= 0.5 * width || drop(0.5 * width) >= radius)) {
         throw InputError("contact wheel: a crown radius of " + std::to_string(crown_radius) +

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "base/geometry.h"
 
 namespace beltgrinding {
@@ -11,6 +14,10 @@ struct ContactWheel {
     double radius = 100.0;      ///< outer radius at mid-width, belt included, mm
     double width = 50.0;        ///< mm
     double crown_radius = 0.0;  ///< radius of the rim's profile in the y-z plane, mm; 0: cylinder
+
+    /// Points (y, drop), mm, y ascending across the whole width, straight lines between them: a rim
+    /// turned to a profile. Added to the crown; empty: none.
+    std::vector<Eigen::Vector2d> profile = {};
 
     /// How much smaller than `radius` the wheel is at axial position y (|y| <= width/2), mm.
     double drop(double y) const;

@@ -24,6 +24,7 @@ ContactWheel wheel_from(const py::dict& given) {
     wheel.radius = take(d, "radius", wheel.radius);
     wheel.width = take(d, "width", wheel.width);
     wheel.crown_radius = take(d, "crown_radius", wheel.crown_radius);
+    wheel.profile = take(d, "profile", wheel.profile);
     refuse_rest(d, "wheel");
     return wheel;
 }

@@ -177,3 +177,16 @@ def test_nasty_files_are_refused_by_name(file):
     job["design"] = {"file": str(SHARED / "data" / "cad_nasty" / file)}
     with pytest.raises(InputError, match=file):
         beltgrinding.run(job)
+
+
+def test_a_profiled_wheel_grinds_where_it_stands_out():
+    job = plate_job()
+    job["belt_machine"]["wheel"]["profile_mm"] = [[-7.5, 1.0], [-0.5, 0.0], [0.5, 0.0], [7.5, 1.0]]
+    result = beltgrinding.run(job)
+    height, y = result.field.height, result.field.points[:, 1]
+    lane = y[height < 0.19]
+    assert 1.0 < np.ptp(lane) < 10.0
+    assert np.mean(lane) == pytest.approx(np.mean([y.min(), y.max()]), abs=1.0)
+    job["belt_machine"]["wheel"]["profile_mm"] = [[-5, 0.0], [5, 0.0]]
+    with pytest.raises(InputError, match="profile needs points"):
+        beltgrinding.run(job)

@@ -62,6 +62,7 @@ def run(contact):
         "radius": float(wheel["outer_radius_mm"]),
         "width": float(wheel["width_mm"]),
         "crown_radius": float(wheel["crown_radius_mm"]),
+        "profile": wheel["profile_mm"],
     }
     return core.single_contact(
         shape,

@@ -231,6 +231,7 @@ def compliance_arguments(compliance, wheel):
             "outer_radius_mm": wheel["radius"],
             "width_mm": wheel["width"],
             "crown_radius_mm": wheel["crown_radius"],
+            "profile_mm": wheel["profile"],
         }
         return surrogate.arguments(compliance["surrogate_file"], asked)
     names = {
@@ -257,7 +258,7 @@ def compliance_arguments(compliance, wheel):
 def engine_arguments(job):
     """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
     machine = job["belt_machine"]
-    wheel = {name[:-3]: float(value) for name, value in machine["wheel"].items()}
+    wheel = {name[:-3]: value for name, value in machine["wheel"].items()}
     compliance = compliance_arguments(machine["compliance"], wheel)
     law = {
         "model": job["law"]["model"],

@@ -38,6 +38,8 @@ REGRESSION = ("vectors", "coefficients", "mean", "deviation", "rho", "gamma", "s
 
 def wheel_of(contact):
     """The wheel of a validated contact, as a surrogate's file names it."""
+    if contact["wheel"]["profile_mm"]:
+        raise InputError("a surrogate knows no profiled wheels; leave 'profile_mm' out")
     wheel = {**contact["wheel"], "youngs_modulus_MPa": contacts.modulus(contact["wheel"])}
     return {key: float(wheel[key]) for key in WHEEL}
 
@@ -222,6 +224,8 @@ def arguments(path, wheel):
     for, keys of ``WHEEL``. Raises InputError if it was trained for another.
     """
     surrogate, digest = load(path)
+    if wheel["profile_mm"]:
+        raise InputError(f"{path}: a surrogate knows no profiled wheels; choose another model")
     for key in WHEEL:
         trained, asked = surrogate["wheel"][key], float(wheel[key])
         if not np.isclose(trained, asked, rtol=1e-6, atol=1e-9):

@@ -177,5 +177,23 @@ TEST(ContactWheel, CrownDropsTowardsTheEdges) {
     EXPECT_THROW((ContactWheel{-1.0, 50.0, 0.0}.validate()), InputError);
 }
 
+TEST(ContactWheel, ProfileAddsToTheCrown) {
+    ContactWheel wheel{100.0, 50.0, 0.0};
+    wheel.profile = {{-25.0, 2.0}, {-10.0, 0.0}, {10.0, 0.0}, {30.0, 4.0}};
+    wheel.validate();
+    EXPECT_NEAR(wheel.drop(-25.0), 2.0, 1e-12);
+    EXPECT_NEAR(wheel.drop(-17.5), 1.0, 1e-12);
+    EXPECT_EQ(wheel.drop(3.0), 0.0);
+    EXPECT_NEAR(wheel.drop(20.0), 2.0, 1e-12);
+    EXPECT_NEAR(wheel.drop_slope(20.0), 0.2, 1e-12);
+    const double profile = wheel.drop(20.0);
+    wheel.crown_radius = 200.0;
+    EXPECT_NEAR(wheel.drop(20.0), profile + 200.0 - std::sqrt(200.0 * 200.0 - 400.0), 1e-12);
+    wheel.profile.pop_back();  // does not reach the other side
+    EXPECT_THROW(wheel.validate(), InputError);
+    wheel.profile = {{-25.0, 0.0}, {25.0, 0.0}, {25.0, 1.0}};  // a step is no profile
+    EXPECT_THROW(wheel.validate(), InputError);
+}
+
 }  // namespace
 }  // namespace beltgrinding

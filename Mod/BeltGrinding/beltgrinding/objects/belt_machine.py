@@ -10,6 +10,7 @@ KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
     Key("WheelWidth", "Length", "Wheel", "belt_machine.wheel.width_mm"),
     Key("CrownRadius", "Length", "Wheel", "belt_machine.wheel.crown_radius_mm"),
+    Key("Profile", "VectorList", "Wheel", "belt_machine.wheel.profile_mm"),
     Key("Compliance", "Enumeration", "Elasticity", "belt_machine.compliance.model"),
     Key("YoungsModulus", "Pressure", "Elasticity", "belt_machine.compliance.youngs_modulus_MPa"),
     Key("PoissonsRatio", "Float", "Elasticity", "belt_machine.compliance.poissons_ratio"),

@@ -95,13 +95,17 @@ def get_value(obj, key):
     value = getattr(obj, key.name)
     if key.kind in AS_IS:
         return value
+    if key.kind == "VectorList":  # pairs
+        return [[float(f"{point.x:.15g}"), float(f"{point.y:.15g}")] for point in value]
     value = float(getattr(value, "Value", value)) / key.scale
     return float(f"{value:.15g}")  # 0.05 stays 0.05 on its way through FreeCAD's units
 
 
 def set_value(obj, key, value):
     """Sets the property from a value in the job's unit."""
-    if key.kind not in AS_IS:
+    if key.kind == "VectorList":
+        value = [(x, y, 0.0) for x, y in value]
+    elif key.kind not in AS_IS:
         value = value * key.scale
     setattr(obj, key.name, value)
 

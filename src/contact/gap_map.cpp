@@ -157,6 +157,16 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
     return scale * unscaled;
 }
 
+void GapMap::spread(const Eigen::ArrayXd& rate, double duration,
+                    Eigen::Ref<Eigen::ArrayXd> amounts) const {
+    for (const Footprint& f : footprints_) {
+        if (!f.nearest) continue;
+        double amount = 0.0;
+        for_cells(f, [&](int cell, float weight, double) { amount += weight * rate[cell]; });
+        amounts[f.sample] += f.inside * amount * duration;
+    }
+}
+
 Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
                         const ContactGrid& to) {
     if (from == to) return values;

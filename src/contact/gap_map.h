@@ -47,6 +47,11 @@ class GapMap {
     double remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
                   std::vector<std::uint32_t>& changed);
 
+    /// Adds what `rate` (mm/s per cell) takes from each sample in `duration` s to `amounts` (mm,
+    /// one per sample of the field), without touching the field.
+    void spread(const Eigen::ArrayXd& rate, double duration,
+                Eigen::Ref<Eigen::ArrayXd> amounts) const;
+
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();
 

@@ -7,14 +7,75 @@
 namespace beltgrinding::python {
 namespace {
 
+Curve curve_from(py::dict& d, const char* key) {
+    return Curve(take(d, key, std::vector<Eigen::Vector2d>()), key);
+}
+
 std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
     py::dict d = copy_of(given);
-    const auto model = take<std::string>(d, "model", "local_linear");
-    const double coefficient = take(d, "coefficient", 1.25e-4);
+    const auto model = take<std::string>(d, "model", "local");
+    LocalLawParameters p;
+    p.coefficient = take(d, "coefficient", p.coefficient);
+    if (model == "hammann") {
+        refuse_rest(d, "law");
+        return std::make_unique<HammannLaw>(p.coefficient);
+    }
+    if (model != "local") {
+        throw InputError("law: there is no model '" + model + "'; use local or hammann");
+    }
+    p.pressure_threshold = take(d, "pressure_threshold", p.pressure_threshold);
+    p.pressure_exponent = take(d, "pressure_exponent", p.pressure_exponent);
+    p.reference_pressure = take(d, "reference_pressure", p.reference_pressure);
+    p.saturation_pressure = take(d, "saturation_pressure", p.saturation_pressure);
+    p.speed_exponent = take(d, "speed_exponent", p.speed_exponent);
+    p.reference_speed = take(d, "reference_speed", p.reference_speed);
+    p.feed_exponent = take(d, "feed_exponent", p.feed_exponent);
+    p.reference_feed = take(d, "reference_feed", p.reference_feed);
+    p.land_share = take(d, "land_share", p.land_share);
+    p.pressure_curve = curve_from(d, "pressure_curve");
+    p.speed_curve = curve_from(d, "speed_curve");
+    p.feed_curve = curve_from(d, "feed_curve");
+    p.land_curve = curve_from(d, "land_curve");
     refuse_rest(d, "law");
-    if (model == "local_linear") return std::make_unique<LocalLinearLaw>(coefficient);
-    if (model == "hammann") return std::make_unique<HammannLaw>(coefficient);
-    throw InputError("law: there is no model '" + model + "'; use local_linear or hammann");
+    return std::make_unique<LocalLaw>(p);
+}
+
+BeltWear wear_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    BeltWear::Parameters p;
+    const auto model = take<std::string>(d, "model", "none");
+    if (model == "exponential") {
+        p.model = BeltWear::Model::kExponential;
+    } else if (model == "two_stage") {
+        p.model = BeltWear::Model::kTwoStage;
+    } else if (model == "curve") {
+        p.model = BeltWear::Model::kCurve;
+    } else if (model != "none") {
+        throw InputError("wear: there is no model '" + model +
+                         "'; use none, exponential, two_stage or curve");
+    }
+    const auto variable = take<std::string>(d, "variable", "work");
+    if (variable != "work" && variable != "volume") {
+        throw InputError("wear: the variable is work or volume, not '" + variable + "'");
+    }
+    if (variable == "volume") p.variable = BeltWear::Variable::kVolume;
+    p.scale = take(d, "scale", p.scale);
+    p.rest = take(d, "rest", p.rest);
+    p.first_share = take(d, "first_share", p.first_share);
+    p.first_scale = take(d, "first_scale", p.first_scale);
+    p.curve = curve_from(d, "curve");
+    refuse_rest(d, "wear");
+    return BeltWear(p);
+}
+
+BeltState belt_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    BeltState belt;
+    belt.work = take(d, "work", 0.0);
+    belt.volume = take(d, "volume", 0.0);
+    belt.time = take(d, "time", 0.0);
+    refuse_rest(d, "belt");
+    return belt;
 }
 
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
@@ -27,6 +88,12 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.robot_stiffness = take(d, "robot_stiffness", o.robot_stiffness);
     o.belt_speed = take(d, "belt_speed", o.belt_speed);
     o.belt_wear = take(d, "belt_wear", o.belt_wear);
+    o.wear = wear_from(take(d, "wear", py::dict()));
+    o.belt = belt_from(take(d, "belt", py::dict()));
+    o.heat_limit = take(d, "heat_limit", o.heat_limit);
+    for (const auto& shifted : take(d, "shifted_laws", py::list())) {
+        o.shifted_laws.push_back(law_from(shifted.cast<py::dict>()));
+    }
     o.contact_spacing = take(d, "contact_spacing", o.contact_spacing);
     o.contact_tolerance = take(d, "contact_tolerance", o.contact_tolerance);
     o.stepping.max_travel = take(d, "max_travel", o.stepping.max_travel);
@@ -77,6 +144,12 @@ py::dict to_dict(const SimulationResult& result) {
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;
+    py::dict belt;
+    belt["work"] = result.belt.work;
+    belt["volume"] = result.belt.volume;
+    belt["time"] = result.belt.time;
+    d["belt"] = belt;
+    d["shifts"] = result.shifts;
     d["process_time"] = result.process_time;
     d["removed_volume"] = result.removed_volume;
     d["integrated_rate"] = result.integrated_rate;

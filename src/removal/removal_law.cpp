@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 
@@ -24,15 +25,102 @@ std::string text(const char* name, double coefficient) {
 
 }  // namespace
 
-LocalLinearLaw::LocalLinearLaw(double coefficient) : coefficient_(checked(coefficient)) {}
-
-void LocalLinearLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
-                          Eigen::ArrayXd& rate) const {
-    rate = coefficient_ * state.belt_wear * state.belt_speed * pressure;
+LocalLaw::LocalLaw(LocalLawParameters parameters) : parameters_(std::move(parameters)) {
+    LocalLawParameters& p = parameters_;
+    checked(p.coefficient);
+    const auto require = [](bool holds, const char* what) {
+        if (!holds) throw InputError(std::string("removal law: ") + what);
+    };
+    const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+    const auto not_negative = [](double value) { return std::isfinite(value) && value >= 0.0; };
+    require(not_negative(p.pressure_threshold), "the threshold pressure must not be negative");
+    require(positive(p.pressure_exponent), "the pressure's exponent must be positive");
+    require(std::isfinite(p.speed_exponent) && std::isfinite(p.feed_exponent),
+            "the exponents of speed and feed must be finite");
+    require(
+        positive(p.reference_pressure) && positive(p.reference_speed) && positive(p.reference_feed),
+        "the references of pressure, speed and feed must be positive");
+    require(not_negative(p.saturation_pressure), "the saturation pressure must not be negative");
+    require(p.land_share > 0.0 && p.land_share <= 1.0, "the land share must lie in (0, 1]");
+    if (!p.land_curve.empty()) serration_ = p.land_curve(p.land_share);
 }
 
-std::string LocalLinearLaw::describe() const {
-    return text("local linear law", coefficient_);
+void LocalLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
+                    Eigen::ArrayXd& rate) const {
+    const LocalLawParameters& p = parameters_;
+    double factor = p.coefficient * state.belt_wear * serration_ * p.land_share;
+    factor *=
+        p.reference_speed * (p.speed_curve.empty()
+                                 ? std::pow(state.belt_speed / p.reference_speed, p.speed_exponent)
+                                 : p.speed_curve(state.belt_speed));
+    if (!p.feed_curve.empty()) {
+        factor *= p.feed_curve(state.feed);
+    } else if (p.feed_exponent != 0.0 && state.feed > 0.0) {
+        factor *= std::pow(state.feed / p.reference_feed, p.feed_exponent);
+    }
+    if (!p.pressure_curve.empty()) {
+        // From no cut at no pressure to the first point in a straight line.
+        const double first = p.pressure_curve.lower(), cut = p.pressure_curve(first);
+        rate = pressure.unaryExpr([&](double at) {
+            const double land = at / p.land_share;
+            return land < first ? cut * land / first : p.pressure_curve(land);
+        });
+        rate *= factor * p.reference_pressure;
+        return;
+    }
+    rate = (pressure / p.land_share - p.pressure_threshold).max(0.0);
+    if (p.saturation_pressure > 0.0) {
+        rate = p.saturation_pressure * (1.0 - (-rate / p.saturation_pressure).exp());
+    }
+    if (p.pressure_exponent != 1.0) {
+        rate = p.reference_pressure * (rate / p.reference_pressure).pow(p.pressure_exponent);
+    }
+    rate *= factor;
+}
+
+std::string LocalLaw::outside(double peak_pressure, const ProcessState& state) const {
+    const LocalLawParameters& p = parameters_;
+    std::ostringstream text;
+    text.precision(3);
+    const auto look = [&](const Curve& curve, double value, double unit, const char* what,
+                          const char* name) {
+        if (curve.empty() || curve.measured(value) || !text.str().empty()) return;
+        text << what << " of " << value / unit << " " << name << " lies outside the measured "
+             << curve.lower() / unit << " to " << curve.upper() / unit << " " << name;
+    };
+    if (!p.pressure_curve.empty() && peak_pressure / p.land_share > p.pressure_curve.upper()) {
+        look(p.pressure_curve, peak_pressure / p.land_share, 1.0, "the peak pressure", "MPa");
+    }
+    look(p.speed_curve, state.belt_speed, 1000.0, "the belt speed", "m/s");
+    look(p.feed_curve, state.feed, 1.0, "the feed", "mm/s");
+    look(p.land_curve, p.land_share, 1.0, "the land share", "");
+    return text.str();
+}
+
+std::string LocalLaw::describe() const {
+    const LocalLawParameters& p = parameters_;
+    std::ostringstream out;
+    out << text("local law", p.coefficient);
+    if (!p.pressure_curve.empty()) {
+        out << ", pressure by a curve";
+    } else {
+        if (p.pressure_exponent != 1.0) out << ", pressure^" << p.pressure_exponent;
+        if (p.pressure_threshold > 0.0) out << " above " << p.pressure_threshold << " MPa";
+        if (p.saturation_pressure > 0.0)
+            out << ", saturating at " << p.saturation_pressure << " MPa";
+    }
+    if (!p.speed_curve.empty()) {
+        out << ", speed by a curve";
+    } else if (p.speed_exponent != 1.0) {
+        out << ", speed^" << p.speed_exponent;
+    }
+    if (!p.feed_curve.empty()) {
+        out << ", feed by a curve";
+    } else if (p.feed_exponent != 0.0) {
+        out << ", feed^" << p.feed_exponent;
+    }
+    if (p.land_share < 1.0) out << ", lands " << p.land_share;
+    return out.str();
 }
 
 HammannLaw::HammannLaw(double coefficient) : coefficient_(checked(coefficient)) {}

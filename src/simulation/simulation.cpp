@@ -19,6 +19,7 @@ constexpr double kRecession = 0.1;
 constexpr int kMaxParts = 200;  // of a step
 // The wheel's cells must each hold samples: never finer than this many sample spacings.
 constexpr double kSamplesPerCell = 1.5;
+constexpr double kJoule = 1e-3;           // of a N mm
 constexpr std::size_t kReportEvery = 16;  // steps between two looks at progress and cancel
 
 void validate(const HeightField& field, const SimulationOptions& options) {
@@ -36,6 +37,10 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     if (options.force_control) positive(options.force_travel, "the travel of the force control");
     if (!std::isfinite(options.robot_stiffness) || options.robot_stiffness < 0.0) {
         throw InputError("the robot's stiffness must be zero (rigid) or positive");
+    }
+    options.belt.validate();
+    if (!std::isfinite(options.heat_limit) || options.heat_limit < 0.0) {
+        throw InputError("the limit of heat must be zero (none) or positive");
     }
     if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
         throw InputError("the belt's wear factor must be zero or positive");
@@ -80,10 +85,12 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
              SimulationResult& result) {
     double volume = 0.0;
     double left = step.duration;
-    Eigen::ArrayXd rate;
+    Eigen::ArrayXd rate, shifted;
     if (pressing.rigid()) {  // all that overlaps goes, whatever the law
         rate = (-pressing.map().gap()).max(0.0) / step.duration;
         volume = pressing.map().remove(field, rate, step.duration, changed);
+        result.belt.volume += volume;
+        result.belt.time += step.duration;
         result.integrated_rate += volume;
         return volume;
     }
@@ -92,8 +99,9 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
         {
             const Stopwatch watch(result.removal_s);
             const ContactSolution& contact = pressing.solution();
-            const ProcessState state{options.belt_speed, options.belt_wear, step.feed,
-                                     contact.force, contact.area};
+            const ProcessState state{options.belt_speed,
+                                     options.belt_wear * options.wear.remaining(result.belt),
+                                     step.feed, contact.force, contact.area};
             law.rate(contact.pressure, state, rate);
             const double fastest = rate.maxCoeff();
             const double indentation = pressing.indentation();
@@ -102,8 +110,18 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
                     std::clamp(kRecession * indentation / fastest, step.duration / kMaxParts, left);
             }
             // No cell recedes below the unloaded wheel, however far beyond reason the force is.
-            rate = rate.min((contact.approach - pressing.map().gap()).max(0.0) / part);
-            volume += pressing.map().remove(field, rate, part, changed);
+            const Eigen::ArrayXd most = (contact.approach - pressing.map().gap()).max(0.0) / part;
+            rate = rate.min(most);
+            for (std::size_t k = 0; k < options.shifted_laws.size(); ++k) {
+                options.shifted_laws[k]->rate(contact.pressure, state, shifted);
+                pressing.map().spread(shifted.min(most) - rate, part,
+                                      result.shifts.col(static_cast<Eigen::Index>(k)));
+            }
+            const double removed = pressing.map().remove(field, rate, part, changed);
+            volume += removed;
+            result.belt.work += kJoule * contact.force * options.belt_speed * part;
+            result.belt.volume += removed;
+            result.belt.time += part;
             result.integrated_rate +=
                 (rate * pressing.map().coverage()).sum() * pressing.map().grid().cell_area() * part;
         }
@@ -112,6 +130,31 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
         if (pressing.press_again(field, step.force, result) == Pressing::State::kNoContact) break;
     }
     return volume;
+}
+
+/// Notes what the process does that it should not: burning, leaving what was measured.
+void note_process(const ContactSolution& contact, const RemovalLaw& law, const PathStep& step,
+                  std::size_t index, const SimulationOptions& options,
+                  const SimulationResult& result, EventLog& events) {
+    const double heat = contact.peak_pressure * options.belt_speed;
+    if (options.heat_limit > 0.0 && heat > options.heat_limit) {
+        std::ostringstream text;
+        text.precision(3);
+        text << "pressure times belt speed reaches " << 1e-3 * heat
+             << " MPa m/s, above the limit of " << 1e-3 * options.heat_limit
+             << "; lower the force or the belt speed";
+        events.note("burn_risk", index, step, 1e-3 * heat, text.str());
+    }
+    const ProcessState state{options.belt_speed, 1.0, step.feed, contact.force, contact.area};
+    const std::string outside = law.outside(contact.peak_pressure, state);
+    if (!outside.empty()) {
+        events.note("law_out_of_range", index, step, contact.peak_pressure,
+                    outside + "; the curve's last value is used");
+    }
+    if (!options.wear.measured(result.belt)) {
+        events.note("belt_out_of_range", index, step, result.belt.work,
+                    "the belt has done more than its wear was measured for; change it");
+    }
 }
 
 }  // namespace
@@ -132,6 +175,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     SimulationResult result;
     result.process_time = path.duration();
     result.steps.reserve(steps.size());
+    result.belt = options.belt;
+    result.shifts = Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(field.size()),
+                                          static_cast<Eigen::Index>(options.shifted_laws.size()));
     HeightGuard guard(field);
     EventLog events(path);
     std::unique_ptr<SegmentTree> tree;
@@ -180,6 +226,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
                         !low);
                 }
             }
+            note_process(contact, law, step, i, options, result, events);
             changed.clear();
             const double volume = grind(field, pressing, law, step, options, changed, result);
             record.removal_rate = static_cast<float>(volume / step.duration);

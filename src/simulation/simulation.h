@@ -9,6 +9,7 @@
 #include "contact/contact_model.h"
 #include "contact/contact_wheel.h"
 #include "heightfield/height_field.h"
+#include "removal/belt_wear.h"
 #include "removal/removal_law.h"
 #include "toolpath/tool_path.h"
 
@@ -44,7 +45,12 @@ struct SimulationOptions {
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
     double robot_stiffness = 0.0;  ///< N/mm along z under position control; 0: rigid
     double belt_speed = 20000.0;   ///< mm/s
-    double belt_wear = 1.0;        ///< k_t
+    double belt_wear = 1.0;        ///< k_t of the belt as it comes, a factor on `wear`
+    BeltWear wear;                 ///< how k_t falls with use
+    BeltState belt;                ///< what the belt has done before
+    double heat_limit = 0.0;       ///< MPa mm/s, largest p V_b without a risk of burning; 0: none
+    /// The law, moved by one standard deviation along each direction in which it is uncertain.
+    std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws;
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
     double contact_tolerance = 1e-3;  ///< relative error of the pressure field
     bool must_touch = true;           ///< a path that never touches the stock is an error
@@ -54,8 +60,12 @@ struct SimulationOptions {
 struct SimulationResult {
     std::vector<Event> events;
     std::vector<StepRecord> steps;
-    double process_time = 0.0;     ///< s, what the robot takes
-    double removed_volume = 0.0;   ///< mm3, taken from the field
+    double process_time = 0.0;    ///< s, what the robot takes
+    double removed_volume = 0.0;  ///< mm3, taken from the field
+    BeltState belt;               ///< what the belt has done in the end
+    /// (samples, shifted laws): mm by which each shifted law would have removed more, at first
+    /// order (the pressures as they are). Independent: they add up as squares.
+    Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     /// s of wall time by phase
     double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0;

@@ -21,7 +21,7 @@ void step_cost(benchmark::State& state) {
     WheelRim rim(design);
     ComplianceOperator& elastic = state.range(1) == 0 ? static_cast<ComplianceOperator&>(foundation)
                                                       : static_cast<ComplianceOperator&>(rim);
-    const LocalLinearLaw law(1e-5);
+    const LocalLaw law({1e-5});
     SimulationOptions options;
     options.wheel = {100.0, 50.0, 0.0};
     options.force = 100.0;

@@ -55,7 +55,7 @@ TEST(Simulation, APassOverAPlateRemovesHammannsDepthByBothLaws) {
             ElasticFoundation foundation(0.5);
             const std::unique_ptr<RemovalLaw> law =
                 global ? std::unique_ptr<RemovalLaw>(std::make_unique<HammannLaw>(kCoefficient))
-                       : std::make_unique<LocalLinearLaw>(kCoefficient);
+                       : std::make_unique<LocalLaw>(LocalLawParameters{kCoefficient});
             const SimulationResult result = simulate(field, path, foundation, *law, options());
             EXPECT_NEAR(mean_removal(field, 30.0, 8.0), depth, 0.01 * depth) << spacing << global;
             EXPECT_NEAR(result.removed_volume, result.integrated_rate,
@@ -78,7 +78,7 @@ TEST(Simulation, HalvingTheStepsChangesTheResultByLessThanOnePercent) {
         ElasticFoundation foundation(0.5);
         SimulationOptions o = options();
         o.stepping.max_travel = travel;
-        simulate(field, path, foundation, LocalLinearLaw(kCoefficient), o);
+        simulate(field, path, foundation, LocalLaw({kCoefficient}), o);
         ground.push_back(std::move(field));
     }
     double difference = 0.0, removed = 0.0;
@@ -97,7 +97,7 @@ TEST(Simulation, PositionControlStopsAtTheWheelsEnvelope) {
     o.force_control = false;
     const ToolPath path({pressing_down(20, 20, 0.0, 1e-3), pressing_down(20.0, 20.001, 0.0, 1e-4)},
                         {});
-    simulate(field, path, foundation, LocalLinearLaw(1e-3), o);
+    simulate(field, path, foundation, LocalLaw({1e-3}), o);
     for (std::size_t i = 0; i < field.size(); ++i) {
         const Vec3& p = field.point[i];
         // A cell within the edge, where cells are covered in part.
@@ -113,7 +113,7 @@ TEST(Simulation, ForceIsHeldAndTimeIsTheRobots) {
     // Over the crown of the cylinder, 1 mm off the surface at the ends: the force control follows.
     const ToolPath path({pressing_down(-10, 20, 0.3, 20.0), pressing_down(10, 20, 0.3, 20.0)}, {});
     const SimulationResult result =
-        simulate(field, path, foundation, LocalLinearLaw(kCoefficient), options());
+        simulate(field, path, foundation, LocalLaw({kCoefficient}), options());
     EXPECT_NEAR(result.process_time, 1.0, 1e-12);
     for (const StepRecord& step : result.steps) {
         EXPECT_NEAR(step.force, 40.0, 0.1);
@@ -128,7 +128,7 @@ TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
     SimulationOptions o = options();
     o.force_travel = 0.2;
     const ToolPath path({pressing_down(10, 20, 0.15, 20.0), pressing_down(30, 20, 0.15, 20.0)}, {});
-    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-6}), o);
     ASSERT_EQ(result.events.size(), 1u);
     EXPECT_EQ(result.events[0].kind, "force_not_reached");
     EXPECT_LT(result.events[0].value, 40.0);
@@ -144,7 +144,7 @@ TEST(Simulation, ASoftRobotGivesWayUnderPositionControl) {
     for (const double stiffness : {0.0, 1e5, 100.0}) {
         HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
         o.robot_stiffness = stiffness;
-        const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-9), o);
+        const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-9}), o);
         forces.push_back(result.steps[5].force);
         if (stiffness > 0.0) {
             EXPECT_NEAR(result.steps[5].approach, -result.steps[5].force / stiffness, 1e-3);
@@ -166,7 +166,7 @@ TEST(Simulation, NothingIsGroundBelowTheUnloadedWheel) {
     SimulationOptions o = options();
     o.force_control = false;
     const ToolPath path({pressing_down(18, 20, -5.0, 5.0), pressing_down(22, 20, -5.0, 5.0)}, {});
-    simulate(field, path, rim, LocalLinearLaw(1.0), o);
+    simulate(field, path, rim, LocalLaw({1.0}), o);
     const double lowest = *std::min_element(field.height.begin(), field.height.end());
     EXPECT_LT(lowest, -4.5);
     EXPECT_GT(lowest, -5.5);  // the cells' interpolation to the samples
@@ -177,9 +177,9 @@ TEST(Simulation, ARigidToolLeavesItsEnvelope) {
     Geometric tool;
     SimulationOptions o = options();
     const ToolPath path({pressing_down(10, 20, 0.1, 20.0), pressing_down(30, 20, 0.1, 20.0)}, {});
-    EXPECT_THROW(simulate(field, path, tool, LocalLinearLaw(1e-4), o), InputError);
+    EXPECT_THROW(simulate(field, path, tool, LocalLaw({1e-4}), o), InputError);
     o.force_control = false;
-    const SimulationResult result = simulate(field, path, tool, LocalLinearLaw(1e-4), o);
+    const SimulationResult result = simulate(field, path, tool, LocalLaw({1e-4}), o);
     EXPECT_TRUE(result.events.empty());
     EXPECT_NEAR(result.integrated_rate, result.removed_volume, 0.01 * result.removed_volume);
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -202,7 +202,7 @@ TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
     const ToolPath path({pressing_down(8, 20, 20.0, 20.0), pressing_down(10, 20, 0.1, 20.0),
                          pressing_down(30, 20, 0.1, 20.0), pressing_down(32, 20, 20.0, 20.0)},
                         {});
-    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-6}), o);
     EXPECT_TRUE(result.events.empty());
 }
 
@@ -214,7 +214,7 @@ TEST(Simulation, RunningOffTheEdgeIsLossOfForceAndNotOfConvergence) {
     const ToolPath path({pressing_down(20, 20, 0.1, 20.0), pressing_down(70, 31, 0.1, 20.0),
                          pressing_down(20, 20, 0.1, 20.0)},
                         {});
-    const SimulationResult result = simulate(field, path, foundation, LocalLinearLaw(1e-6), o);
+    const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-6}), o);
     ASSERT_FALSE(result.events.empty());
     for (const Event& event : result.events) EXPECT_EQ(event.kind, "force_not_reached");
 }
@@ -224,10 +224,10 @@ TEST(Simulation, RefusesAPathThatNeverTouchesAndLeavesTheField) {
     const std::vector<double> before = field.height;
     ElasticFoundation foundation(0.5);
     const ToolPath far({pressing_down(0, 0, 100.0, 20.0), pressing_down(9, 0, 100.0, 20.0)}, {});
-    EXPECT_THROW(simulate(field, far, foundation, LocalLinearLaw(1e-4), options()), InputError);
+    EXPECT_THROW(simulate(field, far, foundation, LocalLaw({1e-4}), options()), InputError);
     EXPECT_EQ(field.height, before);
     EXPECT_THROW(simulate(field, ToolPath({pressing_down(0, 0, 0, 1)}, {}), foundation,
-                          LocalLinearLaw(1e-4), options()),
+                          LocalLaw({1e-4}), options()),
                  InputError);
 }
 
@@ -243,7 +243,7 @@ TEST(Simulation, CancelLeavesTheFieldAsItWas) {
         while (context.progress() <= 0.0) std::this_thread::yield();
         context.cancel();
     });
-    EXPECT_THROW(simulate(field, path, foundation, LocalLinearLaw(kCoefficient), o, context),
+    EXPECT_THROW(simulate(field, path, foundation, LocalLaw({kCoefficient}), o, context),
                  Cancelled);
     other.join();
     EXPECT_EQ(field.height, before);

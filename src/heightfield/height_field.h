@@ -34,6 +34,7 @@ struct HeightField {
     std::vector<double> height;       ///< current height, mm (double: it sums many tiny removals)
     std::vector<std::uint32_t> face;  ///< index of the sample's face in the shape, from 0
     std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
+    std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
     std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm

@@ -61,6 +61,8 @@ void each_array(Field& f, Visit&& visit) {
     visit("triangles", f.triangles, H5T_NATIVE_UINT32, hsize_t{3});
 }
 
+constexpr const char* kHeightSd = "height_sd_mm";  // where a calibrated law gave it
+
 void write_scalar(hid_t file, const char* name, hid_t type, const void* value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -124,6 +126,9 @@ void write_all(const HeightField& field, const std::string& path, const std::str
     each_array(field, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
         write_array(file, name, data, type, row);
     });
+    if (!field.height_sd.empty()) {
+        write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+    }
     write_text(file, "attributes", attributes);
     require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot be written; is the disk full?");
 }
@@ -135,6 +140,10 @@ void check(const HeightField& f) {
             "its arrays differ in length");
     require(std::isfinite(f.spacing) && f.spacing > 0.0 && std::isfinite(f.depth) && f.depth >= 0.0,
             "its spacing or depth is no length");
+    require(f.height_sd.empty() || f.height_sd.size() == n, "its arrays differ in length");
+    for (const float sd : f.height_sd) {
+        require(std::isfinite(sd) && sd >= 0.0f, "its standard deviations are no lengths");
+    }
     for (std::size_t i = 0; i < n; ++i) {
         require(f.point[i].allFinite() && f.normal[i].allFinite() && std::isfinite(f.height[i]) &&
                     std::isfinite(f.area[i]) && std::isfinite(f.stock_height[i]),
@@ -180,6 +189,9 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
         each_array(field, [&](const char* name, auto& data, hid_t type, hsize_t row) {
             read_array(file, bytes, name, data, type, row);
         });
+        if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
+            read_array(file, bytes, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+        }
         check(field);
         if (attributes != nullptr) {
             std::vector<char> text;

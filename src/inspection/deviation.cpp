@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "base/error.h"
@@ -22,6 +23,9 @@ constexpr std::array<Colour, 3> kAbove{
     {{0.99, 0.80, 0.35}, {0.90, 0.45, 0.05}, {0.45, 0.15, 0.02}}};
 constexpr std::array<Colour, 3> kBelow{
     {{0.55, 0.78, 0.98}, {0.15, 0.40, 0.85}, {0.10, 0.08, 0.40}}};
+// One hue for what has no sign.
+constexpr std::array<Colour, 3> kUncertain{
+    {{0.93, 0.93, 0.90}, {0.55, 0.66, 0.45}, {0.10, 0.30, 0.16}}};
 constexpr std::uint32_t kMissedColour = 0x707070FF;
 
 std::uint32_t pack(const Colour& c) {
@@ -43,6 +47,33 @@ void validate(const Tolerance& tolerance) {
     if (!std::isfinite(tolerance.lower) || !std::isfinite(tolerance.upper) ||
         tolerance.lower > tolerance.upper) {
         throw InputError("tolerance: the lower limit must not lie above the upper one");
+    }
+}
+
+double normal_distribution(double x) {
+    return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+
+/// Fills in what follows from the samples' standard deviations. Sorts `inspected` by them.
+void add_uncertainty(const HeightField& field, const Tolerance& tolerance,
+                     std::vector<std::uint32_t>& inspected, double area, DeviationStatistics& s) {
+    if (field.height_sd.size() != field.size()) return;
+    for (const std::uint32_t i : inspected) {
+        const double sd = std::max(static_cast<double>(field.height_sd[i]), 1e-12);
+        const double share = field.area[i] / area, h = field.height[i];
+        s.sd_mean += share * field.height_sd[i];
+        s.expected_in_tolerance_share += share * (normal_distribution((tolerance.upper - h) / sd) -
+                                                  normal_distribution((tolerance.lower - h) / sd));
+    }
+    std::sort(inspected.begin(), inspected.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return field.height_sd[a] != field.height_sd[b] ? field.height_sd[a] < field.height_sd[b]
+                                                        : a < b;
+    });
+    double so_far = 0.0;
+    for (const std::uint32_t i : inspected) {
+        s.sd_p95 = field.height_sd[i];
+        so_far += field.area[i];
+        if (so_far >= 0.95 * area) break;
     }
 }
 
@@ -93,7 +124,26 @@ DeviationStatistics deviation_statistics(const HeightField& field, const Toleran
             *wanted[next++].second = field.height[i];
         }
     }
+    add_uncertainty(field, tolerance, inspected, area, s);
     return s;
+}
+
+std::uint32_t uncertainty_colour(double sd, double limit) {
+    if (!std::isfinite(sd)) return kMissedColour;
+    return ramp(kUncertain, sd / std::max(limit, 1e-9));
+}
+
+std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double limit) {
+    if (field.height_sd.size() != field.size()) {
+        throw InputError("the result has no uncertainty: its law was not calibrated");
+    }
+    std::vector<std::uint32_t> colours(field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        colours[i] = (field.flags[i] & kMissed) != 0
+                         ? kMissedColour
+                         : uncertainty_colour(field.height_sd[i], limit);
+    }
+    return colours;
 }
 
 std::uint32_t ColourScale::colour(double deviation) const {

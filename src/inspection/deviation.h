@@ -25,6 +25,9 @@ struct DeviationStatistics {
     double design_area = 0;         ///< mm2, all samples
     double stock_volume = 0;        ///< mm3 above the design before grinding
     double removed_volume = 0;      ///< mm3
+    double sd_mean = 0;             ///< of the deviation's standard deviation, where it is known
+    double sd_p95 = 0;              ///< 95 % of the area lie below
+    double expected_in_tolerance_share = 0;  ///< mean probability of lying in the band
     std::size_t samples = 0, missed = 0, defective = 0;
 };
 
@@ -41,6 +44,12 @@ struct ColourScale {
     std::uint32_t colour(double deviation) const;
     std::uint32_t missed_colour() const;
 };
+
+/// Colour of a standard deviation, light to dark up to `limit` mm: 0xRRGGBBAA.
+std::uint32_t uncertainty_colour(double sd, double limit);
+
+/// One packed colour per sample of its standard deviation. Throws InputError if it is not known.
+std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double limit);
 
 /// One packed colour 0xRRGGBBAA per sample.
 std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale);

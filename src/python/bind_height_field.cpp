@@ -38,6 +38,7 @@ void bind_height_field(py::module_& m) {
         .BELTGRINDING_VIEW("areas", area, float, 1)
         .BELTGRINDING_VIEW("stock_height", stock_height, float, 1)
         .BELTGRINDING_VIEW("height", height, double, 1)
+        .BELTGRINDING_VIEW("height_sd", height_sd, float, 1)
         .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
         .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
         .BELTGRINDING_VIEW("triangles", triangles, std::uint32_t, 3)
@@ -60,6 +61,15 @@ void bind_height_field(py::module_& m) {
                 }
             },
             py::arg("height"))
+        .def(
+            "set_height_sd",
+            [](HeightField& field, const std::vector<float>& sd) {
+                if (sd.size() != field.size()) {
+                    throw InputError("set_height_sd needs one value per sample");
+                }
+                field.height_sd = sd;
+            },
+            py::arg("sd"), "Standard deviation of every height, mm.")
         .def(
             "write_hdf5",
             [](const HeightField& field, const std::string& path, const std::string& attributes) {

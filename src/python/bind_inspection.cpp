@@ -29,6 +29,11 @@ void bind_inspection(py::module_& m) {
             d["in_tolerance_share"] = s.in_tolerance_share;
             d["above_share"] = s.above_share;
             d["below_share"] = s.below_share;
+            if (!field.height_sd.empty()) {
+                d["sd_mean"] = s.sd_mean;
+                d["sd_p95"] = s.sd_p95;
+                d["expected_in_tolerance_share"] = s.expected_in_tolerance_share;
+            }
             d["design_area"] = s.design_area;
             d["stock_volume"] = s.stock_volume;
             d["removed_volume"] = s.removed_volume;
@@ -43,6 +48,21 @@ void bind_inspection(py::module_& m) {
         },
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
         "(n,) uint32, 0xRRGGBBAA.");
+    m.def(
+        "uncertainty_colours",
+        [](const HeightField& field, double limit) {
+            return own(uncertainty_colours(field, limit));
+        },
+        py::arg("field"), py::arg("limit"),
+        "(n,) uint32, 0xRRGGBBAA of the samples' standard deviation, up to limit mm.");
+    m.def(
+        "uncertainty_scale",
+        [](double limit, const std::vector<double>& values) {
+            std::vector<std::uint32_t> colours;
+            for (const double v : values) colours.push_back(uncertainty_colour(v, limit));
+            return own(std::move(colours));
+        },
+        py::arg("limit"), py::arg("values"), "Colours of standard deviations, for a legend.");
     m.def(
         "colour_scale",
         [](double lower, double upper, double limit, const std::vector<double>& values) {

@@ -231,6 +231,12 @@ void bind_simulation(py::module_& m) {
             },
             "(n, 4, 4), mm");
     m.def(
+        "belt_remaining",
+        [](const py::dict& wear, const py::dict& belt) {
+            return wear_from(wear).remaining(belt_from(belt));
+        },
+        py::arg("wear"), py::arg("belt"), "k_t, the share of a fresh belt's cut that remains.");
+    m.def(
         "simulate",
         [](HeightField& field, const ToolPath& path, const py::dict& wheel,
            const py::dict& compliance, const py::dict& law, const py::dict& options,
@@ -246,7 +252,7 @@ void bind_simulation(py::module_& m) {
             }
             py::dict d = to_dict(result);
             d["compliance"] = elastic->describe();
-            d["law"] = removal->describe();
+            d["law"] = removal->describe() + ", " + o.wear.describe();
             return d;
         },
         py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),

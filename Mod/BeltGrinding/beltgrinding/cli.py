@@ -7,6 +7,7 @@ import argparse
 import json
 import sys
 import threading
+from pathlib import Path
 
 CANCEL_TIME = 5.0  # s
 
@@ -20,6 +21,7 @@ def _parser():
     run = commands.add_parser("run", help="grind a job")
     run.add_argument("job", help="job.json")
     run.add_argument("-o", "--output", required=True, help="folder for the results")
+    run.add_argument("--belt", help="JSON file that carries the belt's use from job to job")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     contact = commands.add_parser("contact", help="press the wheel on a workpiece, at one place")
     contact.add_argument("contact", help="contact.json; or a job.json, with --pose")
@@ -50,15 +52,18 @@ def _show_progress(context, done):
 
 
 def _run(arguments):
-    from . import core, job
+    from . import core, job, law
 
+    given = job.load(arguments.job)
+    if arguments.belt and Path(arguments.belt).exists():
+        given["belt_machine"]["belt"] = law.read_belt(arguments.belt)
     context = core.RunContext()
     outcome = {}
     done = threading.Event()
 
     def work():
         try:
-            outcome["result"] = job.run(job.load(arguments.job), context)
+            outcome["result"] = job.run(given, context)
         except BaseException as error:  # handed on to the main thread
             outcome["error"] = error
 
@@ -79,6 +84,8 @@ def _run(arguments):
     if "error" in outcome:
         raise outcome["error"]
     outcome["result"].write(arguments.output)
+    if arguments.belt:
+        law.write_belt(arguments.belt, outcome["result"].summary["belt"])
     if not arguments.quiet:
         _report(outcome["result"].summary, arguments.output)
 

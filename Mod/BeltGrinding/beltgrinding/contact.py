@@ -107,9 +107,10 @@ def at_pose(job, pose, program=1, context=None):
     if pose > 1:
         before.append(jobs.tool_path(job, program - 1, warnings, pose))
     for ground in before:
-        without = {**options, "must_touch": False}
+        without = {**options, "must_touch": False, "shifted_laws": []}
         if ground.grinds():
-            core.simulate(field, ground, wheel, compliance, law, without, context)
+            done = core.simulate(field, ground, wheel, compliance, law, without, context)
+            options["belt"] = done["belt"]
     start = time.perf_counter()
     result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
     result["time"] = time.perf_counter() - start

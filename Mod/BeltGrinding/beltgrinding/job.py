@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, schemas
+from . import InputError, core, frames, law as laws, schemas
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -99,12 +99,14 @@ def _run(job, context, warnings):
     apply_stock(field, job["stock"], warnings, context.part(0.2, 0.3))
     phases.end("stock")
 
+    wheel, compliance, law, options = engine_arguments(job)
+    shifts = np.zeros((field.size, len(options["shifted_laws"])))
     events, steps, process_time, models = [], None, 0.0, {}
     for i, path in enumerate(paths):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:
-            result = core.simulate(field, path, *engine_arguments(job), context=part)
+            result = core.simulate(field, path, wheel, compliance, law, options, context=part)
         except InputError as error:
             raise InputError(f"{program_name(job, i)}: {error}") from None
         for event in result["events"]:
@@ -114,10 +116,14 @@ def _run(job, context, warnings):
         rows["time"] = rows["time"] + process_time
         steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
         process_time += result["process_time"]
+        options["belt"] = result["belt"]
+        shifts += result["shifts"]
         models = {key: result[key] for key in ("compliance", "law")}
         for name, seconds in result["wall"].items():
             phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
     phases.restart()
+    if shifts.shape[1]:
+        field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))
     summary = summarise(job, field, events)
     phases.end("inspect")
     summary.update(
@@ -126,8 +132,19 @@ def _run(job, context, warnings):
         wall_time_s=phases.seconds,
         warnings=warnings,
         models=models,
+        belt={
+            **laws.job_belt(options["belt"]),
+            "remaining_cut": remaining_cut(job, options["belt"]),
+        },
     )
     return Result(job, field, summary, events, steps)
+
+
+def remaining_cut(job, belt):
+    """k_t of a belt that has done ``belt`` (as the engine has it), on the job's machine."""
+    return job["belt_machine"]["belt_wear"] * core.belt_remaining(
+        laws.engine_wear(job["law"]), belt
+    )
 
 
 def summarise(job, field, events):
@@ -137,6 +154,12 @@ def summarise(job, field, events):
     kinds = {}
     for event in events:
         kinds[event["kind"]] = kinds.get(event["kind"], 0) + 1
+    uncertainty = {}
+    if "sd_mean" in s:
+        uncertainty = {
+            "deviation_sd_mm": {"mean": s["sd_mean"], "p95": s["sd_p95"]},
+            "expected_in_tolerance_area_share": s["expected_in_tolerance_share"],
+        }
     return {
         "samples": s["samples"],
         "design_area_mm2": s["design_area"],
@@ -146,6 +169,7 @@ def summarise(job, field, events):
         "in_tolerance_area_share": s["in_tolerance_share"],
         "above_tolerance_area_share": s["above_share"],
         "below_tolerance_area_share": s["below_share"],
+        **uncertainty,
         "missed_rays": s["missed"],
         "defective_samples": s["defective"],
         "events": kinds,
@@ -259,11 +283,11 @@ def engine_arguments(job):
     """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
     machine = job["belt_machine"]
     wheel = {name[:-3]: value for name, value in machine["wheel"].items()}
-    compliance = compliance_arguments(machine["compliance"], wheel)
-    law = {
-        "model": job["law"]["model"],
-        "coefficient": float(job["law"]["coefficient_mm2_per_N"]),
-    }
+    if job["law"]["model"] == "geometric":
+        compliance = {"model": "geometric"}
+    else:
+        compliance = compliance_arguments(machine["compliance"], wheel)
+    law = laws.engine_law(job["law"])
     options = {
         "force_control": machine["control"] == "force",
         "force": float(machine["force_N"]),
@@ -271,6 +295,10 @@ def engine_arguments(job):
         "robot_stiffness": float(machine["robot_stiffness_N_per_mm"]),
         "belt_speed": 1000.0 * machine["belt_speed_m_s"],
         "belt_wear": float(machine["belt_wear"]),
+        "wear": laws.engine_wear(job["law"]),
+        "belt": laws.engine_belt(machine["belt"]),
+        "heat_limit": 1000.0 * job["law"]["heat_limit_MPa_m_s"],
+        "shifted_laws": laws.shifted_laws(job["law"]),
         "contact_spacing": float(machine["contact_spacing_mm"]),
         "contact_tolerance": float(machine["contact_tolerance"]),
         "max_travel": float(job["simulation"]["max_travel_mm"]),

@@ -1,0 +1,132 @@
+"""The law of removal of a job: exponents, curves, belt wear, heat, uncertainty."""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import beltgrinding  # noqa: E402
+from beltgrinding import InputError, cli, core  # noqa: E402
+from beltgrinding import law as laws  # noqa: E402
+from test_job import plate_job  # noqa: E402
+
+
+def run(**law):
+    job = plate_job()
+    job["law"] = law
+    return beltgrinding.run(job)
+
+
+def removed(result):
+    return result.summary["removed_volume_mm3"]
+
+
+def test_local_law_with_its_defaults_is_the_linear_one():
+    assert removed(run(model="local")) == pytest.approx(removed(run()), rel=1e-9)
+    faster = run(model="local", speed_exponent=1.5, reference_speed_m_s=10)
+    assert removed(faster) == pytest.approx(math.sqrt(2) * removed(run()), rel=0.03)
+
+
+def test_curves_come_in_the_jobs_units():
+    flat = {"speed_curve": [[10, 0.5], [30, 1.5]], "feed_curve": [[1, 1.0], [200, 1.0]]}
+    result = run(model="local", **flat)
+    assert removed(result) == pytest.approx(removed(run()), rel=1e-6)
+    assert "law_out_of_range" not in result.summary["events"]
+    result = run(model="local", speed_curve=[[25, 1.0], [30, 1.2]])
+    assert result.summary["events"]["law_out_of_range"] == 1
+    assert "20 m/s lies outside the measured 25 to 30 m/s" in result.events[0]["message"]
+    with pytest.raises(InputError, match="pressure_curve: a curve needs"):
+        run(model="local", pressure_curve=[[1, 1]])
+
+
+def test_geometric_law_needs_position_control():
+    with pytest.raises(InputError, match="set the control to position"):
+        run(model="geometric")
+
+
+def test_heat_is_an_event():
+    result = run(heat_limit_MPa_m_s=0.5)
+    event = next(e for e in result.events if e["kind"] == "burn_risk")
+    assert event["value"] > 0.5 and "above the limit of 0.5" in event["message"]
+    assert "burn_risk" not in run(heat_limit_MPa_m_s=100).summary["events"]
+
+
+def test_the_belts_use_goes_from_program_to_program_and_job_to_job(tmp_path):
+    once = run().summary["belt"]
+    assert once["remaining_cut"] == 1.0 and once["work_J"] > 0
+    job = plate_job()
+    job["law"] = {"wear": {"model": "exponential", "scale": once["work_J"]}}
+    job["programs"] = 2 * job["programs"]
+    both = beltgrinding.run(job).summary["belt"]
+    assert both["work_J"] == pytest.approx(2 * once["work_J"], rel=0.02)
+    assert both["remaining_cut"] == pytest.approx(math.exp(-2), rel=0.03)
+
+    job["programs"] = job["programs"][:1]
+    (tmp_path / "job.json").write_text(json.dumps(job))
+    arguments = ["run", str(tmp_path / "job.json"), "-q", "--belt", str(tmp_path / "belt.json")]
+    volumes = []
+    for name in ("a", "b"):
+        assert cli.main([*arguments, "-o", str(tmp_path / name)]) == 0
+        summary = json.loads((tmp_path / name / "summary.json").read_text())
+        volumes.append(summary["removed_volume_mm3"])
+    belt = json.loads((tmp_path / "belt.json").read_text())
+    assert belt["work_J"] == pytest.approx(both["work_J"], rel=1e-6)
+    assert volumes[1] == pytest.approx(volumes[0] / math.e, rel=0.03)
+    (tmp_path / "belt.json").write_text('{"work_J": -1}')
+    assert cli.main([*arguments, "-o", str(tmp_path / "c")]) == 2
+
+
+CALIBRATION = {
+    "parameters": ["coefficient", "pressure_exponent"],
+    "covariance": [[0.01, 0.0], [0.0, 0.0]],
+    "scatter": 0.0,
+}
+
+
+def test_a_calibrated_law_gives_every_deviation_its_standard_deviation(tmp_path):
+    result = run(model="local", calibration=CALIBRATION)
+    field = result.field
+    depth = np.asarray(field.stock_height) - np.asarray(field.height)
+    assert np.allclose(field.height_sd, 0.105 * depth, atol=0.02 * depth.max())
+    assert result.summary["deviation_sd_mm"]["p95"] > result.summary["deviation_sd_mm"]["mean"] > 0
+    share = result.summary["expected_in_tolerance_area_share"]
+    assert 0 < share < 1
+    result.write(tmp_path)
+    again = beltgrinding.job.Result.read(tmp_path)
+    assert np.array_equal(again.field.height_sd, field.height_sd)
+    colours = core.uncertainty_colours(again.field, 0.01)
+    assert len(set(colours.tolist())) > 5
+    with pytest.raises(InputError, match="not calibrated"):
+        core.uncertainty_colours(run().field, 0.01)
+
+
+def test_the_uncertainty_is_that_of_many_laws_drawn_at_random():
+    covariance = np.array([[0.01, 0.012], [0.012, 0.04]])
+    calibration = {**CALIBRATION, "covariance": covariance.tolist(), "scatter": 0.05}
+    first_order = run(model="local", calibration=calibration).field.height_sd
+    random, heights = np.random.default_rng(4), []
+    for _ in range(60):
+        ln_k, alpha = random.multivariate_normal([0, 0], covariance)
+        coefficient = 1.25e-4 * math.exp(ln_k + 0.05 * random.normal())
+        one = run(model="local", coefficient_mm2_per_N=coefficient, pressure_exponent=1 + alpha)
+        heights.append(np.array(one.field.height))
+    drawn = np.std(heights, axis=0, ddof=1)
+    ground = drawn > 0.3 * drawn.max()
+    ratio = np.asarray(first_order)[ground] / drawn[ground]
+    assert 0.7 < np.median(ratio) < 1.4
+
+
+def test_calibrations_that_are_none_are_refused():
+    wrong = {**CALIBRATION, "covariance": [[0.01]]}
+    with pytest.raises(InputError, match="2 parameters need 4"):
+        run(model="local", calibration=wrong)
+    wrong = {**CALIBRATION, "covariance": [[0.01, 1.0], [1.0, 0.01]]}
+    with pytest.raises(InputError, match="not positive definite"):
+        run(model="local", calibration=wrong)
+    assert laws.shifted_laws({"model": "local_linear", "calibration": {}}) == []

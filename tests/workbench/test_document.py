@@ -316,3 +316,75 @@ assert doc.RobotPath.Path.Size == doc.RobotPath.PoseCount >= 423  # arcs are cut
 """,
         DATA=SHARED / "data",
     )
+
+
+def test_a_belt_carries_its_wear_between_jobs(freecad):
+    freecad.run(
+        BLOCK
+        + """
+doc = FreeCAD.newDocument("belt")
+job = make(block(doc))
+work = 30.0 * 20.0 * 4 / 3  # F V_b t, J
+job.WearModel, job.WearScale = "exponential", work
+first = beltgrinding.simulate(job)
+assert near(first.RemainingCut, 100 / 2.71828, 0.02), first.RemainingCut
+belt = beltgrinding.wear_belt(job)
+doc.recompute()
+assert near(belt.WorkDone, work, 0.02) and near(belt.Hours, 4 / 3 / 3600, 0.05)
+assert near(belt.RemainingCut, first.RemainingCut, 1e-6)
+assert doc.BeltMachine.Belt == belt and not first.OutOfDate
+try:
+    beltgrinding.wear_belt(job)
+    raise AssertionError("counted twice")
+except InputError as error:
+    assert "counted already" in str(error)
+fresh = first.RemovedVolume.Value
+again = beltgrinding.simulate(job)
+assert near(again.RemovedVolume.Value, fresh / 2.71828, 0.03)
+beltgrinding.wear_belt(job)
+assert near(belt.WorkDone, 2 * work, 0.02)
+
+other = make(block(doc))
+machine = [o for o in other.Group if o.Name.startswith("BeltMachine")][0]
+machine.Belt = belt
+beltgrinding.export_job(other, "other.json")
+assert near(json.loads(Path("other.json").read_text())["belt_machine"]["belt"]["work_J"], 2 * work, 0.02)
+opened = beltgrinding.open_job(FreeCAD.newDocument("opened"), "other.json")
+assert near(opened.Document.Belt.WorkDone, belt.WorkDone, 1e-9)
+belt.Proxy.reset(belt)
+assert belt.WorkDone == 0 and belt.RemainingCut == 100
+assert near(beltgrinding.simulate(job).RemovedVolume.Value, fresh, 1e-6)
+"""
+    )
+
+
+def test_a_calibrated_law_colours_its_uncertainty(freecad):
+    freecad.run(
+        BLOCK
+        + """
+doc = FreeCAD.newDocument("sure")
+job = make(block(doc))
+job.Law = "local"
+calibration = {"parameters": ["coefficient"], "covariance": [[0.0025]], "scatter": 0.1}
+job.Calibration = json.dumps(calibration)
+job.PressureCurve = [(0.01, 0.1, 0), (0.1, 1, 0), (1, 10, 0)]
+simulation = beltgrinding.simulate(job)
+assert near(simulation.RemovedVolume.Value, REMOVED), simulation.RemovedVolume
+deviation = beltgrinding.make_deviation(job)
+assert 0 < deviation.UncertaintyMean.Value < deviation.Uncertainty95.Value
+assert deviation.Uncertainty95 <= deviation.UncertaintyLimit
+assert 0 < deviation.ExpectedInTolerance < 100
+before = list(deviation.VertexColors)
+deviation.ColourBy = "uncertainty"
+doc.recompute()
+assert list(deviation.VertexColors) != before
+deviation.ColourBy = "deviation"
+doc.recompute()
+assert list(deviation.VertexColors) == before
+beltgrinding.export_job(job, "sure.json")
+law = json.loads(Path("sure.json").read_text())["law"]
+assert law["calibration"] == calibration and law["pressure_curve"][1] == [0.1, 1.0], law
+opened = beltgrinding.open_job(FreeCAD.newDocument("opened"), "sure.json")
+assert json.loads(opened.Calibration) == calibration and len(opened.PressureCurve) == 3
+"""
+    )

@@ -58,6 +58,8 @@ DOCUMENT_FUNCTIONS = (
     "make_job",
     "make_stock",
     "make_belt_machine",
+    "make_belt",
+    "wear_belt",
     "import_program",
     "simulate",
     "make_deviation",

@@ -172,6 +172,21 @@ class BeltMachine(_Child):
         return api.make_belt_machine(job)
 
 
+class Belt(Command):
+    NAME = "BeltGrinding_Belt"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Belt", "Belt")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Belt", "Puts a belt on the machine that carries its wear from run to run"
+    )
+
+    def run(self):
+        job = active_job()
+        with transaction(job.Document, "Belt", panel=True) as step:
+            belt = api.make_belt(job)
+        if not step.failed:
+            edit(belt)
+
+
 class ImportProgram(Command):
     NAME = "BeltGrinding_ImportProgram"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Import robot program...")
@@ -322,7 +337,7 @@ class ReadAgain(Command):
 
 
 WORK = (NewJob, Stock, BeltMachine, ImportProgram, Simulate, Deviation)
-MORE = (Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
+MORE = (Belt, Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
 
 
 def register():

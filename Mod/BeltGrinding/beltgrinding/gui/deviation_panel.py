@@ -20,6 +20,15 @@ class DeviationPanel(Panel):
         form.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         form.changed = self.update
         self.body.addWidget(form)
+        if obj.ExpectedInTolerance > 0.0:
+            colours = Form(obj, translate("BeltGrinding", "Colours"))
+            shown = {
+                "deviation": translate("BeltGrinding", "Deviation"),
+                "uncertainty": translate("BeltGrinding", "Its standard deviation"),
+            }
+            colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
+            colours.changed = self.update
+            self.body.addWidget(colours)
         self.table = QtGui.QTableWidget(0, 2)
         self.table.setObjectName("statistics")
         self.table.horizontalHeader().hide()
@@ -61,6 +70,21 @@ class DeviationPanel(Panel):
             (translate("BeltGrinding", "Removed"), f"{obj.RemovedVolume.Value:,.1f} mm³"),
             (translate("BeltGrinding", "Area"), f"{obj.DesignArea.Value:,.1f} mm²"),
         )
+        if obj.ExpectedInTolerance > 0.0:
+            rows += (
+                (
+                    translate("BeltGrinding", "Probably in tolerance"),
+                    f"{obj.ExpectedInTolerance:.2f} %",
+                ),
+                (
+                    translate("BeltGrinding", "Standard deviation, mean"),
+                    f"{obj.UncertaintyMean.Value:.4f} mm",
+                ),
+                (
+                    translate("BeltGrinding", "Standard deviation, 95 %"),
+                    f"{obj.Uncertainty95.Value:.4f} mm",
+                ),
+            )
         self.table.setRowCount(len(rows))
         for i, (name, text) in enumerate(rows):
             self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))

@@ -2,9 +2,20 @@
 
 from pivy import coin
 
+from ..objects.deviation import UNCERTAINTY
 from . import legend
 from .part_context import rest_of_part
 from .view import View
+
+
+LEGEND = (
+    "ToleranceLower",
+    "ToleranceUpper",
+    "ColourLimit",
+    "UncertaintyLimit",
+    "VertexColors",
+    "OutOfDate",
+)
 
 
 class DeviationView(View):
@@ -46,7 +57,7 @@ class DeviationView(View):
         if name == "VertexColors":
             self.colour()
             self.update_rest()
-        if name in ("ToleranceLower", "ToleranceUpper", "ColourLimit", "OutOfDate"):
+        if name in LEGEND:
             self.update_legend()
 
     def onChanged(self, view, name):
@@ -70,7 +81,11 @@ class DeviationView(View):
             return
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         self.legend.removeAllChildren()
-        self.legend.addChild(legend.node(*scale, obj.OutOfDate))
+        if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
+            limit = obj.UncertaintyLimit.Value
+            self.legend.addChild(legend.uncertainty_node(limit, obj.OutOfDate))
+        else:
+            self.legend.addChild(legend.node(*scale, obj.OutOfDate))
         self.legend.whichChild = -3 if self.view.Visibility else -1
 
     def update_rest(self):

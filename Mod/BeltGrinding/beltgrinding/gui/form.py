@@ -33,6 +33,9 @@ def quantity_field(quantity):
     return widget
 
 
+SIGNED = "signed"
+
+
 class Form(QtGui.QGroupBox):
     """Rows of fields; every change goes to the property at once."""
 
@@ -47,7 +50,8 @@ class Form(QtGui.QGroupBox):
 
     def add(self, name, text, choices=None, unit=""):
         """A row for the property ``name``. choices: texts of an enumeration's values, or the objects
-        that a link can take; unit: shown behind a plain number."""
+        that a link can take, or SIGNED for a number that may be negative; unit: shown behind a plain
+        number."""
         kind = self.obj.getTypeIdOfProperty(name)
         if kind in QUANTITIES:
             widget = self._quantity(name, kind)
@@ -64,7 +68,7 @@ class Form(QtGui.QGroupBox):
         elif kind == "App::PropertyPlacement":
             widget = FrameField(getattr(self.obj, name), lambda value: self._set(name, value))
         else:
-            widget = self._number(name)
+            widget = self._number(name, -1e12 if choices == SIGNED else 0.0)
         widget.setToolTip(self.obj.getDocumentationOfProperty(name))
         widget.setObjectName(name)
         label = QtGui.QLabel(f"{text}, {unit}" if unit else text)
@@ -98,9 +102,9 @@ class Form(QtGui.QGroupBox):
         widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), changed)
         return widget
 
-    def _number(self, name):
-        widget = QtGui.QLineEdit(f"{getattr(self.obj, name):g}")
-        validator = QtGui.QDoubleValidator(0.0, 1e12, 12, widget)
+    def _number(self, name, lowest=0.0):
+        widget = QtGui.QLineEdit(f"{getattr(self.obj, name):.10g}")
+        validator = QtGui.QDoubleValidator(lowest, 1e12, 12, widget)
         validator.setLocale(QtCore.QLocale.c())
         widget.setValidator(validator)
         widget.setCursorPosition(0)  # else a narrow panel shows the last digits only

@@ -6,6 +6,7 @@ from .. import InputError
 from ..objects import job_object
 from .compat import QtGui, translate
 from .form import Form
+from .law_forms import LawForms
 from .panel import Panel
 
 
@@ -29,15 +30,9 @@ class JobPanel(Panel):
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         sampling.add("FlipNormals", translate("BeltGrinding", "Flip normals of loose faces"))
         self.body.addWidget(sampling)
-        law = Form(obj, translate("BeltGrinding", "Removal"))
-        texts = {
-            "local_linear": translate("BeltGrinding", "Local linear"),
-            "hammann": translate("BeltGrinding", "Hammann, global"),
-        }
-        law.add("Law", translate("BeltGrinding", "Law"), texts)
-        law.add("LawCoefficient", translate("BeltGrinding", "Coefficient"), unit="mm²/N")
-        self.body.addWidget(law)
-        self.forms = (sampling, law)
+        self.law = LawForms(obj)
+        self.body.addWidget(self.law)
+        self.forms = (sampling, self.law)
         sampling.changed = self.estimate
         self.finish()
         Gui.Selection.addSelectionGate(FaceGate())

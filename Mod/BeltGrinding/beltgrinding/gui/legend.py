@@ -15,7 +15,30 @@ def _rgb(packed):
 
 
 def node(lower, upper, limit, out_of_date=False):
-    """Colour bar with numbers in mm at the view's left border; not picked, not counted by fitAll."""
+    """The legend of the deviation: (mm) tolerance band, and where the ramps end."""
+    values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    labels = {
+        _height(value, limit): f"{value:+.3f}"
+        for value in (-limit, -0.5 * limit, lower, upper, 0.5 * limit, limit)
+    }
+    colours = core.colour_scale(lower, upper, limit, values)
+    return _legend(colours, labels, translate("BeltGrinding", "deviation, mm"), out_of_date)
+
+
+def uncertainty_node(limit, out_of_date=False):
+    """The legend of the deviation's standard deviation, up to ``limit`` mm."""
+    colours = core.uncertainty_scale(
+        limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    )
+    labels = {HEIGHT * k / 4: f"{limit * k / 4:.3g}" for k in range(5)}
+    text = translate("BeltGrinding", "standard deviation, mm")
+    return _legend(colours, labels, text, out_of_date)
+
+
+def _legend(colours, labels, title, out_of_date):
+    """Colour bar with texts by height at the view's left border; not picked, not counted by
+    fitAll.
+    """
     outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
     group = coin.SoAnnotation()
     outer.addChild(group)
@@ -34,7 +57,7 @@ def node(lower, upper, limit, out_of_date=False):
     shift.translation = (-0.95, -0.5 * HEIGHT, 0)
     group.addChild(shift)
     group.addChild(_panel(out_of_date))
-    group.addChild(_bar(lower, upper, limit))
+    group.addChild(_bar([_rgb(c) for c in colours]))
     text_colour = coin.SoBaseColor()
     text_colour.rgb = (0.0, 0.0, 0.0)
     group.addChild(text_colour)
@@ -42,9 +65,9 @@ def node(lower, upper, limit, out_of_date=False):
     font.name = "Sans"
     font.size = 14
     group.addChild(font)
-    for value in (-limit, -0.5 * limit, lower, upper, 0.5 * limit, limit):
-        group.addChild(_label(f"{value:+.3f}", LEFT + WIDTH + 0.02, _height(value, limit)))
-    group.addChild(_label(translate("BeltGrinding", "deviation, mm"), LEFT, HEIGHT + 0.06))
+    for height, text in labels.items():
+        group.addChild(_label(text, LEFT + WIDTH + 0.02, height))
+    group.addChild(_label(title, LEFT, HEIGHT + 0.06))
     if out_of_date:
         warning = coin.SoBaseColor()
         warning.rgb = (0.7, 0.15, 0.1)
@@ -88,10 +111,8 @@ def _label(text, x, y):
     return group
 
 
-def _bar(lower, upper, limit):
+def _bar(colours):
     group = coin.SoSeparator()
-    values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
-    colours = [_rgb(c) for c in core.colour_scale(lower, upper, limit, values)]
     material = coin.SoBaseColor()
     material.rgb.setValues(0, BAR_STEPS, colours)
     binding = coin.SoMaterialBinding()

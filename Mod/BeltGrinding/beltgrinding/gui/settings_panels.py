@@ -1,6 +1,8 @@
 """Task panels of the stock and of the belt machine."""
 
 from .. import InputError
+from ..objects.belt import Belt
+from ..objects.proxy import type_of
 from .compat import translate
 from .form import Form
 from .panel import Panel
@@ -59,6 +61,10 @@ class StockPanel(Panel):
             raise InputError(translate("BeltGrinding", "Choose the mesh: an object or a file."))
 
 
+def _belts(document):
+    return [obj for obj in document.Objects if type_of(obj) == Belt.TYPE]
+
+
 class BeltMachinePanel(Panel):
     """Edits a BeltMachine."""
 
@@ -90,6 +96,7 @@ class BeltMachinePanel(Panel):
         wheel.add("SurrogateFile", trained, f"{trained} (*.npz)")
         belt = Form(obj, translate("BeltGrinding", "Belt and control"))
         belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+        belt.add("Belt", translate("BeltGrinding", "Belt"), _belts(obj.Document))
         belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
         control = {
             "force": translate("BeltGrinding", "Force"),
@@ -141,7 +148,7 @@ class BeltMachinePanel(Panel):
         }
         shape = {"WheelRadius", "WheelWidth", "CrownRadius", "Compliance"}
         self.wheel.show_rows(shape | used[self.obj.Compliance])
-        self.belt.show_rows({"BeltSpeed", "BeltWear", "Control"} | force)
+        self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
         self.tell("")
 
     def check(self):

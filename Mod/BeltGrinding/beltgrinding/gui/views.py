@@ -8,6 +8,7 @@ from .view import View
 
 __all__ = [
     "BeltMachineView",
+    "BeltView",
     "DeviationView",
     "JobView",
     "RobotPathView",
@@ -55,6 +56,15 @@ class BeltMachineView(Undrawn):
         from .settings_panels import BeltMachinePanel
 
         return BeltMachinePanel(obj)
+
+
+class BeltView(Undrawn):
+    ICON = "BeltGrinding_Belt"
+
+    def panel(self, obj):
+        from .belt_panel import BeltPanel
+
+        return BeltPanel(obj)
 
 
 class RobotPathView(View):

@@ -15,7 +15,14 @@ from .. import InputError, job as jobs
 from ..examples import blade
 from ..poses import listed_poses
 from ..result import Result, write_whole
-from . import belt_machine, deviation as deviations, job_object, robot_path, simulation as results
+from . import (
+    belt as belts,
+    belt_machine,
+    deviation as deviations,
+    job_object,
+    robot_path,
+    simulation as results,
+)
 from . import stock as stocks
 from .geometry import placement_from_job
 from .job_object import child, children
@@ -63,6 +70,35 @@ def make_belt_machine(job, **properties):
     for path in children(job, robot_path.RobotPath):
         path.Machine = machine
     return machine
+
+
+def make_belt(job, **properties):
+    """Puts a belt, which carries its wear from run to run, on the job's machine, or changes the one
+    it has. Another job shares it by its machine's ``Belt``.
+    """
+    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    if machine.Belt is None:
+        made = job.Document.addObject("App::FeaturePython", "Belt")
+        with _removed_on_error(made):
+            belts.Belt(made)
+            set_by_name(made, properties)
+            job.addObject(made)
+        machine.Belt = made
+    else:
+        set_by_name(machine.Belt, properties)
+    return machine.Belt
+
+
+def wear_belt(job):
+    """Counts what the belt did in the job's simulation, once the grind is done for real: the next
+    run meets the belt as it is then. Returns the belt.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    belt = make_belt(job)
+    belt.Proxy.count(belt, simulation)
+    return belt
 
 
 def import_program(job, path, **properties):
@@ -197,6 +233,9 @@ def _open_job(doc, data, path, made):
     from_job(machine, belt_machine.KEYS, data)
     for name, (key, _) in belt_machine.FRAMES.items():
         setattr(machine, name, placement_from_job(data["cell"].get(key)))
+    if any(data["belt_machine"]["belt"].values()):
+        made.append(make_belt(job))
+        from_job(machine.Belt, belts.KEYS, data)
     for i, program in enumerate(data["programs"]):
         if "file" in program:
             robot = import_program(job, program["file"])

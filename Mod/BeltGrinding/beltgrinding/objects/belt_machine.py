@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from .belt import Belt
 from .geometry import placement_to_job
 from .properties import Key, add_keys, to_job
-from .proxy import Proxy
+from .proxy import Proxy, type_of
 
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
@@ -45,6 +46,10 @@ class BeltMachine(Proxy):
 
     def add_properties(self, obj):
         add_keys(obj, KEYS)
+        if "Belt" not in obj.PropertiesList:
+            obj.addProperty(
+                "App::PropertyLinkGlobal", "Belt", "Belt", "the belt, none: a fresh one"
+            )
         for name, (_, text) in FRAMES.items():
             if name not in obj.PropertiesList:
                 obj.addProperty("App::PropertyPlacement", name, "Cell", text)
@@ -53,6 +58,8 @@ class BeltMachine(Proxy):
         """The parts of a job under 'belt_machine' and 'cell'."""
         job = {}
         to_job(obj, KEYS, job)
+        if type_of(obj.Belt) == Belt.TYPE:
+            job["belt_machine"]["belt"] = obj.Belt.Proxy.state(obj.Belt)
         for name, (key, _) in FRAMES.items():
             job["cell"][key] = placement_to_job(getattr(obj, name))
         return job

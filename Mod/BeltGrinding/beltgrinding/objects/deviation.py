@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 
 import Mesh
 
@@ -10,8 +11,12 @@ from ..result import colour_scale
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
+DEVIATION, UNCERTAINTY = "deviation", "uncertainty"
 OUTPUTS = (
     Output("VertexColors", "ColorList", "Deviation", "one colour per sample", True),
+    Output(
+        "UncertaintyLimit", "Distance", "Tolerance", "standard deviation at which its ramp ends"
+    ),
     Output("ToleranceLower", "Distance", "Tolerance", "lower limit; set it at the job"),
     Output("ToleranceUpper", "Distance", "Tolerance", "upper limit; set it at the job"),
     Output("ColourLimit", "Distance", "Tolerance", "deviation at which the colour ramps end"),
@@ -28,6 +33,9 @@ OUTPUTS = (
         "AboveTolerance", "Float", "Statistics", "share of the area with too much left, percent"
     ),
     Output("BelowTolerance", "Float", "Statistics", "share of the area cut too deep, percent"),
+    Output("UncertaintyMean", "Distance", "Statistics", "mean standard deviation of the deviation"),
+    Output("Uncertainty95", "Distance", "Statistics", "95 % of the area are surer than that"),
+    Output("ExpectedInTolerance", "Float", "Statistics", "mean probability, percent; 0: not known"),
     Output("RemovedVolume", "Volume", "Statistics", "removed by grinding"),
     Output("DesignArea", "Area", "Statistics", "of the faces"),
     Output("Shown", "String", "Deviation", "which result the colours show", True),
@@ -60,6 +68,10 @@ class Deviation(Proxy):
         if "Simulation" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLink", "Simulation", "Deviation", "the result shown")
             obj.setEditorMode("Simulation", 1)
+        if "ColourBy" not in obj.PropertiesList:
+            text = "what the colours show; uncertainty: of a calibrated law"
+            obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
+            obj.ColourBy = [DEVIATION, UNCERTAINTY]
         add_outputs(obj, OUTPUTS)
 
     def execute(self, obj):
@@ -77,19 +89,34 @@ class Deviation(Proxy):
         scale = colour_scale({"inspection": inspection(job)})
         result = [simulation.Fingerprint, simulation.WallTime]
         before = json.loads(obj.Shown or "[null, null]")
-        if before == [result, list(scale)]:
+        if before == [result, [*scale, obj.ColourBy]]:
             return
         field = simulation.Proxy.field(simulation)
         if field is None:
             raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
         show(obj, field, scale, before[0] != result)
-        obj.Shown = json.dumps([result, scale])
+        obj.Shown = json.dumps([result, [*scale, obj.ColourBy]])
+
+
+def _round_up(value):
+    """The next of 1, 2, 5, 10... above a value."""
+    if value <= 0.0:
+        return 0.001
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= 0.999 * value)
 
 
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
-    colours = core.deviation_colours(field, *scale)
     statistics = core.deviation_statistics(field, *scale[:2])
+    sd = statistics.get("sd_p95", 0.0)
+    obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
+    obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
+    obj.UncertaintyLimit = _round_up(sd)
+    if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
+        colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
+    else:
+        colours = core.deviation_colours(field, *scale)
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
     for name, key in STATISTICS.items():
         setattr(obj, name, statistics[key])

@@ -26,6 +26,28 @@ KEYS = (
     Key("ColourLimit", "Length", "Tolerance", "inspection.colour_limit_mm"),
     Key("Law", "Enumeration", "Law", "law.model"),
     Key("LawCoefficient", "Float", "Law", "law.coefficient_mm2_per_N"),
+    Key("PressureThreshold", "Pressure", "Law", "law.pressure_threshold_MPa"),
+    Key("PressureExponent", "Float", "Law", "law.pressure_exponent"),
+    Key("ReferencePressure", "Pressure", "Law", "law.reference_pressure_MPa"),
+    Key("SaturationPressure", "Pressure", "Law", "law.saturation_pressure_MPa"),
+    Key("SpeedExponent", "Float", "Law", "law.speed_exponent"),
+    Key("ReferenceSpeed", "Speed", "Law", "law.reference_speed_m_s", 1000.0),
+    Key("FeedExponent", "Float", "Law", "law.feed_exponent"),
+    Key("ReferenceFeed", "Speed", "Law", "law.reference_feed_mm_s"),
+    Key("LandShare", "Float", "Law", "law.land_share"),
+    Key("PressureCurve", "VectorList", "Law", "law.pressure_curve"),
+    Key("SpeedCurve", "VectorList", "Law", "law.speed_curve"),
+    Key("FeedCurve", "VectorList", "Law", "law.feed_curve"),
+    Key("LandCurve", "VectorList", "Law", "law.land_curve"),
+    Key("HeatLimit", "Float", "Law", "law.heat_limit_MPa_m_s"),
+    Key("Calibration", "JSON", "Law", "law.calibration"),
+    Key("WearModel", "Enumeration", "Wear", "law.wear.model"),
+    Key("WearVariable", "Enumeration", "Wear", "law.wear.variable"),
+    Key("WearScale", "Float", "Wear", "law.wear.scale"),
+    Key("WearRest", "Float", "Wear", "law.wear.rest"),
+    Key("WearFirstShare", "Float", "Wear", "law.wear.first_share"),
+    Key("WearFirstScale", "Float", "Wear", "law.wear.first_scale"),
+    Key("WearCurve", "VectorList", "Wear", "law.wear.curve"),
     Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
     Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),
 )
@@ -152,8 +174,11 @@ def _overrides(path):
 
 
 def fingerprint(job):
-    """Hash of all that the simulation's result depends on (not of the tolerance)."""
+    """Hash of all that the simulation's result depends on; not of the tolerance, nor of what the
+    belt has done since.
+    """
     data = _without_geometry(job)
+    data["belt_machine"].pop("belt", None)
     del data["inspection"]
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.settings(stock)

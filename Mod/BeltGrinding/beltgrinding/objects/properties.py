@@ -1,6 +1,7 @@
 """Properties that mirror keys of a job: name, unit type, default and text come from the schema."""
 
 import difflib
+import json
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -64,7 +65,8 @@ def add_keys(obj, keys):
             _widen(obj, key)
             continue
         found, default = rule(key.key)
-        obj.addProperty(f"App::Property{key.kind}", key.name, key.group, found["description"])
+        kind = "String" if key.kind == "JSON" else key.kind
+        obj.addProperty(f"App::Property{kind}", key.name, key.group, found["description"])
         if key.kind == "Enumeration":
             setattr(obj, key.name, found["enum"])
         if default is not None:
@@ -95,6 +97,8 @@ def get_value(obj, key):
     value = getattr(obj, key.name)
     if key.kind in AS_IS:
         return value
+    if key.kind == "JSON":
+        return json.loads(value or "{}")
     if key.kind == "VectorList":  # pairs
         return [[float(f"{point.x:.15g}"), float(f"{point.y:.15g}")] for point in value]
     value = float(getattr(value, "Value", value)) / key.scale
@@ -103,7 +107,9 @@ def get_value(obj, key):
 
 def set_value(obj, key, value):
     """Sets the property from a value in the job's unit."""
-    if key.kind == "VectorList":
+    if key.kind == "JSON":
+        value = json.dumps(value) if value else ""
+    elif key.kind == "VectorList":
         value = [(x, y, 0.0) for x, y in value]
     elif key.kind not in AS_IS:
         value = value * key.scale

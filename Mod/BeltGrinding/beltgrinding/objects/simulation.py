@@ -26,6 +26,8 @@ OUTPUTS = (
     Output("Warnings", "StringList", "Result", "what the user should know of the input"),
     Output("ElasticModel", "String", "Result", "compliance of the wheel"),
     Output("LawModel", "String", "Result", "law of removal"),
+    Output("RemainingCut", "Float", "Result", "of the belt in the end, percent of a fresh one"),
+    Output("BeltUse", "String", "Result", "what the belt did, as JSON", True),
     Output("EventData", "String", "Result", "the events as JSON", True),
     Output("Fingerprint", "String", "Result", "hash of the inputs", True),
 )
@@ -72,6 +74,11 @@ def store(obj, result, fingerprint):
     obj.Events = [describe(event, result.job) for event in result.events]
     obj.Warnings = s["warnings"]
     obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
+    obj.RemainingCut = 100.0 * s["belt"]["remaining_cut"]
+    before, machine = result.job["belt_machine"]["belt"], result.job["belt_machine"]
+    during = {key: s["belt"][key] - before[key] for key in before}
+    kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
+    obj.BeltUse = json.dumps({"during": during, "job": kept})
     obj.EventData = json.dumps(result.events)
     obj.Fingerprint = fingerprint
     obj.OutOfDate = False

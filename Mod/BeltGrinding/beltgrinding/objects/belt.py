@@ -1,0 +1,54 @@
+"""A belt in the document: what it has done, and what is left of its cut. Jobs may share one."""
+
+import json
+
+from .. import InputError, job as jobs, law
+from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
+from .proxy import Proxy
+
+KEYS = (
+    Key("WorkDone", "Float", "Belt", "belt_machine.belt.work_J"),
+    Key("RemovedVolume", "Volume", "Belt", "belt_machine.belt.removed_mm3"),
+    Key("Hours", "Float", "Belt", "belt_machine.belt.hours"),
+)
+OUTPUTS = (
+    Output("RemainingCut", "Float", "Belt", "share of a fresh belt's cut, percent"),
+    Output("Counted", "StringList", "Belt", "results whose use has been counted", True),
+)
+
+
+class Belt(Proxy):
+    """Proxy. ``RemainingCut`` is that of the last run counted."""
+
+    TYPE = "BeltGrinding::Belt"
+    VIEW = "BeltView"
+
+    def add_properties(self, obj):
+        add_keys(obj, KEYS)
+        if "RemainingCut" not in obj.PropertiesList:
+            add_outputs(obj, OUTPUTS)
+            obj.RemainingCut = 100.0
+
+    def state(self, obj):
+        """What a job has under belt_machine.belt."""
+        data = {}
+        to_job(obj, KEYS, data)
+        return data["belt_machine"]["belt"]
+
+    def reset(self, obj):
+        """A new belt of the same kind."""
+        obj.WorkDone = obj.RemovedVolume = obj.Hours = 0.0
+        obj.RemainingCut, obj.Counted = 100.0, []
+
+    def count(self, obj, simulation):
+        """Adds what the belt did in a simulation. Raises InputError for one that was counted."""
+        run = f"{simulation.Fingerprint} {simulation.WallTime}"
+        if not simulation.BeltUse:
+            raise InputError(f"{simulation.Label} has no result yet; simulate first")
+        if run in obj.Counted:
+            raise InputError(f"{obj.Label}: the use of this result has been counted already")
+        use = json.loads(simulation.BeltUse)
+        state = {key: value + use["during"][key] for key, value in self.state(obj).items()}
+        from_job(obj, KEYS, {"belt_machine": {"belt": state}})
+        obj.RemainingCut = 100.0 * jobs.remaining_cut(use["job"], law.engine_belt(state))
+        obj.Counted = [*obj.Counted, run]

@@ -246,3 +246,46 @@ press("Close")
 """,
         window=True,
     )
+
+
+def test_the_law_the_belt_and_the_uncertainty(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import json
+def pick(name, text):
+    box = field(name)
+    assert box.findText(text) >= 0, [box.itemText(i) for i in range(box.count())]
+    box.setCurrentIndex(box.findText(text))
+    settle()
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+settle()
+pick("Law", "Local with exponents")
+type_in("PressureExponent", "1.2")
+type_in("FeedExponent", "-0.2")
+pick("WearModel", "Exponential")
+type_in("WearScale", "1000")
+press("OK")
+assert (job.Law, job.PressureExponent, job.FeedExponent) == ("local", 1.2, -0.2)
+job.Calibration = json.dumps({"parameters": [], "covariance": [], "scatter": 0.1})
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+left = doc.Simulation.RemainingCut
+assert 5 < left < 95, left
+press("Deviation")
+before = list(doc.Deviation.VertexColors)
+pick("ColourBy", "Uncertainty (1 sd)")
+assert list(doc.Deviation.VertexColors) != before
+press("OK")
+menu("Belt")
+press("Count the simulated grind")
+assert abs(doc.Belt.RemainingCut - left) < 1e-6 and doc.Belt.WorkDone > 100
+press("Count the simulated grind")
+assert "counted already" in field("note").text()
+press("New belt")
+assert doc.Belt.WorkDone == 0 and doc.Belt.RemainingCut == 100
+press("Cancel")
+assert doc.getObject("Belt") is None
+""",
+        window=True,
+    )

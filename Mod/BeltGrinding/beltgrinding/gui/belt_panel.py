@@ -13,7 +13,7 @@ class BeltPanel(Panel):
 
     def __init__(self, obj):
         super().__init__(obj, translate("BeltGrinding", "Belt"), "BeltGrinding_Belt")
-        self.form = None
+        self.fields = None
         self.place = QtGui.QVBoxLayout()
         self.body.addLayout(self.place)
         self.left = QtGui.QLabel()
@@ -32,13 +32,13 @@ class BeltPanel(Panel):
 
     def fill(self):
         """The fields anew: the buttons change the properties."""
-        if self.form is not None:
-            self.form.setParent(None)
-        self.form = Form(self.obj, translate("BeltGrinding", "What it has done"))
-        self.form.add("Hours", translate("BeltGrinding", "In contact"), unit="h")
-        self.form.add("WorkDone", translate("BeltGrinding", "Work"), unit="J")
-        self.form.add("RemovedVolume", translate("BeltGrinding", "Removed"))
-        self.place.addWidget(self.form)
+        if self.fields is not None:
+            self.fields.setParent(None)
+        self.fields = Form(self.obj, translate("BeltGrinding", "What it has done"))
+        self.fields.add("Hours", translate("BeltGrinding", "In contact"), unit="h")
+        self.fields.add("WorkDone", translate("BeltGrinding", "Work"), unit="J")
+        self.fields.add("RemovedVolume", translate("BeltGrinding", "Removed"), unit="mm³")
+        self.place.addWidget(self.fields)
         text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
         self.left.setText(text.format(self.obj.RemainingCut))
 

@@ -24,7 +24,7 @@ class DeviationPanel(Panel):
             colours = Form(obj, translate("BeltGrinding", "Colours"))
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
-                "uncertainty": translate("BeltGrinding", "Its standard deviation"),
+                "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
             }
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
             colours.changed = self.update
@@ -73,15 +73,15 @@ class DeviationPanel(Panel):
         if obj.ExpectedInTolerance > 0.0:
             rows += (
                 (
-                    translate("BeltGrinding", "Probably in tolerance"),
+                    translate("BeltGrinding", "In tol., expected"),
                     f"{obj.ExpectedInTolerance:.2f} %",
                 ),
                 (
-                    translate("BeltGrinding", "Standard deviation, mean"),
+                    translate("BeltGrinding", "Uncertainty, mean"),
                     f"{obj.UncertaintyMean.Value:.4f} mm",
                 ),
                 (
-                    translate("BeltGrinding", "Standard deviation, 95 %"),
+                    translate("BeltGrinding", "Uncertainty, 95 %"),
                     f"{obj.Uncertainty95.Value:.4f} mm",
                 ),
             )

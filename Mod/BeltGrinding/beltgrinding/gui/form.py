@@ -103,7 +103,7 @@ class Form(QtGui.QGroupBox):
         return widget
 
     def _number(self, name, lowest=0.0):
-        widget = QtGui.QLineEdit(f"{getattr(self.obj, name):.10g}")
+        widget = QtGui.QLineEdit(f"{getattr(self.obj, name):g}")
         validator = QtGui.QDoubleValidator(lowest, 1e12, 12, widget)
         validator.setLocale(QtCore.QLocale.c())
         widget.setValidator(validator)

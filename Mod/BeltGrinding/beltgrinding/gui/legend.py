@@ -31,7 +31,7 @@ def uncertainty_node(limit, out_of_date=False):
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
     labels = {HEIGHT * k / 4: f"{limit * k / 4:.3g}" for k in range(5)}
-    text = translate("BeltGrinding", "standard deviation, mm")
+    text = translate("BeltGrinding", "uncertainty, mm")
     return _legend(colours, labels, text, out_of_date)
 
 

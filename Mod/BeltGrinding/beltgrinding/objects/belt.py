@@ -8,7 +8,7 @@ from .proxy import Proxy
 
 KEYS = (
     Key("WorkDone", "Float", "Belt", "belt_machine.belt.work_J"),
-    Key("RemovedVolume", "Volume", "Belt", "belt_machine.belt.removed_mm3"),
+    Key("RemovedVolume", "Float", "Belt", "belt_machine.belt.removed_mm3"),
     Key("Hours", "Float", "Belt", "belt_machine.belt.hours"),
 )
 OUTPUTS = (

@@ -49,6 +49,7 @@ void bind_geometry(py::module_& m);
 void bind_height_field(py::module_& m);
 void bind_contact(py::module_& m);
 void bind_surrogate(py::module_& m);
+void bind_calibration(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
 

@@ -65,6 +65,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_height_field(m);
     bind_contact(m);
     bind_surrogate(m);
+    bind_calibration(m);
     bind_simulation(m);
     bind_inspection(m);
 }

@@ -1,0 +1,139 @@
+"""A calibrated law: a job's 'law' from a fit, and what it predicts of further grinds."""
+
+import math
+
+import numpy as np
+
+from . import InputError
+from .calibration_model import DEFAULTS, INDEX, NAMES, Model
+from .calibration_table import Table, from_columns, read
+
+# What a law's 'calibration' carries: ln K and the exponents.
+LAW_NAMES = {
+    "ln_coefficient": "coefficient",
+    "pressure_exponent": "pressure_exponent",
+    "speed_exponent": "speed_exponent",
+    "feed_exponent": "feed_exponent",
+}
+
+WINSOR = 2.5  # scatters from the median, beyond which a residual counts no more
+
+
+def worn(found):
+    return math.isfinite(found["parameters"][INDEX["ln_wear_scale"]])
+
+
+def scatter_of(found, count):
+    """Rms of ln(measured/predicted) of a fit with ``count`` parameters, winsorised."""
+    limit = WINSOR * found["scatter"]
+    residual = np.clip(found["residual"], -limit, limit)
+    return math.sqrt(float(np.square(residual).sum()) / max(len(residual) - count, 1))
+
+
+def law_of(model, found, free, wear_unit):
+    """The 'law' of a job."""
+    x = {name: float(found["parameters"][k]) for name, k in INDEX.items()}
+    wear = {"model": "none"}
+    if worn(found):
+        kind = model.table.wear_kind
+        wear = {
+            "model": "exponential",
+            "variable": "volume" if kind == "volume" else "work",
+            "scale": math.exp(x["ln_wear_scale"]) * (wear_unit if kind == "number" else 1.0),
+            "rest": x["wear_rest"],
+        }
+    own = [name for name in free if name in LAW_NAMES]
+    at = [INDEX[name] for name in own]
+    everything = [INDEX[name] for name in free]
+    saturation = x["ln_saturation"]
+    return {
+        "model": "local",
+        "coefficient_mm2_per_N": math.exp(x["ln_coefficient"]),
+        "pressure_threshold_MPa": x["pressure_threshold"],
+        "pressure_exponent": x["pressure_exponent"],
+        "reference_pressure_MPa": model.references["pressure"],
+        "saturation_pressure_MPa": math.exp(saturation) if math.isfinite(saturation) else 0.0,
+        "speed_exponent": x["speed_exponent"],
+        "reference_speed_m_s": model.references["speed"] / 1000.0,
+        "feed_exponent": x["feed_exponent"],
+        "reference_feed_mm_s": model.references["feed"],
+        "wear": wear,
+        "calibration": {
+            "parameters": [LAW_NAMES[name] for name in own],
+            "covariance": found["covariance"][np.ix_(at, at)].tolist(),
+            "scatter": scatter_of(found, len(free)),
+            "fit": {
+                "parameters": list(free),
+                "covariance": found["covariance"][np.ix_(everything, everything)].tolist(),
+                "grinds": len(model.table.measured),
+                "time_exponent": x["time_exponent"],
+                "reference_time_s": model.references["time"],
+                "area_exponent": x["area_exponent"],
+                "reference_area_mm2": model.references["area"],
+                "areas_mm2": model.areas.tolist(),
+                "area_shares": [float(share) for share in found["shares"]],
+                "wear_unit_J": wear_unit if model.table.wear_kind == "number" else 1.0,
+            },
+        },
+    }
+
+
+def predict(law, rows, wheel_diameter_mm=None):
+    """What a law says of grinds. ``rows``: Table, path, dict of columns or list of dicts, with the
+    columns of a calibration (the removal is not needed). Returns dict(predicted (n,) mm3, or mm
+    where the table gives depths; deviation (n,): standard deviation of a new measurement in the
+    same unit; ln_deviation (n,): of its logarithm). Raises InputError.
+    """
+    if isinstance(rows, list):
+        keys = {key: None for row in rows for key in row}
+        rows = {key: [row.get(key, "") for row in rows] for key in keys}
+    if isinstance(rows, dict):
+        rows = from_columns(rows, wheel_diameter_mm, False)
+    elif not isinstance(rows, Table):
+        rows = read(rows, wheel_diameter_mm, False)
+    rows = rows._replace(measured=np.ones(len(rows.force)))
+    fitted = law.get("calibration", {}).get("fit", {})
+    parameters, references, unit = _of_law(law, fitted)
+    if unit != 1.0 and rows.wear_kind == "number":
+        rows = rows._replace(wear=rows.wear * unit)
+    model = Model(rows, references, fitted.get("areas_mm2"))
+    shares = fitted.get("area_shares") or [1.0 / len(model.areas)] * len(model.areas)
+    mean, gradient, variance = model.predict(parameters, shares)
+    if fitted:
+        at = [INDEX[name] for name in fitted["parameters"]]
+        slopes = np.nan_to_num(gradient[:, at])
+        variance = variance + np.einsum(
+            "ni,ij,nj->n", slopes, np.asarray(fitted["covariance"]), slopes
+        )
+    deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
+    value = np.exp(mean)
+    return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
+
+
+def _of_law(law, fitted):
+    """(parameters, references, joules of the wear's unit) of a law."""
+    local = law.get("model", "local") == "local"
+    curves = [key for key in ("pressure_curve", "speed_curve", "feed_curve") if law.get(key)]
+    wear = law.get("wear", {})
+    if (local and curves) or wear.get("model", "none") not in ("none", "exponential"):
+        raise InputError("law: curves and other wear than 'exponential' are not predicted here")
+    x = dict(DEFAULTS)
+    x["ln_coefficient"] = math.log(law["coefficient_mm2_per_N"])
+    for name in ("pressure_exponent", "speed_exponent", "feed_exponent"):
+        x[name] = law.get(name, x[name]) if local else x[name]
+    if local:
+        x["pressure_threshold"] = law.get("pressure_threshold_MPa", 0.0)
+        if law.get("saturation_pressure_MPa", 0.0) > 0:
+            x["ln_saturation"] = math.log(law["saturation_pressure_MPa"])
+    if wear.get("model") == "exponential":
+        x["ln_wear_scale"], x["wear_rest"] = math.log(wear["scale"]), wear.get("rest", 0.0)
+    x["time_exponent"] = fitted.get("time_exponent", 1.0)
+    x["area_exponent"] = fitted.get("area_exponent", 0.0)
+    references = {
+        "pressure": law.get("reference_pressure_MPa", 0.1),
+        "speed": 1000.0 * law.get("reference_speed_m_s", 20.0),
+        "feed": law.get("reference_feed_mm_s", 50.0),
+        "time": fitted.get("reference_time_s", 1.0),
+        "area": fitted.get("reference_area_mm2", 1.0),
+    }
+    return np.array([x[name] for name in NAMES]), references, fitted.get("wear_unit_J", 1.0)

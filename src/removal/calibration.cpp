@@ -1,0 +1,386 @@
+#include "removal/calibration.h"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unsupported/Eigen/LevenbergMarquardt>
+#include <vector>
+
+#include "base/error.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kCauchy = 2.385;
+constexpr double kMad = 1.4826;         // median of |r| to deviation, for a normal r
+constexpr double kLeastScatter = 1e-4;  // a table without scatter is not without rounding
+constexpr double kNearBound = 1e-3;     // of the range
+constexpr double kLeastExcess = 1e-9;   // MPa above the threshold
+constexpr double kMostLeverage = 0.95;
+constexpr double kConverged = 1e-6;
+constexpr int kMostIterations = 200;
+constexpr int kHuberIterations = 10;  // Cauchy's loss has local minima: come near them convexly
+constexpr double kHuber = 1.345;
+
+/// A row under one of the areas that it can have.
+struct Candidate {
+    Eigen::Index row;
+    Eigen::Index level;  // in `areas`, or -1 if the area is known
+    double area;
+    double posterior;
+    double weight = 1.0;
+};
+
+/// Free parameters x = lower + (upper - lower) (1 + sin u) / 2.
+class Bounds {
+  public:
+    explicit Bounds(const CalibrationSettings& settings) : settings_(settings) {
+        for (int k = 0; k < kGrindParameters; ++k) {
+            if (!settings.free[static_cast<std::size_t>(k)]) continue;
+            const bool sound = settings.lower[k] < settings.upper[k] &&
+                               std::isfinite(settings.lower[k] + settings.upper[k]);
+            if (!sound) throw InputError("calibration: bounds of a parameter are not in order");
+            indices_.push_back(k);
+        }
+    }
+    const std::vector<int>& indices() const { return indices_; }
+    int size() const { return static_cast<int>(indices_.size()); }
+
+    Eigen::VectorXd inner(const GrindVector& outer) const {
+        Eigen::VectorXd u(size());
+        for (int j = 0; j < size(); ++j) {
+            const int k = indices_[static_cast<std::size_t>(j)];
+            const double share = 2.0 * (outer[k] - settings_.lower[k]) / range(k) - 1.0;
+            // At +-1 the sine is flat: a start there would stay.
+            u[j] = std::asin(std::clamp(share, -0.98, 0.98));
+        }
+        return u;
+    }
+    GrindVector outer(const Eigen::VectorXd& u) const {
+        GrindVector x = settings_.start;
+        for (int j = 0; j < size(); ++j) {
+            const int k = indices_[static_cast<std::size_t>(j)];
+            x[k] = settings_.lower[k] + 0.5 * range(k) * (1.0 + std::sin(u[j]));
+        }
+        return x;
+    }
+    double slope(const Eigen::VectorXd& u, int j) const {
+        return 0.5 * range(indices_[static_cast<std::size_t>(j)]) * std::cos(u[j]);
+    }
+    bool at_bound(const GrindVector& x, int k) const {
+        const double near = kNearBound * range(k);
+        return x[k] < settings_.lower[k] + near || x[k] > settings_.upper[k] - near;
+    }
+
+  private:
+    double range(int k) const { return settings_.upper[k] - settings_.lower[k]; }
+    const CalibrationSettings& settings_;
+    std::vector<int> indices_;
+};
+
+struct WeightedResiduals : Eigen::DenseFunctor<double> {
+    WeightedResiduals(const MeasuredGrinds& measured, const GrindReferences& at,
+                      const Bounds& limits, const std::vector<Candidate>& rows)
+        : DenseFunctor<double>(limits.size(), static_cast<int>(rows.size())),
+          grinds(measured),
+          references(at),
+          bounds(limits),
+          candidates(rows) {}
+
+    int operator()(const Eigen::VectorXd& u, Eigen::VectorXd& r) const {
+        const GrindVector x = bounds.outer(u);
+        for (Eigen::Index c = 0; c < r.size(); ++c) {
+            const Candidate& one = candidates[static_cast<std::size_t>(c)];
+            r[c] = std::sqrt(one.posterior * one.weight) *
+                   (log_grind(x, references, grinds, one.row, one.area, nullptr) -
+                    std::log(grinds.measured[one.row]));
+        }
+        return 0;
+    }
+    int df(const Eigen::VectorXd& u, Eigen::MatrixXd& jacobian) const {
+        const GrindVector x = bounds.outer(u);
+        GrindVector gradient;
+        for (Eigen::Index c = 0; c < jacobian.rows(); ++c) {
+            const Candidate& one = candidates[static_cast<std::size_t>(c)];
+            log_grind(x, references, grinds, one.row, one.area, &gradient);
+            const double root = std::sqrt(one.posterior * one.weight);
+            for (int j = 0; j < bounds.size(); ++j) {
+                jacobian(c, j) = root * gradient[bounds.indices()[static_cast<std::size_t>(j)]] *
+                                 bounds.slope(u, j);
+            }
+        }
+        return 0;
+    }
+
+    const MeasuredGrinds& grinds;
+    const GrindReferences& references;
+    const Bounds& bounds;
+    const std::vector<Candidate>& candidates;
+};
+
+/// Median of `values` under `weights`; sorts the pairs.
+double weighted_median(std::vector<std::pair<double, double>>& pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    double total = 0.0, sum = 0.0;
+    for (const auto& [value, weight] : pairs) total += weight;
+    for (const auto& [value, weight] : pairs) {
+        sum += weight;
+        if (sum >= 0.5 * total) return value;
+    }
+    return pairs.back().first;
+}
+
+class Fit {
+  public:
+    Fit(const MeasuredGrinds& grinds, const GrindReferences& references,
+        const CalibrationSettings& settings)
+        : grinds_(grinds), references_(references), bounds_(settings) {
+        const Eigen::Index n = grinds.measured.size(), levels = grinds.areas.size();
+        if (n <= bounds_.size()) {
+            throw InputError("calibration: " + std::to_string(n) + " grinds cannot tell " +
+                             std::to_string(bounds_.size()) + " parameters; measure more");
+        }
+        counts_ = Eigen::ArrayXd::Zero(levels);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (!std::isnan(grinds.area[i])) {
+                candidates_.push_back({i, -1, grinds.area[i], 1.0});
+                if (levels > 0) counts_[nearest(grinds.area[i])] += 1.0;
+                continue;
+            }
+            for (Eigen::Index k = 0; k < levels; ++k) {
+                candidates_.push_back({i, k, grinds.areas[k], 1.0 / static_cast<double>(levels)});
+            }
+        }
+        shares_ = (counts_ + 0.5) / (counts_ + 0.5).sum();
+        for (Candidate& one : candidates_) {
+            if (one.level >= 0) one.posterior = shares_[one.level];
+        }
+        x_ = settings.start;
+        residual_.resize(candidates_.size());
+    }
+
+    Calibration run() {
+        Calibration result;
+        Eigen::VectorXd u = bounds_.inner(x_);
+        for (int i = 0; i < kMostIterations; ++i) {
+            const GrindVector before = x_;
+            solve(u);
+            x_ = bounds_.outer(u);
+            reweigh(i < kHuberIterations);
+            result.iterations = i + 1;
+            // Parameters may be infinite (no wear, no saturation) where they are fixed.
+            double change = 0.0;
+            for (const int k : bounds_.indices()) {
+                change = std::max(change, std::abs(x_[k] - before[k]) / (1.0 + std::abs(x_[k])));
+            }
+            if (i > kHuberIterations && change < kConverged) {
+                result.converged = true;
+                break;
+            }
+        }
+        finish(result);
+        return result;
+    }
+
+  private:
+    Eigen::Index nearest(double area) const {
+        Eigen::Index k = 0;
+        (grinds_.areas.log() - std::log(area)).abs().minCoeff(&k);
+        return k;
+    }
+
+    void solve(Eigen::VectorXd& u) {
+        if (bounds_.size() == 0) return;
+        WeightedResiduals functor(grinds_, references_, bounds_, candidates_);
+        Eigen::LevenbergMarquardt<WeightedResiduals> solver(functor);
+        solver.setMaxfev(100);
+        solver.setFtol(1e-10);
+        solver.setXtol(1e-10);
+        solver.minimize(u);
+        if (!u.allFinite()) throw InputError("calibration: the fit does not converge");
+    }
+
+    /// Residuals, scatter, weights, and the probabilities of unknown areas.
+    void reweigh(bool convex) {
+        std::vector<std::pair<double, double>> sizes;
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+            const Candidate& one = candidates_[c];
+            residual_[c] = std::log(grinds_.measured[one.row]) -
+                           log_grind(x_, references_, grinds_, one.row, one.area, nullptr);
+            sizes.emplace_back(std::abs(residual_[c]), one.posterior);
+        }
+        const double n = static_cast<double>(grinds_.measured.size());
+        const double spare = std::max(n - bounds_.size(), 1.0);
+        scatter_ = std::max(kMad * weighted_median(sizes) * std::sqrt(n / spare), kLeastScatter);
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+            const double z = std::abs(residual_[c]) / scatter_;
+            candidates_[c].weight = convex ? std::min(1.0, kHuber / std::max(z, 1e-12))
+                                           : 1.0 / (1.0 + (z / kCauchy) * (z / kCauchy));
+        }
+        if (shares_.size() > 0) estimate_areas();
+    }
+
+    void estimate_areas() {
+        Eigen::ArrayXd counts = counts_;
+        for (std::size_t c = 0; c < candidates_.size();) {
+            if (candidates_[c].level < 0) {
+                ++c;
+                continue;
+            }
+            const std::size_t end = c + static_cast<std::size_t>(shares_.size());
+            double sum = 0.0;
+            for (std::size_t d = c; d < end; ++d) {
+                const double z = residual_[d] / (kCauchy * scatter_);
+                // The likelihood whose loss is Cauchy's.
+                candidates_[d].posterior =
+                    shares_[candidates_[d].level] * std::pow(1.0 + z * z, -0.5 * kCauchy * kCauchy);
+                sum += candidates_[d].posterior;
+            }
+            for (std::size_t d = c; d < end; ++d) {
+                candidates_[d].posterior =
+                    sum > 0.0 ? candidates_[d].posterior / sum : shares_[candidates_[d].level];
+                counts[candidates_[d].level] += candidates_[d].posterior;
+            }
+            c = end;
+        }
+        shares_ = counts / counts.sum();
+    }
+
+    void finish(Calibration& result) const {
+        const Eigen::Index n = grinds_.measured.size();
+        result.parameters = x_;
+        result.scatter = scatter_;
+        result.shares = shares_;
+        result.residual = result.weight = Eigen::ArrayXd::Zero(n);
+        result.posterior =
+            Eigen::ArrayXXd::Zero(n, std::max<Eigen::Index>(1, grinds_.areas.size()));
+        std::vector<int> open;
+        for (const int k : bounds_.indices()) {
+            result.at_bound[static_cast<std::size_t>(k)] = bounds_.at_bound(x_, k);
+            if (!bounds_.at_bound(x_, k)) open.push_back(k);
+        }
+        const auto p = static_cast<Eigen::Index>(open.size());
+        Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(p, p), information = bread;
+        Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(p, n), slopes = scores;
+        GrindVector gradient;
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+            const Candidate& one = candidates_[c];
+            log_grind(x_, references_, grinds_, one.row, one.area, &gradient);
+            const Eigen::VectorXd j = gradient(open);
+            const double z2 = std::pow(residual_[c] / (kCauchy * scatter_), 2);
+            const double curvature = (1.0 - z2) / ((1.0 + z2) * (1.0 + z2));
+            const double psi = residual_[c] / (1.0 + z2);
+            information += one.posterior / (1.0 + z2) * j * j.transpose();
+            bread += one.posterior * curvature * j * j.transpose();
+            if (one.level >= 0) {  // Louis: what is not known of the area is no information
+                bread -= one.posterior * std::pow(psi / scatter_, 2) * j * j.transpose();
+            }
+            scores.col(one.row) += one.posterior * psi * j;
+            slopes.col(one.row) += one.posterior * j;
+            result.residual[one.row] += one.posterior * residual_[c];
+            result.weight[one.row] += one.posterior / (1.0 + z2);
+            result.posterior(one.row, std::max<Eigen::Index>(one.level, 0)) = one.posterior;
+        }
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (std::isnan(grinds_.area[i])) {
+                const Eigen::VectorXd score = scores.col(i) / scatter_;
+                bread += score * score.transpose();
+            }
+        }
+        result.information.setZero();
+        result.information(open, open) = information;
+        result.covariance.setZero();
+        if (p == 0) return;
+        if (Eigen::LLT<Eigen::MatrixXd>(bread).info() != Eigen::Success) bread = information;
+        const Eigen::MatrixXd inverse = bread.completeOrthogonalDecomposition().pseudoInverse();
+        Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double leverage = slopes.col(i).dot(inverse * slopes.col(i));
+            const double rest = 1.0 - std::clamp(leverage, 0.0, kMostLeverage);
+            meat += scores.col(i) * scores.col(i).transpose() / (rest * rest);
+        }
+        result.covariance(open, open) = inverse * meat * inverse;
+    }
+
+    const MeasuredGrinds& grinds_;
+    const GrindReferences& references_;
+    const Bounds bounds_;
+    std::vector<Candidate> candidates_;
+    std::vector<double> residual_;
+    Eigen::ArrayXd counts_, shares_;
+    GrindVector x_;
+    double scatter_ = 1.0;
+};
+
+}  // namespace
+
+void MeasuredGrinds::validate() const {
+    const Eigen::Index n = measured.size();
+    for (const auto* column : {&force, &area, &speed, &feed, &time, &wear, &spread}) {
+        if (column->size() != n) throw InputError("calibration: columns differ in length");
+    }
+    for (const auto* column : {&force, &speed, &time, &measured}) {
+        if (!column->allFinite() || !(*column > 0.0).all()) {
+            throw InputError("calibration: force, speed, time and removal must be positive");
+        }
+    }
+    if (!feed.allFinite() || (feed < 0.0).any() || !wear.allFinite() || (wear < 0.0).any()) {
+        throw InputError("calibration: feed and wear must be zero or positive");
+    }
+    if (!areas.allFinite() || !(areas > 0.0).all() || (area <= 0.0).any() || area.isInf().any() ||
+        (spread <= 0.0).any() || spread.isInf().any()) {
+        throw InputError("calibration: areas must be positive");
+    }
+    if (areas.size() == 0 && area.isNaN().any()) {
+        throw InputError("calibration: an area is unknown, and what it can be as well");
+    }
+}
+
+double log_grind(const GrindVector& x, const GrindReferences& references,
+                 const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient) {
+    const bool moving = grinds.feed[i] > 0.0;
+    const double excess = std::max(grinds.force[i] / area - x[kPressureThreshold], kLeastExcess);
+    const double saturation = std::exp(x[kLnSaturation]);
+    const double ratio = std::isfinite(saturation) ? excess / saturation : 0.0;
+    const double effective = ratio > 0.0 ? saturation * -std::expm1(-ratio) : excess;
+    const double ln_pressure = std::log(effective / references.pressure);
+    const double ln_speed = std::log(grinds.speed[i] / references.speed);
+    const double ln_feed = moving ? std::log(grinds.feed[i] / references.feed) : 0.0;
+    const double ln_time = moving ? 0.0 : std::log(grinds.time[i] / references.time);
+    const double ln_area = std::log(area / references.area);
+    const double worn = grinds.wear[i] / std::exp(x[kLnWearScale]);  // 0 for an infinite scale
+    const double decay = std::exp(-worn), rest = x[kWearRest];
+    const double cut = rest + (1.0 - rest) * decay;
+    const double spread = std::isnan(grinds.spread[i]) ? area : grinds.spread[i];
+    if (gradient) {
+        // d ln(1 - exp(-ratio)) / d ln(ratio), which goes to 1.
+        const double steep = ratio > 0.0 ? ratio / std::expm1(ratio) : 1.0;
+        GrindVector& g = *gradient;
+        g[kLnCoefficient] = 1.0;
+        g[kPressureExponent] = ln_pressure;
+        g[kSpeedExponent] = ln_speed;
+        g[kFeedExponent] = ln_feed;
+        g[kTimeExponent] = ln_time;
+        g[kAreaExponent] = ln_area;
+        g[kLnWearScale] = (1.0 - rest) * decay * worn / cut;
+        g[kWearRest] = -std::expm1(-worn) / cut;
+        g[kPressureThreshold] = -x[kPressureExponent] * steep / excess;
+        g[kLnSaturation] = x[kPressureExponent] * (1.0 - steep);
+    }
+    return x[kLnCoefficient] + std::log(cut) + std::log(references.speed) +
+           x[kSpeedExponent] * ln_speed + std::log(references.pressure) +
+           x[kPressureExponent] * ln_pressure + x[kFeedExponent] * ln_feed +
+           std::log(grinds.time[i]) + (x[kTimeExponent] - 1.0) * ln_time + std::log(area) +
+           x[kAreaExponent] * ln_area - std::log(spread);
+}
+
+Calibration calibrate(const MeasuredGrinds& grinds, const GrindReferences& references,
+                      const CalibrationSettings& settings) {
+    grinds.validate();
+    return Fit(grinds, references, settings).run();
+}
+
+}  // namespace beltgrinding

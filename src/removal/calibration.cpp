@@ -263,7 +263,9 @@ class Fit {
             if (!bounds_.at_bound(x_, k)) open.push_back(k);
         }
         const auto p = static_cast<Eigen::Index>(open.size());
-        Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(p, p), information = bread;
+        const std::vector<int>& free = bounds_.indices();
+        GrindMatrix information = GrindMatrix::Zero();
+        Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(p, p);
         Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(p, n), slopes = scores;
         GrindVector gradient;
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -273,7 +275,7 @@ class Fit {
             const double z2 = std::pow(residual_[c] / (kCauchy * scatter_), 2);
             const double curvature = (1.0 - z2) / ((1.0 + z2) * (1.0 + z2));
             const double psi = residual_[c] / (1.0 + z2);
-            information += one.posterior / (1.0 + z2) * j * j.transpose();
+            information += one.posterior / (1.0 + z2) * gradient * gradient.transpose();
             bread += one.posterior * curvature * j * j.transpose();
             if (one.level >= 0) {  // Louis: what is not known of the area is no information
                 bread -= one.posterior * std::pow(psi / scatter_, 2) * j * j.transpose();
@@ -291,10 +293,12 @@ class Fit {
             }
         }
         result.information.setZero();
-        result.information(open, open) = information;
+        result.information(free, free) = information(free, free);
         result.covariance.setZero();
         if (p == 0) return;
-        if (Eigen::LLT<Eigen::MatrixXd>(bread).info() != Eigen::Success) bread = information;
+        if (Eigen::LLT<Eigen::MatrixXd>(bread).info() != Eigen::Success) {
+            bread = information(open, open);
+        }
         const Eigen::MatrixXd inverse = bread.completeOrthogonalDecomposition().pseudoInverse();
         Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
         for (Eigen::Index i = 0; i < n; ++i) {

@@ -62,7 +62,7 @@ struct CalibrationSettings {
 struct Calibration {
     GrindVector parameters;
     GrindMatrix covariance;   ///< zero for parameters fixed or at a bound
-    GrindMatrix information;  ///< sum of w J J^T over the rows
+    GrindMatrix information;  ///< sum of w J J^T over the rows; of the free parameters
     std::array<bool, kGrindParameters> at_bound{};
     double scatter = 0.0;  ///< 1.4826 median |ln(measured/predicted)|, n/(n - p) corrected
     Eigen::ArrayXd residual, weight;  ///< per row, of its likeliest areas on average

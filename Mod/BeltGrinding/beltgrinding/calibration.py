@@ -38,6 +38,7 @@ MOST_ERROR = 1.0  # standard error from which an exponent (or ln of a scale) is 
 MOST_CORRELATION = 0.95
 SINGULAR = 1e-7  # of the scaled information's eigenvalues: the parameters are one
 GRINDS_PER_PARAMETER = 6  # from which a further parameter is tried
+LEAST_ERRORS = 1.64  # standard errors by which it must differ from its default
 FOLDS, ROUNDS = 5, 2
 LEAST_GAIN = 0.5  # standard errors of the gain by which a further parameter must predict better
 
@@ -75,6 +76,7 @@ def _fitted(data, wheel_diameter_mm):
     while len(free) >= len(table.measured) - 1:
         warnings.append(f"too few grinds to tell the effect of {EFFECT[free[-1]]}; it is fixed")
         free.pop()
+    _name_inputs(table, warnings)
     free, found = _determined(model, free, warnings)
     free, found = _extended(model, free, found)
     _name_pairs(found, free, warnings)
@@ -86,6 +88,32 @@ def _fitted(data, wheel_diameter_mm):
 def _spread(values):
     values = values[np.isfinite(values)]
     return float(np.std(np.log(values))) if len(values) > 1 else 0.0
+
+
+def _name_inputs(table, warnings):
+    """Warns of inputs that move together in the data."""
+    moving = table.feed > 0
+    inputs = {
+        "force": table.force,
+        "belt speed": table.speed,
+        "feed": np.where(moving, table.feed, math.nan),
+        "grind time": np.where(moving, math.nan, table.time),
+        "contact area": table.area,
+        "belt wear": np.where(table.wear > 0, table.wear, math.nan),
+    }
+    names = [name for name, values in inputs.items() if _spread(values) > LEAST_SPREAD]
+    for j, two in enumerate(names):
+        for one in names[:j]:
+            both = np.isfinite(inputs[one]) & np.isfinite(inputs[two])
+            a, b = np.log(inputs[one][both]), np.log(inputs[two][both])
+            if both.sum() < LEAST_GRINDS or np.ptp(a) == 0 or np.ptp(b) == 0:
+                continue
+            correlation = float(np.corrcoef(a, b)[0, 1])
+            if abs(correlation) > MOST_CORRELATION:
+                warnings.append(
+                    f"{one} and {two} move together in the data (correlation {correlation:+.2f}), "
+                    "which hardly separate their effects; vary them separately"
+                )
 
 
 def _varied(table, warnings):
@@ -200,7 +228,8 @@ def _candidates(table, free):
 
 def _extended(model, free, found):
     """Adds a parameter while cross-validation predicts better with it, by more than half the
-    standard error of the gain (after Hastie, Tibshirani and Friedman, The Elements of Statistical Learning, 7.10).
+    standard error of the gain (after Hastie, Tibshirani and Friedman, The Elements of Statistical
+    Learning, 7.10), and differs from its default.
     """
     untried = list(_candidates(model.table, free))
     errors = None
@@ -211,12 +240,14 @@ def _extended(model, free, found):
         for name in untried:
             longer = [*free, name]
             tried = model.fit(longer, _beginning(model, found, name))
-            if _undetermined(model, tried, longer, []) is not None:
+            if not _told(tried, name) or _undetermined(model, tried, longer, []) is not None:
                 continue
             theirs = _held_out(model, longer, tried)
             gain = errors - theirs
             mean = float(gain.mean())
-            if mean > LEAST_GAIN * gain.std() / math.sqrt(len(gain)) and (best is None or mean > best[0]):
+            if mean > LEAST_GAIN * gain.std() / math.sqrt(len(gain)) and (
+                best is None or mean > best[0]
+            ):
                 best = (mean, name, tried, theirs)
         if best is None:
             break
@@ -224,6 +255,13 @@ def _extended(model, free, found):
         free = [*free, name]
         untried.remove(name)
     return free, found
+
+
+def _told(found, name):
+    """Whether a parameter differs from its default by more than two standard errors."""
+    k = INDEX[name]
+    away = abs(found["parameters"][k] - DEFAULTS[name])
+    return away > LEAST_ERRORS * math.sqrt(found["covariance"][k, k])
 
 
 def _beginning(model, found, name):
@@ -278,9 +316,18 @@ def _cautions(model, found, wear_unit):
     return notes
 
 
-def write(result, path):
-    """Writes the law of a calibration as JSON. Raises InputError."""
+def write(data, path):
+    """Writes a law, or a report, as JSON. Raises InputError."""
     try:
-        write_whole(Path(path), (json.dumps(result["law"], indent=2) + "\n").encode())
+        write_whole(Path(path), (json.dumps(_plain(data), indent=2) + "\n").encode())
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def _plain(value):
+    """A copy that is JSON: what is not known (nan) becomes null."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -40,6 +40,15 @@ def _parser():
     learn.add_argument("--seed", type=int, default=1, help="of the random contacts (default 1)")
     learn.add_argument("--database", help="file that keeps the database (.npz)")
     learn.add_argument("--train-on", help="a database of your own in place of a contact.json")
+    fit = commands.add_parser("calibrate", help="fit the removal law to measured grinds")
+    fit.add_argument("table", help="CSV of the grinds (docs/calibration.md)")
+    fit.add_argument("-o", "--output", required=True, help="file for the law (.json)")
+    fit.add_argument("--report", help="file for the report (.json)")
+    fit.add_argument("--plot", help="file for a plot (.png, .svg, .pdf)")
+    fit.add_argument(
+        "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
+    )
+    fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument("name", nargs="?", choices=("job", "contact"), default="job")
     return parser
@@ -136,6 +145,21 @@ def _surrogate(arguments):
     print(json.dumps(report))
 
 
+def _calibrate(arguments):
+    from . import calibration, calibration_plot, calibration_report
+
+    result = calibration.fit(arguments.table, arguments.wheel_diameter, arguments.wear_unit)
+    report = result["report"]
+    if arguments.plot:
+        calibration_plot.draw(report, arguments.plot)
+    if arguments.report:
+        calibration.write(report, arguments.report)
+    calibration.write(result["law"], arguments.output)
+    for warning in report["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
+    print(calibration_report.text(report))
+
+
 def _report(summary, output):
     for warning in summary["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
@@ -167,6 +191,8 @@ def main(argv=None):
             _contact(arguments)
         elif arguments.command == "surrogate":
             _surrogate(arguments)
+        elif arguments.command == "calibrate":
+            _calibrate(arguments)
         elif arguments.command == "run":
             _run(arguments)
         else:

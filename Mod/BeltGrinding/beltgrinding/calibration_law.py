@@ -16,6 +16,7 @@ LAW_NAMES = {
     "feed_exponent": "feed_exponent",
 }
 
+CURVES = ("pressure_curve", "speed_curve", "feed_curve")
 WINSOR = 2.5  # scatters from the median, beyond which a residual counts no more
 
 
@@ -57,6 +58,7 @@ def law_of(model, found, free, wear_unit):
         "reference_speed_m_s": model.references["speed"] / 1000.0,
         "feed_exponent": x["feed_exponent"],
         "reference_feed_mm_s": model.references["feed"],
+        **{key: [] for key in CURVES},  # a curve would replace what is found here
         "wear": wear,
         "calibration": {
             "parameters": [LAW_NAMES[name] for name in own],
@@ -113,7 +115,7 @@ def predict(law, rows, wheel_diameter_mm=None):
 def _of_law(law, fitted):
     """(parameters, references, joules of the wear's unit) of a law."""
     local = law.get("model", "local") == "local"
-    curves = [key for key in ("pressure_curve", "speed_curve", "feed_curve") if law.get(key)]
+    curves = [key for key in CURVES if law.get(key)]
     wear = law.get("wear", {})
     if (local and curves) or wear.get("model", "none") not in ("none", "exponential"):
         raise InputError("law: curves and other wear than 'exponential' are not predicted here")

@@ -256,6 +256,19 @@ class Contact(Command):
         Gui.Control.showDialog(ContactPanel(active_job()))
 
 
+class Calibrate(Command):
+    NAME = "BeltGrinding_Calibrate"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Calibrate", "Calibrate removal law...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Calibrate", "Fits the law of removal to a table of measured grinds"
+    )
+
+    def run(self):
+        from .calibration_panel import CalibrationPanel
+
+        Gui.Control.showDialog(CalibrationPanel(active_job()))
+
+
 class ExampleBlade(Command):
     NAME = "BeltGrinding_ExampleBlade"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleBlade", "Example: compressor blade")
@@ -337,7 +350,7 @@ class ReadAgain(Command):
 
 
 WORK = (NewJob, Stock, BeltMachine, ImportProgram, Simulate, Deviation)
-MORE = (Belt, Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
+MORE = (Belt, Calibrate, Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
 
 
 def register():

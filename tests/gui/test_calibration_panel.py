@@ -1,0 +1,49 @@
+"""The panel that calibrates the law: a table chosen, fitted, looked at, and used in the job."""
+
+
+def test_from_a_table_to_the_law_of_the_job(freecad):
+    freecad.run(
+        """
+import random
+from support.hands import *
+job = prepare()
+doc = job.Document
+if "local" not in job.getEnumerationsOfProperty("Law"):
+    job.Law = [*job.getEnumerationsOfProperty("Law"), "local"]
+random.seed(1)
+lines = ["force_N,belt_speed_m_s,time_s,area_mm2,removed_volume_mm3"]
+for _ in range(30):
+    force, speed, time_s = random.uniform(5, 50), random.uniform(10, 30), random.uniform(5, 30)
+    volume = 2e-5 * 1000 * speed * force * time_s * random.lognormvariate(0, 0.05)
+    lines.append(f"{force},{speed},{time_s},100,{volume}")
+Path("grinds.csv").write_text("\\n".join(lines) + "\\n")
+
+menu("Calibrate removal law...")
+press("Fit")
+assert "Choose the table" in field("calibrationState").text()
+type_in("grinds", "absent.csv")
+press("Fit")
+wait(lambda: "cannot be read" in field("calibrationState").text())
+type_in("grinds", "grinds.csv")
+press("Fit")
+wait(lambda: "median error" in field("calibrationState").text())
+table = field("calibrationTable")
+names = [table.item(row, 0).text() for row in range(table.rowCount())]
+assert names[:3] == ["coefficient, mm²/N", "pressure exponent", "speed exponent"], names
+assert abs(float(table.item(1, 1).text()) - 1) < 0.1
+picture = field("calibrationPlot").pixmap().toImage()
+assert picture.width() > 300 and picture.height() > 300
+screenshot("calibration.png")
+steps = doc.UndoCount
+press("Use in the job")
+assert job.Law == "local"
+assert abs(job.LawCoefficient / 2e-5 - 1) < 0.1
+assert doc.UndoCount == steps + 1
+press("Larger plot")
+field("calibrationWindow").close()
+press("Close")
+doc.undo()
+assert job.Law != "local"
+""",
+        window=True,
+    )

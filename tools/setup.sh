@@ -15,7 +15,7 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libassimp-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev)
-packages_run=(freecad python3-numpy python3-jsonschema xvfb xauth libgl1-mesa-dri)
+packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib xvfb xauth libgl1-mesa-dri)
 packages_test=(python3-pytest python3-h5py python3-pil calculix-ccx)
 
 say() { printf '%s\n' "$*" >&2; }

@@ -39,16 +39,10 @@ def draw(report, path):
 
 def render(report, kind="png", dpi=110):
     """The picture as bytes of a file. Raises InputError without matplotlib."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise InputError("a plot needs matplotlib (Debian: python3-matplotlib)") from None
     rows = report["rows"]
     inputs = [name for name in LABELS if _drawn(rows.get(name))]
     lines = math.ceil(len(inputs) / COLUMNS)
-    figure = Figure(figsize=(10.0, 4.8 + 2.3 * lines), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = _figure(10.0, 4.8 + 2.3 * lines)
     heights = [4.8] + [2.3] * lines
     grid = figure.add_gridspec(1 + lines, COLUMNS, height_ratios=heights)
     _compare(figure.add_subplot(grid[0, : COLUMNS // 2]), report)
@@ -62,6 +56,33 @@ def render(report, kind="png", dpi=110):
             axes.set_ylabel("measured / predicted")
         else:
             axes.tick_params(labelleft=False)
+    return _saved(figure, kind, dpi)
+
+
+def render_small(report):
+    """Measured against predicted alone, a small square PNG. Raises InputError."""
+    figure = _figure(2.6, 2.6)
+    axes = figure.add_subplot()
+    _compare(axes, report)
+    axes.set_title("")
+    axes.tick_params(labelsize=8)
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set_fontsize(8.5)
+    return _saved(figure, "png", 160)
+
+
+def _figure(width, height):
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise InputError("a plot needs matplotlib (Debian: python3-matplotlib)") from None
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _saved(figure, kind, dpi):
     target = io.BytesIO()
     figure.savefig(target, format=kind, dpi=dpi)
     return target.getvalue()
@@ -78,9 +99,9 @@ def _number(value, _):
     return f"{value:.4g}"
 
 
-def _plain(axis, LogLocator, NullFormatter):
-    """A logarithmic axis with plain numbers at 1, 2, 5."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+def _plain(axis, LogLocator, NullFormatter, ticks=(1.0, 2.0, 5.0)):
+    """A logarithmic axis with plain numbers at ``ticks`` of each decade."""
+    axis.set_major_locator(LogLocator(subs=ticks))
     axis.set_major_formatter(_number)
     axis.set_minor_formatter(NullFormatter())
 
@@ -126,15 +147,17 @@ def _tell(axes, report):
         interval = f"{one['low']:.3g} to {one['high']:.3g}" if one["free"] else "fixed"
         rows.append((name, f"{one['value']:.3g}", interval))
     left = report["leave_one_out"]
+    at = report["references"]
     rows += [
         ("", "", ""),
+        ("the coefficient holds at", "", ", ".join(f"{at[key]:.3g} {key}" for key in at)),
         ("grinds", str(report["grinds"]), ""),
         ("left-out error, median", f"{100 * left['median']:.1f} %", ""),
         ("left-out error, 90 %", f"{100 * left['p90']:.0f} %", ""),
         ("R² of the logarithms", f"{report['r2']:.3f}", ""),
         ("outliers", str(len(report["outliers"])), ""),
     ]
-    places = (0.02, 0.62, 0.67)
+    places = (0.02, 0.58, 0.63)
     for k, texts in enumerate([("parameter", "value", "95 % interval"), *rows]):
         for place, text, side in zip(places, texts, ("left", "right", "left")):
             weight = "bold" if k == 0 else "normal"
@@ -150,8 +173,9 @@ def _residuals(axes, rows, name):
     axes.plot(inside[0], inside[1] / inside[2], "o", ms=3, color=BLUE, mec="none", alpha=0.75)
     axes.plot(outside[0], outside[1] / outside[2], "D", ms=4, color=ORANGE, mec="none")
     axes.set_yscale("log")
-    _plain(axes.yaxis, LogLocator, NullFormatter)
+    _plain(axes.yaxis, LogLocator, NullFormatter, (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 6.5, 8.0))
     axes.set_xlabel(LABELS[name])
     axes.grid(True, color="#e3e5e8", lw=0.6)
     axes.set_axisbelow(True)
     axes.locator_params(axis="x", nbins=4)
+    axes.ticklabel_format(axis="x", style="sci", scilimits=(-3, 4))

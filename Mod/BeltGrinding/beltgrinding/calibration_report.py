@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from . import calibration_model as c
-from .calibration_law import LAW_NAMES
+from .calibration_law import LAW_NAMES, scatter_of
 
 # Student's t, 97.5 %, by degrees of freedom (Abramowitz and Stegun, 26.7.5: expansion in 1/n).
 NORMAL = 1.959964
@@ -27,9 +27,10 @@ def student(freedom):
 
 def report(model, found, free, warnings):
     """dict: parameters (list of name, value, low, high (95 %), unit, free), correlation (with
-    'names'), condition (of the parameters' scaled information), r2 and rms_log (in-sample),
-    leave_one_out (median, p90 relative errors), outliers (lines of the file), ranges (by column),
-    warnings, grinds, weights' median, and the figures of the plot under 'rows'.
+    'names'), condition (of the parameters' scaled information), r2 and rms_log (in-sample), scatter,
+    references (where the coefficient holds, by unit), leave_one_out (median, p90: relative errors),
+    outliers (lines of the file), ranges (by column), warnings, grinds, and the figures of the plot
+    under 'rows'.
     """
     table = model.table
     said, gradient, area_variance = model.predict(found["parameters"], found["shares"])
@@ -41,7 +42,9 @@ def report(model, found, free, warnings):
     slopes = np.nan_to_num(gradient[:, at])
     covariance = found["covariance"][np.ix_(at, at)]
     deviation = np.sqrt(
-        np.einsum("ni,ij,nj->n", slopes, covariance, slopes) + area_variance + found["scatter"] ** 2
+        np.einsum("ni,ij,nj->n", slopes, covariance, slopes)
+        + area_variance
+        + scatter_of(found, len(free)) ** 2
     )
     left = left_out(model, free, found)
     relative = np.abs(np.expm1(left - truth))
@@ -60,7 +63,8 @@ def report(model, found, free, warnings):
         "condition": float(math.sqrt(singular[0] / max(singular[-1], 1e-300))),
         "r2": 1.0 - float(np.square(residual).sum()) / total if total > 0 else 0.0,
         "rms_log": float(np.sqrt(np.square(residual).mean())),
-        "scatter": float(found["scatter"]),
+        "scatter": scatter_of(found, len(free)),
+        "references": _references(model),
         "leave_one_out": {
             "median": float(np.median(relative)),
             "p90": float(np.quantile(relative, 0.9)),
@@ -79,6 +83,15 @@ def report(model, found, free, warnings):
             **{name: values.tolist() for name, values in _inputs(table).items()},
         },
     }
+
+
+def _references(model):
+    """Where the coefficient holds: {unit: value}."""
+    at = model.references
+    result = {"MPa": at["pressure"], "m/s": at["speed"] / 1000.0}
+    if (model.table.feed > 0).any():
+        result["mm/s"] = at["feed"]
+    return result
 
 
 def _inputs(table):
@@ -161,7 +174,9 @@ def text(report):
         interval = f"{one['low']:.4g} to {one['high']:.4g}" if one["free"] else "fixed"
         unit = f" {one['unit']}" if one["unit"] else ""
         lines.append(f"{one['name']:20s} {one['value']:<10.4g} {interval}{unit}")
-    left = report["leave_one_out"]
+    left, at = report["leave_one_out"], report["references"]
+    holds = ", ".join(f"{value:.4g} {unit}" for unit, value in at.items())
+    lines.append(f"the coefficient holds at {holds}; the exponents tell of elsewhere")
     lines.append(
         f"left-out grinds: median error {100 * left['median']:.1f} %, 90 % below "
         f"{100 * left['p90']:.0f} %; R2 of the logarithms {report['r2']:.3f}, "

@@ -9,7 +9,7 @@ from .form import MINIMUM_WIDTH
 from .icons import icon
 from .runner import Background
 
-WIDTH = 380  # pixels of the plot in the panel
+WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
 TABLES = "Measured grinds (*.csv *.txt);;All files (*)"
 
 
@@ -25,6 +25,7 @@ class CalibrationPanel:
         self.form.setWindowIcon(QtGui.QIcon(icon("BeltGrinding_Calibrate")))
         body = QtGui.QVBoxLayout(self.form)
         fields = QtGui.QFormLayout()
+        fields.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         self.file = Gui.UiLoader().createWidget("Gui::FileChooser")
         self.file.setObjectName("grinds")
         self.file.setProperty("filter", TABLES)
@@ -85,18 +86,19 @@ class CalibrationPanel:
         return button
 
     def _table(self):
-        table = QtGui.QTableWidget(0, 3)
+        table = QtGui.QTableWidget(0, 2)
         table.setObjectName("calibrationTable")
         table.setHorizontalHeaderLabels(
             [
                 translate("BeltGrinding", "Parameter"),
-                translate("BeltGrinding", "Value"),
-                translate("BeltGrinding", "95 % interval"),
+                translate("BeltGrinding", "Value (95 %)"),
             ]
         )
         table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
         table.verticalHeader().hide()
+        table.setMinimumWidth(WIDTH)
         table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        table.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
         table.horizontalHeader().setStretchLastSection(True)
         return table
 
@@ -118,7 +120,8 @@ class CalibrationPanel:
 
         def work(_):
             result = calibration.fit(path, diameter, unit)
-            return result, calibration_plot.render(result["report"])
+            report = result["report"]
+            return result, calibration_plot.render(report), calibration_plot.render_small(report)
 
         self.task = Background(work, self.show)
 
@@ -136,7 +139,7 @@ class CalibrationPanel:
             if not isinstance(error, InputError):
                 raise error
             return
-        self.result, plot = outcome
+        self.result, plot, small = outcome
         report = self.result["report"]
         self.state.setText(
             translate(
@@ -151,7 +154,9 @@ class CalibrationPanel:
         )
         self._fill(report["parameters"])
         self.picture.loadFromData(plot)
-        self.plot.setPixmap(self.picture.scaledToWidth(WIDTH, QtCore.Qt.SmoothTransformation))
+        preview = QtGui.QPixmap()
+        preview.loadFromData(small)
+        self.plot.setPixmap(preview.scaledToWidth(WIDTH, QtCore.Qt.SmoothTransformation))
         self.warnings.setText("\n".join(f"\u2022 {text}" for text in report["warnings"]))
         self._show_parts(True)
         self.warnings.setVisible(bool(report["warnings"]))
@@ -159,12 +164,13 @@ class CalibrationPanel:
     def _fill(self, parameters):
         self.table.setRowCount(len(parameters))
         for row, one in enumerate(parameters):
-            name = one["name"].replace("_", " ")
-            fixed = translate("BeltGrinding", "fixed")
+            name = one["name"].replace("_", "\n", 1).replace("_", " ")
+            interval = translate("BeltGrinding", "fixed")
+            if one["free"]:
+                interval = f"{one['low']:.3g} ... {one['high']:.3g}"
             texts = (
-                f"{name}, {one['unit'].replace('mm2', 'mm²')}" if one["unit"] else name,
-                f"{one['value']:.4g}",
-                f"{one['low']:.3g} ... {one['high']:.3g}" if one["free"] else fixed,
+                f"{name}\n{one['unit'].replace('mm2', 'mm²')}".strip(),
+                f"{one['value']:.4g}\n({interval})",
             )
             for column, text in enumerate(texts):
                 self.table.setItem(row, column, QtGui.QTableWidgetItem(text))

@@ -1,11 +1,23 @@
-"""Calibration of the removal law: grinds of a known law, damaged tables, scans, the command line."""
+"""Calibration of the removal law: grinds of a known law, damaged tables, scans, command line."""
 
 import json
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from beltgrinding import InputError, calibration, calibration_plot, calibration_table, cli
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from beltgrinding import (
+    InputError,
+    calibration,
+    calibration_plot,
+    calibration_table,
+    cli,
+)  # noqa: E402
+from beltgrinding import job as jobs  # noqa: E402
+from test_job import plate_job  # noqa: E402
 
 K, ALPHA, BETA, GAMMA = 2e-5, 1.3, 1.2, 0.1  # at 0.1 MPa, 20 m/s, 50 mm/s
 
@@ -185,6 +197,34 @@ def test_unknown_areas_are_told_by_the_removal():
     assert any("no contact area is known" in w for w in result["report"]["warnings"])
 
 
+def test_a_prediction_without_wear_or_areas_takes_the_calibrations():
+    columns = grinds(17, 60, noise=0.02, wear_J=2e5)
+    law = calibration.fit_law(columns)
+    few = {key: columns[key] for key in ("force_N", "belt_speed_m_s", "time_s")}
+    said = calibration.predict(law, few)
+    whole = calibration.predict(law, columns)
+    assert np.median(np.abs(np.log(said["predicted"] / whole["predicted"]))) < 0.6
+    assert (said["ln_deviation"] > whole["ln_deviation"]).all()
+    nowhere = {key: values for key, values in columns.items() if key != "area_mm2"}
+    law = calibration.fit_law(nowhere)
+    half = {key: values[:20] for key, values in nowhere.items()}
+    both = [calibration.predict(law, table)["predicted"][:20] for table in (nowhere, half)]
+    assert np.allclose(*both)
+    with pytest.raises(InputError, match="counts the belt's wear as work"):
+        calibration.predict(law, {"wear": half.pop("work_J"), **half})
+
+
+def test_other_units_are_converted():
+    columns = grinds(18, passes=True)
+    other = {key: np.array(values) for key, values in columns.items()}
+    other["feed (mm/min)"] = 60 * other.pop("feed_mm_s")
+    other["Depth [\u00b5m]"] = 1000 * other.pop("depth_mm")
+    one, two = (calibration_table.from_columns(table) for table in (columns, other))
+    assert np.allclose(one.feed, two.feed) and np.allclose(one.measured, two.measured)
+    with pytest.raises(InputError, match="has 3 values, others 40"):
+        calibration.fit({**columns, "area_mm2": [1, 2, 3]})
+
+
 def test_areas_from_the_wheel():
     columns = grinds(10, 8)
     del columns["area_mm2"]
@@ -299,6 +339,17 @@ def test_the_scan_of_a_known_coefficient():
         calibration.calibrate_from_scan(np.full(50, np.nan), np.ones(50), np.ones(50), 1e-5)
     with pytest.raises(InputError, match="different samples"):
         calibration.calibrate_from_scan(np.ones(5), np.ones(4), np.ones(5), 1e-5)
+
+
+def test_the_scan_of_a_simulated_part():
+    job = plate_job()
+    ground = {}
+    for coefficient in (4e-5, 5e-5):
+        job["law"] = {"coefficient_mm2_per_N": coefficient}
+        ground[coefficient] = jobs.run(jobs.validate(job)).field.height
+    fresh = np.full(len(ground[4e-5]), 0.2)
+    scan = calibration.calibrate_from_scan(ground[5e-5], ground[4e-5], fresh - ground[4e-5], 4e-5)
+    assert scan["coefficient"] == pytest.approx(5e-5, rel=0.03)
 
 
 def test_command_line(tmp_path, capsys):

@@ -69,7 +69,7 @@ def _fitted(data, wheel_diameter_mm):
         table = read(data, wheel_diameter_mm)
     if len(table.measured) < LEAST_GRINDS:
         raise InputError(
-            f"{table.path}: {len(table.measured)} grinds are too few; measure {LEAST_GRINDS} or more"
+            f"{table.path}: {len(table.measured)} grinds are too few; measure at least {LEAST_GRINDS}"
         )
     model, warnings = Model(table), []
     free = ["ln_coefficient", *_varied(table, warnings)]
@@ -178,7 +178,7 @@ def _undetermined(model, found, free, warnings):
             default = DEFAULTS[name]
             reason = "is at its bound" if at_bound else f"is uncertain by {1.96 * errors[j]:.1f}"
             warnings.append(
-                f"the data leave the effect of {EFFECT[name]} undetermined (its exponent {reason}): "
+                f"the data leave the effect of {EFFECT[name]} undetermined (it {reason}): "
                 f"the {name.replace('_', ' ')} is fixed at {default:g}"
             )
         return name
@@ -310,8 +310,8 @@ def _cautions(model, found, wear_unit):
         )
     if table.wear_kind == "number" and wear_unit == 1.0 and worn(found):
         notes.append(
-            "the wear number has no unit of its own: the law's wear scale is in that number, where a "
-            "job counts work in J; give the joules of one unit (--wear-unit) before use in a job"
+            "the wear number has no unit of its own: the law's wear scale is in that number, where "
+            "a job counts work in J; give the joules of one unit (--wear-unit) before use in a job"
         )
     return notes
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from . import InputError
 from .calibration_model import DEFAULTS, INDEX, NAMES, Model
-from .calibration_table import Table, from_columns, read
+from .calibration_table import Table, from_columns, read, with_areas
 
 # What a law's 'calibration' carries: ln K and the exponents.
 LAW_NAMES = {
@@ -34,13 +34,13 @@ def scatter_of(found, count):
 def law_of(model, found, free, wear_unit):
     """The 'law' of a job."""
     x = {name: float(found["parameters"][k]) for name, k in INDEX.items()}
-    wear = {"model": "none"}
+    wear, kind = {"model": "none"}, model.table.wear_kind
+    unit = wear_unit if kind == "number" else 1.0
     if worn(found):
-        kind = model.table.wear_kind
         wear = {
             "model": "exponential",
             "variable": "volume" if kind == "volume" else "work",
-            "scale": math.exp(x["ln_wear_scale"]) * (wear_unit if kind == "number" else 1.0),
+            "scale": math.exp(x["ln_wear_scale"]) * unit,
             "rest": x["wear_rest"],
         }
     own = [name for name in free if name in LAW_NAMES]
@@ -74,7 +74,9 @@ def law_of(model, found, free, wear_unit):
                 "reference_area_mm2": model.references["area"],
                 "areas_mm2": model.areas.tolist(),
                 "area_shares": [float(share) for share in found["shares"]],
-                "wear_unit_J": wear_unit if model.table.wear_kind == "number" else 1.0,
+                "wear_kind": model.table.wear_kind,
+                "wear_unit_J": unit,
+                "mean_wear": unit * float(model.table.wear.mean()),
             },
         },
     }
@@ -82,7 +84,8 @@ def law_of(model, found, free, wear_unit):
 
 def predict(law, rows, wheel_diameter_mm=None):
     """What a law says of grinds. ``rows``: Table, path, dict of columns or list of dicts, with the
-    columns of a calibration (the removal is not needed). Returns dict(predicted (n,) mm3, or mm
+    columns of a calibration (the removal is not needed; without wear, the calibration's mean;
+    without areas, those of the calibration). Returns dict(predicted (n,) mm3, or mm
     where the table gives depths; deviation (n,): standard deviation of a new measurement in the
     same unit; ln_deviation (n,): of its logarithm). Raises InputError.
     """
@@ -96,8 +99,9 @@ def predict(law, rows, wheel_diameter_mm=None):
     rows = rows._replace(measured=np.ones(len(rows.force)))
     fitted = law.get("calibration", {}).get("fit", {})
     parameters, references, unit = _of_law(law, fitted)
-    if unit != 1.0 and rows.wear_kind == "number":
-        rows = rows._replace(wear=rows.wear * unit)
+    rows = _with_wear(rows, law, fitted, unit)
+    if not fitted:
+        rows = with_areas(rows)
     model = Model(rows, references, fitted.get("areas_mm2"))
     shares = fitted.get("area_shares") or [1.0 / len(model.areas)] * len(model.areas)
     mean, gradient, variance = model.predict(parameters, shares)
@@ -110,6 +114,22 @@ def predict(law, rows, wheel_diameter_mm=None):
     deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
     value = np.exp(mean)
     return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
+
+
+def _with_wear(rows, law, fitted, unit):
+    """The rows with the belt's wear as the law counts it; the calibration's mean if not known."""
+    if law.get("wear", {}).get("model", "none") == "none":
+        return rows
+    kind = fitted.get("wear_kind", "")
+    if not rows.wear_kind:
+        return rows._replace(wear=np.full(len(rows.force), fitted.get("mean_wear", 0.0)))
+    counted = "volume" if law["wear"].get("variable") == "volume" else "work"
+    if rows.wear_kind != (kind or counted):
+        raise InputError(
+            f"{rows.path}: the law counts the belt's wear as {kind or counted}, the table as "
+            f"{rows.wear_kind}"
+        )
+    return rows._replace(wear=rows.wear * unit)
 
 
 def _of_law(law, fitted):

@@ -37,6 +37,19 @@ COLUMNS = {
     "youngs_modulus_MPa": ("modulus_mpa",),
     "part_radius_mm": ("workpiece_radius_mm",),
 }
+CONVERTED = {  # other units: canonical column, factor
+    "depth_um": ("depth_mm", 1e-3),
+    "removed_depth_um": ("depth_mm", 1e-3),
+    "feed_mm_min": ("feed_mm_s", 1 / 60),
+    "feed_m_min": ("feed_mm_s", 1000 / 60),
+    "feed_m_s": ("feed_mm_s", 1000.0),
+    "belt_speed_m_min": ("belt_speed_m_s", 1 / 60),
+    "belt_speed_mm_s": ("belt_speed_m_s", 1e-3),
+    "time_min": ("time_s", 60.0),
+    "area_cm2": ("area_mm2", 100.0),
+    "removed_volume_cm3": ("removed_volume_mm3", 1000.0),
+    "work_kj": ("work_J", 1000.0),
+}
 MAY_BE_ZERO = ("work_J", "removed_so_far_mm3", "wear", "feed_mm_s")
 MAY_BE_UNKNOWN = (
     "area_mm2",
@@ -117,8 +130,8 @@ def _split(path):
                 header = names
             elif not line.startswith("#"):
                 raise InputError(
-                    f"{path}: line {number}: this is no header; name the columns in the first line, "
-                    "such as force_N, belt_speed_m_s, time_s, area_mm2, removed_volume_mm3"
+                    f"{path}: line {number}: this is no header; name the columns in the first "
+                    "line, such as force_N, belt_speed_m_s, time_s, area_mm2, removed_volume_mm3"
                 )
             continue
         if line.startswith("#"):
@@ -146,19 +159,20 @@ def _split(path):
 
 
 def _canonical(name):
-    """The canonical name of a column's, or None."""
-    small = re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower()).strip("_")
+    """(canonical name of a column, factor to its unit), or None."""
+    small = re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower().replace("\u00b5", "u")).strip("_")
     for canonical, aliases in COLUMNS.items():
         if small == canonical.lower() or small in aliases:
-            return canonical
-    return None
+            return canonical, 1.0
+    return CONVERTED.get(small)
 
 
 def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", lines=None):
     """Table of columns by name (lists of numbers or texts). Raises InputError."""
-    notes, raw, given = [], {}, {}
+    notes, raw, given, factor = [], {}, {}, {}
     for name, values in columns.items():
-        canonical = _canonical(name)
+        known = _canonical(name)
+        canonical = known[0] if known else None
         if canonical is None:
             near = difflib.get_close_matches(name.lower(), [c.lower() for c in COLUMNS], 1)
             hint = f" (did you mean '{near[0]}'?)" if near else ""
@@ -166,10 +180,13 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
         elif canonical in raw:
             raise InputError(f"{path}: '{given[canonical]}' and '{name}' are the same column")
         else:
-            raw[canonical], given[canonical] = list(values), name
+            raw[canonical], given[canonical], factor[canonical] = list(values), name, known[1]
     count = len(next(iter(raw.values()), ()))
     if count == 0:
         raise InputError(f"{path}: there is no grind in it")
+    for name, values in raw.items():
+        if len(values) != count:
+            raise InputError(f"{path}: '{given[name]}' has {len(values)} values, others {count}")
     lines = np.arange(1, count + 1) if lines is None else np.asarray(lines)
     places = [f"{path}: line {line}" for line in lines]
     if not measured:
@@ -177,8 +194,9 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
             raw[name] = [1.0 if _unknown(cell) else cell for cell in raw.get(name, [])] or None
         raw = {name: cells for name, cells in raw.items() if cells is not None}
     c = {
-        name: np.array([_number(cell, place, given.get(name, name), name) for cell, place in pairs])
-        for name, pairs in ((name, list(zip(cells, places))) for name, cells in raw.items())
+        name: np.array([_number(cell, at, given[name], name) for cell, at in zip(cells, places)])
+        * factor[name]
+        for name, cells in raw.items()
     }
     _require(c, path, ("force_N",), "the normal force")
     speed = _speed(c, path, wheel_diameter_mm, notes)
@@ -187,7 +205,9 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
     kinds = [name for name in WEAR if name in c]
     if len(kinds) > 1:
         notes.append(f"the belt's wear is taken from '{kinds[0]}', not from {', '.join(kinds[1:])}")
-    return Table(
+    if measured and "removed_volume_mm3" in c and "depth_mm" in c:
+        notes.append("the removal is taken from 'removed_volume_mm3', not from 'depth_mm'")
+    table = Table(
         path=path,
         lines=lines,
         force=c["force_N"],
@@ -201,6 +221,7 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
         measured=figure,
         notes=notes,
     )
+    return with_areas(table) if measured else table
 
 
 def _unknown(cell):
@@ -246,7 +267,7 @@ def _speed(c, path, diameter, notes):
         diameter = NOMINAL_DIAMETER
         notes.append(
             f"only the rotation speed is known: the coefficient and the reference speed refer to a "
-            f"nominal drive wheel of {diameter:g} mm diameter; give --wheel-diameter for the real one"
+            f"nominal drive wheel of {diameter:g} mm diameter; give --wheel-diameter if you know it"
         )
     elif not (math.isfinite(diameter) and diameter > 0):
         raise InputError("the drive wheel's diameter must be positive")
@@ -302,19 +323,25 @@ def _area(c, notes):
     elif any(name in c for name in WHEEL):
         missing = [name for name in WHEEL if name not in c]
         notes.append(f"the wheel gives no contact area without {', '.join(missing)}")
-    if np.isnan(area).all():
-        nominal = float(np.exp(np.log(force).mean())) / NOMINAL_PRESSURE
-        area[:] = nominal
-        notes.append(
-            f"no contact area is known: {nominal:.3g} mm² is taken for all, so that the coefficient "
-            "holds for that area only; add area_mm2, or the wheel's and the part's geometry"
-        )
-    elif np.isnan(area).any():
-        notes.append(
-            f"{int(np.isnan(area).sum())} of {len(area)} contact areas are unknown; each is taken "
-            "as one of the known ones, by its probability (expectation maximisation)"
-        )
     return area
+
+
+def with_areas(table):
+    """The table with a nominal contact area if none is known; a note says what becomes of areas."""
+    unknown = np.isnan(table.area)
+    if unknown.all():
+        nominal = float(np.exp(np.log(table.force).mean())) / NOMINAL_PRESSURE
+        table.notes.append(
+            f"no contact area is known: {nominal:.3g} mm² is taken for all, so that the "
+            "coefficient holds for that area only; add area_mm2, or the wheel's and the part's geometry"
+        )
+        return table._replace(area=np.full(len(unknown), nominal))
+    if unknown.any():
+        table.notes.append(
+            f"{int(unknown.sum())} of {len(unknown)} contact areas are unknown; each is taken as "
+            "one of the known ones, by its probability (expectation maximisation)"
+        )
+    return table
 
 
 def _solve(key):

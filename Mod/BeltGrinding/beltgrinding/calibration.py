@@ -69,7 +69,7 @@ def _fitted(data, wheel_diameter_mm):
         table = read(data, wheel_diameter_mm)
     if len(table.measured) < LEAST_GRINDS:
         raise InputError(
-            f"{table.path}: {len(table.measured)} grinds are too few; measure at least {LEAST_GRINDS}"
+            f"{table.path}: {len(table.measured)} grinds are too few; give at least {LEAST_GRINDS}"
         )
     model, warnings = Model(table), []
     free = ["ln_coefficient", *_varied(table, warnings)]
@@ -109,7 +109,12 @@ def _name_inputs(table, warnings):
             if both.sum() < LEAST_GRINDS or np.ptp(a) == 0 or np.ptp(b) == 0:
                 continue
             correlation = float(np.corrcoef(a, b)[0, 1])
-            if abs(correlation) > MOST_CORRELATION:
+            if abs(correlation) > MOST_CORRELATION and (one, two) == ("force", "contact area"):
+                warnings.append(  # as they do under any wheel
+                    "force and contact area move together in the data: that the mean pressure says "
+                    "all of the area is an assumption"
+                )
+            elif abs(correlation) > MOST_CORRELATION:
                 warnings.append(
                     f"{one} and {two} move together in the data (correlation {correlation:+.2f}), "
                     "which hardly separate their effects; vary them separately"

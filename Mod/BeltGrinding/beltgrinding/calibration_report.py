@@ -28,9 +28,9 @@ def student(freedom):
 def report(model, found, free, warnings):
     """dict: parameters (list of name, value, low, high (95 %), unit, free), correlation (with
     'names'), condition (of the parameters' scaled information), r2 and rms_log (in-sample),
-    scatter, references (where the coefficient holds, by unit), leave_one_out (median, p90: relative errors),
-    outliers (lines of the file), ranges (by column), warnings, grinds, and the figures of the plot
-    under 'rows'.
+    scatter, references (where the coefficient holds, by unit), leave_one_out (median, p90: relative
+    errors), outliers (lines of the file), ranges (by column), warnings, grinds, and the figures of
+    the plot under 'rows'.
     """
     table = model.table
     said, gradient, area_variance = model.predict(found["parameters"], found["shares"])

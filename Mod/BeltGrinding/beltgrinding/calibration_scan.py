@@ -25,15 +25,15 @@ def calibrate_from_scan(
     """The coefficient with which the simulated job would have given the measured surface.
 
     measured_deviation, simulated_deviation (n,): mm above the design, nan where there is no scan
-    (of the scan: core.apply_mesh on a fresh field); removed (n,): depth in mm that the simulation took
-    off with ``coefficient`` (mm2/N). Depth is proportional to the coefficient under a given force,
-    so that (simulated + removed - measured) = scale removed - offset; a Cauchy-weighted regression
-    finds the scale, and with ``offset`` by how many mm the scan lies too high on the whole part.
-    Neighbouring samples err together: the interval is that of whole blocks of ``block_mm`` of
-    ``points`` (n, 3), mm (without points: of runs of samples), by a cluster-robust sandwich (Liang
-    and Zeger, Biometrika 73, 1986). Where the scale is far from 1, simulate with the new
-    coefficient and repeat. Returns dict(coefficient, interval (2,) of 95 %, scale, ln_scale, ln_deviation,
-    offset_mm, offset_interval_mm, scatter_mm, samples). Raises InputError.
+    (of the scan: core.apply_mesh on a fresh field); removed (n,): depth in mm that the simulation
+    took off with ``coefficient`` (mm2/N). Depth is proportional to the coefficient under a given
+    force, so that (simulated + removed - measured) = scale removed - offset; a Cauchy-weighted
+    regression finds the scale, and with ``offset`` by how many mm the scan lies too high on the
+    whole part. Neighbouring samples err together: the interval is that of whole blocks of
+    ``block_mm`` of ``points`` (n, 3), mm (without points: of runs of samples), by a cluster-robust
+    sandwich (Liang and Zeger, Biometrika 73, 1986). Where the scale is far from 1, simulate with
+    the new coefficient and repeat. Returns dict(coefficient, interval (2,) of 95 %, scale,
+    ln_scale, ln_deviation, offset_mm, offset_interval_mm, scatter_mm, samples). Raises InputError.
     """
     measured, simulated, removed = (
         np.asarray(values, dtype=float).ravel()

@@ -333,7 +333,7 @@ def with_areas(table):
         nominal = float(np.exp(np.log(table.force).mean())) / NOMINAL_PRESSURE
         table.notes.append(
             f"no contact area is known: {nominal:.3g} mm² is taken for all, so that the "
-            "coefficient holds for that area only; add area_mm2, or the wheel's and the part's geometry"
+            "coefficient holds for that area only; add area_mm2, or the wheel's and part's geometry"
         )
         return table._replace(area=np.full(len(unknown), nominal))
     if unknown.any():

@@ -10,6 +10,7 @@ from .icons import icon
 from .runner import Background
 
 WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
+LONG = 12  # characters of an interval's two ends that fit beside each other
 TABLES = "Measured grinds (*.csv *.txt);;All files (*)"
 
 
@@ -167,7 +168,9 @@ class CalibrationPanel:
             name = one["name"].replace("_", "\n", 1).replace("_", " ")
             interval = translate("BeltGrinding", "fixed")
             if one["free"]:
-                interval = f"{one['low']:.3g} ... {one['high']:.3g}"
+                low, high = (f"{one[side]:.3g}" for side in ("low", "high"))
+                between = "\n... " if len(low + high) > LONG else " ... "
+                interval = low + between + high
             texts = (
                 f"{name}\n{one['unit'].replace('mm2', 'mm²')}".strip(),
                 f"{one['value']:.4g}\n({interval})",

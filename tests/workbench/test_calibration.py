@@ -365,5 +365,7 @@ def test_command_line(tmp_path, capsys):
     assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
     assert cli.main([*arguments[:-3], str(tmp_path / "plot.doc")]) == 2
     assert "a plot is a file .png" in capsys.readouterr().err
+    assert cli.main([*arguments, "--wear-unit", "nan"]) == 2
+    assert "positive number of joules" in capsys.readouterr().err
     passes = calibration.fit(grinds(16, passes=True))["report"]
     assert calibration_plot.render(passes, "svg").startswith(b"<?xml")

@@ -48,6 +48,7 @@ def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0):
     work of one unit of a wear number. Returns dict(law: a job's 'law', report: see
     calibration_report.report). Raises InputError.
     """
+    _check_unit(wear_unit_J)
     model, found, free, warnings = _fitted(data, wheel_diameter_mm)
     warnings += _cautions(model, found, wear_unit_J)
     law = law_of(model, found, free, wear_unit_J)
@@ -56,8 +57,14 @@ def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0):
 
 def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0):
     """The law of ``fit`` without its report, which takes longer."""
+    _check_unit(wear_unit_J)
     model, found, free, _ = _fitted(data, wheel_diameter_mm)
     return law_of(model, found, free, wear_unit_J)
+
+
+def _check_unit(wear_unit_J):
+    if not (math.isfinite(wear_unit_J) and wear_unit_J > 0):
+        raise InputError("the work of one unit of wear must be a positive number of joules")
 
 
 def _fitted(data, wheel_diameter_mm):

@@ -8,8 +8,6 @@ import random
 from support.hands import *
 job = prepare()
 doc = job.Document
-if "local" not in job.getEnumerationsOfProperty("Law"):
-    job.Law = [*job.getEnumerationsOfProperty("Law"), "local"]
 random.seed(1)
 lines = ["force_N,belt_speed_m_s,time_s,area_mm2,removed_volume_mm3"]
 for _ in range(30):

@@ -106,6 +106,33 @@ def test_a_calibrated_law_gives_every_deviation_its_standard_deviation(tmp_path)
         core.uncertainty_colours(run().field, 0.01)
 
 
+def test_a_law_from_the_calibration_grinds_a_job(tmp_path):
+    random = np.random.default_rng(7)
+    rows = ["force_N,belt_speed_m_s,time_s,area_mm2,work_J,removed_volume_mm3"]
+    for _ in range(40):
+        force, speed, area = (
+            random.uniform(10, 60),
+            random.uniform(12, 30),
+            random.uniform(100, 400),
+        )
+        time, work = random.uniform(5, 30), random.uniform(0, 2e5)
+        pressure = (force / area / 0.1) ** 1.3
+        rate = 1.25e-4 * (0.5 + 0.5 * math.exp(-work / 5e4)) * speed * 1000 * 0.1 * pressure
+        volume = rate * area * time * random.lognormal(0, 0.05)
+        rows.append(f"{force},{speed},{time},{area},{work},{volume}")
+    (tmp_path / "grinds.csv").write_text("\n".join(rows) + "\n")
+    arguments = ["calibrate", str(tmp_path / "grinds.csv"), "-o", str(tmp_path / "law.json")]
+    assert cli.main(arguments) == 0
+    law = json.loads((tmp_path / "law.json").read_text())
+    assert law["wear"]["model"] == "exponential"
+    result = run(**law)
+    truth = run(model="local", pressure_exponent=1.3)
+    assert removed(result) == pytest.approx(removed(truth), rel=0.1)
+    sd = result.summary["deviation_sd_mm"]["p95"]
+    depth = np.max(np.asarray(result.field.stock_height) - np.asarray(result.field.height))
+    assert 0.03 * depth < sd < 0.3 * depth
+
+
 def test_the_uncertainty_is_that_of_many_laws_drawn_at_random():
     covariance = np.array([[0.01, 0.012], [0.012, 0.04]])
     calibration = {**CALIBRATION, "covariance": covariance.tolist(), "scatter": 0.05}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.freecad import SHARED
 
-from beltgrinding import contact
+from beltgrinding import contact, rubber
 
 REFERENCE = SHARED / "reference"
 WIDTH = 50  # mm
@@ -105,6 +105,6 @@ def test_wrong_contacts_name_the_culprit():
 
 
 def test_shore_a_becomes_a_modulus():
-    assert contact.gent(40) == pytest.approx(1.7, abs=0.05)
-    assert contact.gent(60) == pytest.approx(3.6, abs=0.05)
-    assert contact.gent(80) == pytest.approx(9.4, abs=0.05)
+    assert rubber.modulus(40) == pytest.approx(1.7, abs=0.05)
+    assert rubber.modulus(60) == pytest.approx(3.6, abs=0.05)
+    assert rubber.modulus(80) == pytest.approx(9.4, abs=0.05)

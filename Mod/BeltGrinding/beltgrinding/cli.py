@@ -49,8 +49,11 @@ def _parser():
         "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
     )
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    preset = commands.add_parser("presets", help="list the presets, with their sources")
+    preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials"))
+    preset.add_argument("--json", action="store_true", help="as JSON")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
-    printed.add_argument("name", nargs="?", choices=("job", "contact"), default="job")
+    printed.add_argument("name", nargs="?", choices=("job", "contact", "presets"), default="job")
     return parser
 
 
@@ -178,7 +181,7 @@ def main(argv=None):
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
-        from . import Cancelled, InputError, core, schemas
+        from . import Cancelled, InputError, core, presets, schemas
     except ImportError as error:
         print(f"beltgrind: {error}", file=sys.stderr)
         return 1
@@ -187,6 +190,8 @@ def main(argv=None):
             print(json.dumps(core.versions()))
         elif arguments.command == "schema":
             print(json.dumps(schemas.schema(arguments.name), indent=2))
+        elif arguments.command == "presets":
+            presets.print_list(arguments.kind, arguments.json)
         elif arguments.command == "contact":
             _contact(arguments)
         elif arguments.command == "surrogate":

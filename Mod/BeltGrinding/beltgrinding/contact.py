@@ -5,17 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, job as jobs, schemas
+from . import InputError, core, job as jobs, rubber, schemas
 from .result import write_whole
 
 DEFAULT_MODULUS = 5.0  # MPa
-
-
-def gent(shore_a):
-    """Young's modulus in MPa of a rubber of Shore A hardness: A. N. Gent, Rubber Chemistry and
-    Technology 31 (1958). Other formulas differ by up to 40 %.
-    """
-    return 0.0981 * (56.0 + 7.62336 * shore_a) / (0.137505 * (254.0 - 2.54 * shore_a))
 
 
 def load(path):
@@ -37,6 +30,7 @@ def validate(contact, folder="."):
     wheel, workpiece = contact["wheel"], contact["workpiece"]
     if "shore_a" in wheel and "youngs_modulus_MPa" in wheel:
         raise InputError("wheel: give 'youngs_modulus_MPa' or 'shore_a', not both")
+    modulus(wheel)  # refuses a hardness for which there is no formula
     if workpiece["shape"] in ("cylinder", "sphere") and not workpiece.get("radius_mm"):
         raise InputError(f"workpiece: a {workpiece['shape']} needs a 'radius_mm' other than 0")
     if workpiece["shape"] == "strip" and "width_mm" not in workpiece:
@@ -143,7 +137,7 @@ def rim(contact):
 def modulus(wheel):
     """Young's modulus of a contact's wheel, MPa."""
     if "shore_a" in wheel:
-        return gent(wheel["shore_a"])
+        return rubber.modulus(wheel["shore_a"])
     return wheel.get("youngs_modulus_MPa", DEFAULT_MODULUS)
 
 

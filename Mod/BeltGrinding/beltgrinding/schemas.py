@@ -9,7 +9,7 @@ from . import InputError, resources
 
 
 def schema(name):
-    """The JSON Schema ``name`` (job, contact), as a dict."""
+    """The JSON Schema ``name`` (job, contact, presets), as a dict."""
     with open(resources() / "schema" / f"{name}.schema.json", encoding="utf-8") as file:
         return json.load(file)
 
@@ -44,17 +44,24 @@ def checked(data, rules, what):
     """A copy of ``data`` with the schema's defaults filled in. Raises InputError naming the key that
     is unknown, missing or wrong; ``what`` stands for the whole.
     """
-    import jsonschema
-
-    errors = jsonschema.Draft7Validator(rules).iter_errors(data)
-    first = min(errors, key=lambda e: (len(e.absolute_path), str(e.absolute_path)), default=None)
-    if first is not None:
-        raise InputError(_explain(first, what))
+    for _, sentence in problems(data, rules, what):
+        raise InputError(sentence)
     data = copy.deepcopy(data)
     _fill(data, rules)
     if not all(math.isfinite(value) for value in _numbers(data)):
         raise InputError(f"the {what} holds a number that is not finite")
     return data
+
+
+def problems(data, rules, what):
+    """(path of keys and indices, sentence naming the key) of everything that breaks the schema, what
+    is nearest to the root first; ``what`` stands for the whole.
+    """
+    import jsonschema
+
+    errors = jsonschema.Draft7Validator(rules).iter_errors(data)
+    errors = sorted(errors, key=lambda e: (len(e.absolute_path), str(e.absolute_path)))
+    return [(list(error.absolute_path), _explain(error, what)) for error in errors]
 
 
 def _explain(error, what):

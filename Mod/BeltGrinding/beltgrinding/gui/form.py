@@ -25,12 +25,17 @@ NOT_NEGATIVE = {
 def quantity_field(quantity):
     """FreeCAD's entry for a number with its unit; its property rawValue is in FreeCAD's own unit."""
     widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+    show_quantity(widget, quantity)
+    widget.setMinimumWidth(MINIMUM_WIDTH)
+    return widget
+
+
+def show_quantity(widget, quantity):
+    """Puts a quantity into FreeCAD's entry."""
     # FreeCAD's two decimals would round the value itself, not only its text.
     quantity = Units.Quantity(quantity)
     quantity.Format = {"Precision": 7, "NumberFormat": "g", "Denominator": 8}
     widget.setProperty("value", quantity)
-    widget.setMinimumWidth(MINIMUM_WIDTH)
-    return widget
 
 
 SIGNED = "signed"
@@ -82,6 +87,14 @@ class Form(QtGui.QGroupBox):
         for name, row in self.rows.items():
             for widget in row:
                 widget.setVisible(name in names)
+
+    def refresh(self, name):
+        """Shows a number that was set from elsewhere."""
+        widget, value = self.rows[name][1], getattr(self.obj, name)
+        if self.obj.getTypeIdOfProperty(name) in QUANTITIES:
+            show_quantity(widget, value)
+        else:
+            widget.setText(f"{value:g}")
 
     def _set(self, name, value):
         if getattr(self.obj, name) != value:

@@ -6,6 +6,7 @@ from ..objects.proxy import type_of
 from .compat import translate
 from .form import Form
 from .panel import Panel
+from .preset_form import HardnessField, PresetForm
 
 MESH_FILES = "*.stl *.ply *.obj *.off *.3mf"
 
@@ -85,6 +86,7 @@ class BeltMachinePanel(Panel):
         }
         wheel.add("Compliance", translate("BeltGrinding", "Elasticity"), models)
         wheel.add("YoungsModulus", translate("BeltGrinding", "Young's modulus"))
+        self.hardness = HardnessField(wheel)
         wheel.add("PoissonsRatio", translate("BeltGrinding", "Poisson's ratio"))
         wheel.add("RimThickness", translate("BeltGrinding", "Rim thickness"))
         wheel.add("BeltTension", translate("BeltGrinding", "Belt tension"), unit="N/mm")
@@ -117,6 +119,7 @@ class BeltMachinePanel(Panel):
         cell.add("TcpFromContact", translate("BeltGrinding", "Contact in tool"))
         cell.add("TcpFromWork", translate("BeltGrinding", "Part in tool"))
         cell.add("BaseFromContact", translate("BeltGrinding", "Contact in base"))
+        self.body.addWidget(PresetForm(obj, (wheel, belt), self.hardness))
         for form in (wheel, belt, cell):
             form.changed = self.arrange
             self.body.addWidget(form)
@@ -134,7 +137,7 @@ class BeltMachinePanel(Panel):
         force = {"force": {"Force", "ForceTravel"}, "position": {"RobotStiffness"}}[
             self.obj.Control
         ]
-        rubber = {"YoungsModulus", "PoissonsRatio"}
+        rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
         rim = rubber | {"RimThickness"}
         belt = {"BeltTension", "BeltBending"}
         used = {
@@ -149,6 +152,7 @@ class BeltMachinePanel(Panel):
         shape = {"WheelRadius", "WheelWidth", "CrownRadius", "Compliance"}
         self.wheel.show_rows(shape | used[self.obj.Compliance])
         self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
+        self.hardness.follow()
         self.tell("")
 
     def check(self):

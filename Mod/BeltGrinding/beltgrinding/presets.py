@@ -206,7 +206,7 @@ def find(kind, name):
 def number_text(number):
     """Such as "30 to 40 m/s"."""
     span = number["range"] if "range" in number else [number["value"]]
-    unit = "" if number["unit"] == "1" else " " + number["unit"]
+    unit = "" if number["unit"] in ("1", "grit") else " " + number["unit"]
     return " to ".join(f"{value:g}" for value in span) + unit
 
 

@@ -1,6 +1,7 @@
 """Presets and the rubber's hardness in the belt machine's panel; both only set properties."""
 
 import math
+from itertools import groupby
 
 from .. import InputError, presets, rubber
 from ..objects import belt_machine, job_object
@@ -11,6 +12,7 @@ from .compat import QtCore, QtGui, translate
 YOUNGS_MODULUS = next(key for key in belt_machine.KEYS if key.name == "YoungsModulus")
 
 SPEED = "belt_machine.belt_speed_m_s"
+FIELD_WIDTH = 150  # pixels: wider than what a narrow panel has beside a label, so it goes below
 
 
 class HardnessField:
@@ -33,6 +35,7 @@ class HardnessField:
         self.text.setWordWrap(True)
         self.text.hide()
         field = QtGui.QWidget()
+        field.setMinimumWidth(FIELD_WIDTH)
         column = QtGui.QVBoxLayout(field)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.line)
@@ -87,8 +90,10 @@ class PresetForm(QtGui.QGroupBox):
     def __init__(self, obj, forms, hardness):
         super().__init__(translate("BeltGrinding", "Presets"))
         self.obj, self.forms, self.hardness = obj, forms, hardness
+        self.boxes = {}  # combo boxes by kind
         self.rows = QtGui.QFormLayout(self)
         self.rows.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        self.rows.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         found = presets.library()
         self._add("wheel", translate("BeltGrinding", "Wheel"), found.wheels)
         self._add("belt", translate("BeltGrinding", "Belt"), found.belts)
@@ -108,6 +113,7 @@ class PresetForm(QtGui.QGroupBox):
 
     def _add(self, kind, text, found):
         box, hint = QtGui.QComboBox(), _hint(f"{kind}PresetHint")
+        self.boxes[kind] = box
         box.setObjectName(f"{kind}Preset")
         box.addItem(translate("BeltGrinding", "choose a preset…"))
         for preset in found:
@@ -130,6 +136,7 @@ class PresetForm(QtGui.QGroupBox):
         hint.setText("\n".join(_short(preset)) if preset else "")
         hint.setToolTip("\n".join(lines))
         hint.setVisible(bool(lines))
+        self.boxes[kind].setToolTip(preset["name"] if preset else "")
         values = presets.settings(**{kind: preset})
         if kind == "material":
             self.recommended = values.pop(SPEED, 0.0)
@@ -162,9 +169,10 @@ def _hint(name):
 
 
 def _short(preset):
-    """A line for each number, with its source but without the page, which the tool tip has."""
+    """What the preset says, by source and without its page, which the tool tip has."""
     lines = [preset["text"]] if "text" in preset else []
-    for name, number in presets.numbers(preset).items():
-        value = f"{presets.label(name)} {presets.number_text(number)}"
-        lines.append(f"{value[0].upper()}{value[1:]} ({rubber.cite(number['source'])})")
+    numbers = presets.numbers(preset).items()
+    for source, group in groupby(numbers, key=lambda item: rubber.cite(item[1]["source"])):
+        said = "; ".join(f"{presets.label(name)} {presets.number_text(n)}" for name, n in group)
+        lines.append(f"{said[0].upper()}{said[1:]}: {source}")
     return lines

@@ -1,5 +1,7 @@
 """A form whose fields are bound to an object's properties, with FreeCAD's unit entry."""
 
+import gc
+
 import FreeCADGui as Gui
 from FreeCAD import Placement, Rotation, Units, Vector
 
@@ -13,6 +15,7 @@ QUANTITIES = {
     "App::PropertyForce",
     "App::PropertyPressure",
 }
+ATTEMPTS = 20
 MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
 NOT_NEGATIVE = {
     "App::PropertyLength",
@@ -24,10 +27,22 @@ NOT_NEGATIVE = {
 
 def quantity_field(quantity):
     """FreeCAD's entry for a number with its unit; its property rawValue is in FreeCAD's own unit."""
-    widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+    widget = _spin_box()
     show_quantity(widget, quantity)
     widget.setMinimumWidth(MINIMUM_WIDTH)
     return widget
+
+
+def _spin_box():
+    for _ in range(ATTEMPTS):
+        widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+        try:
+            widget.objectName()
+            return widget
+        except RuntimeError:
+            # A closed panel's widget was at this address, and PySide hands out its dead wrapper.
+            gc.collect()
+    raise RuntimeError("FreeCAD's entry for quantities cannot be made")
 
 
 def show_quantity(widget, quantity):

@@ -124,7 +124,7 @@ def test_a_modulus_of_its_own_counts_more_than_the_hardness(user):
 def test_only_keys_that_jobs_have_are_set(user):
     keys = presets.settings(wheel="serrated_1_1_80")
     known = schemas.schema("job")["properties"]["law"]["properties"]
-    assert ("law.land_ratio" in keys) == ("land_ratio" in known)
+    assert ("law.land_share" in keys) == ("land_share" in known)
 
 
 def test_an_unknown_preset_is_named(user):

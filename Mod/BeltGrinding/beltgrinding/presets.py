@@ -32,7 +32,7 @@ JOB_KEYS = {
     "rim_thickness": ("belt_machine.compliance.rim_thickness_mm", 1.0),
     "youngs_modulus": ("belt_machine.compliance.youngs_modulus_MPa", 1.0),
     "poissons_ratio": ("belt_machine.compliance.poissons_ratio", 1.0),
-    "land_ratio": ("law.land_ratio", 1.0),
+    "land_share": ("law.land_share", 1.0),
     "tension": ("belt_machine.compliance.belt_tension_N_per_mm", 1.0),
     "bending_stiffness": ("belt_machine.compliance.belt_bending_N_mm", 1.0),
     "belt_speed": ("belt_machine.belt_speed_m_s", 1.0),
@@ -119,7 +119,7 @@ def _with_sources(record, sources):
 
 def wheels():
     """Presets of contact wheels: dict(id, name, and numbers: diameter, width, rim_thickness,
-    shore_a, youngs_modulus, poissons_ratio, land_ratio, each where it is known). A number: dict(value
+    shore_a, youngs_modulus, poissons_ratio, land_share, each where it is known). A number: dict(value
     or range, unit, source, and where, given, note if there are any).
     """
     return library().wheels

@@ -23,6 +23,8 @@ constexpr double kMostLeverage = 0.95;
 constexpr double kConverged = 1e-6;
 constexpr int kMostIterations = 200;
 constexpr int kHuberIterations = 10;  // Cauchy's loss has local minima: come near them convexly
+// The median may jump to and fro between two residuals for ever: from then on it stays.
+constexpr int kScatterIterations = 60;
 constexpr double kHuber = 1.345;
 
 /// A row under one of the areas that it can have.
@@ -169,7 +171,7 @@ class Fit {
             const GrindVector before = x_;
             solve(u);
             x_ = bounds_.outer(u);
-            reweigh(i < kHuberIterations);
+            reweigh(i < kHuberIterations, i < kScatterIterations);
             result.iterations = i + 1;
             // Parameters may be infinite (no wear, no saturation) where they are fixed.
             double change = 0.0;
@@ -204,7 +206,7 @@ class Fit {
     }
 
     /// Residuals, scatter, weights, and the probabilities of unknown areas.
-    void reweigh(bool convex) {
+    void reweigh(bool convex, bool rescale) {
         std::vector<std::pair<double, double>> sizes;
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& one = candidates_[c];
@@ -214,7 +216,10 @@ class Fit {
         }
         const double n = static_cast<double>(grinds_.measured.size());
         const double spare = std::max(n - bounds_.size(), 1.0);
-        scatter_ = std::max(kMad * weighted_median(sizes) * std::sqrt(n / spare), kLeastScatter);
+        if (rescale) {
+            scatter_ = kMad * weighted_median(sizes) * std::sqrt(n / spare);
+            scatter_ = std::max(scatter_, kLeastScatter);
+        }
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const double z = std::abs(residual_[c]) / scatter_;
             candidates_[c].weight = convex ? std::min(1.0, kHuber / std::max(z, 1e-12))

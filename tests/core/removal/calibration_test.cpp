@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "base/error.h"
@@ -15,6 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 MeasuredGrinds some(Eigen::Index n) {
+    std::srand(1);  // the same for a test alone and among others
     MeasuredGrinds g;
     g.force = 30.0 + 20.0 * Eigen::ArrayXd::Random(n);
     g.area = 150.0 + 60.0 * Eigen::ArrayXd::Random(n);

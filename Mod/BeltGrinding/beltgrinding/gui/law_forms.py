@@ -20,6 +20,8 @@ class LawForms(QtGui.QWidget):
         }
         self.law.add("Law", translate("BeltGrinding", "Law"), texts)
         self.law.add("LawCoefficient", translate("BeltGrinding", "Coefficient"), unit="mm²/N")
+        # Above the rows that come and go: hidden ones leave a gap.
+        self.law.add("HeatLimit", translate("BeltGrinding", "Heat limit"), unit="MPa m/s")
         self.law.add("PressureExponent", translate("BeltGrinding", "Exponent of pressure"))
         self.law.add("ReferencePressure", translate("BeltGrinding", "Reference pressure"))
         self.law.add("PressureThreshold", translate("BeltGrinding", "Threshold pressure"))
@@ -29,8 +31,6 @@ class LawForms(QtGui.QWidget):
         self.law.add("FeedExponent", translate("BeltGrinding", "Exponent of feed"), SIGNED)
         self.law.add("ReferenceFeed", translate("BeltGrinding", "Reference feed"))
         self.law.add("LandShare", translate("BeltGrinding", "Lands of a serrated wheel (share)"))
-        heat = translate("BeltGrinding", "Heat limit p V (0: none)")
-        self.law.add("HeatLimit", heat, unit="MPa m/s")
         self.wear = Form(obj, translate("BeltGrinding", "Belt wear"))
         models = {
             "none": translate("BeltGrinding", "None"),

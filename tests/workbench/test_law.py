@@ -106,7 +106,7 @@ def test_a_calibrated_law_gives_every_deviation_its_standard_deviation(tmp_path)
         core.uncertainty_colours(run().field, 0.01)
 
 
-def test_a_law_from_the_calibration_grinds_a_job(tmp_path):
+def test_a_law_from_the_calibration_predicts_and_grinds_a_job(tmp_path, capsys):
     random = np.random.default_rng(7)
     rows = ["force_N,belt_speed_m_s,time_s,area_mm2,work_J,removed_volume_mm3"]
     for _ in range(40):
@@ -125,6 +125,18 @@ def test_a_law_from_the_calibration_grinds_a_job(tmp_path):
     assert cli.main(arguments) == 0
     law = json.loads((tmp_path / "law.json").read_text())
     assert law["wear"]["model"] == "exponential"
+    capsys.readouterr()
+    again = ["predict", str(tmp_path / "law.json"), str(tmp_path / "grinds.csv")]
+    assert cli.main([*again, "-o", str(tmp_path / "predicted.csv")]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["grinds"] == 40 and figures["error_median"] < 0.07
+    assert figures["inside_95_interval"] > 0.85
+    assert len((tmp_path / "predicted.csv").read_text().splitlines()) == 41
+    to_come = [row.rpartition(",")[0] for row in rows]
+    (tmp_path / "to_come.csv").write_text("\n".join(to_come) + "\n")
+    assert cli.main([*again[:2], str(tmp_path / "to_come.csv")]) == 0
+    assert "error_median" not in json.loads(capsys.readouterr().out)
+    assert cli.main(["predict", str(tmp_path / "grinds.csv"), str(tmp_path / "grinds.csv")]) == 2
     result = run(**law)
     truth = run(model="local", pressure_exponent=1.3)
     assert removed(result) == pytest.approx(removed(truth), rel=0.1)

@@ -1,12 +1,14 @@
 """A calibrated law: a job's 'law' from a fit, and what it predicts of further grinds."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
 from . import InputError
 from .calibration_model import DEFAULTS, INDEX, NAMES, Model
 from .calibration_table import Table, from_columns, read, with_areas
+from .result import write_whole
 
 # What a law's 'calibration' carries: ln K and the exponents.
 LAW_NAMES = {
@@ -114,6 +116,49 @@ def predict(law, rows, wheel_diameter_mm=None):
     deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
     value = np.exp(mean)
     return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
+
+
+def compare(law, path, wheel_diameter_mm=None):
+    """Predicts the grinds of a CSV, and lays them beside the removal where the file has it. Returns
+    dict(lines, predicted, deviation, measured: (n,), nan where not known; figures: dict; notes).
+    Raises InputError.
+    """
+    table = read(path, wheel_diameter_mm, False)
+    told = predict(law, table)
+    try:
+        measured = read(path, wheel_diameter_mm).measured
+    except InputError:  # a file of grinds to come
+        measured = np.full(len(table.force), math.nan)
+    figures = {
+        "grinds": len(table.force),
+        "deviation_median": float(np.median(told["ln_deviation"])),
+    }
+    if np.isfinite(measured).all():
+        errors = np.abs(told["predicted"] / measured - 1.0)
+        outside = np.abs(np.log(measured / told["predicted"])) > 1.96 * told["ln_deviation"]
+        figures["error_median"] = float(np.median(errors))
+        figures["error_p90"] = float(np.quantile(errors, 0.9))
+        figures["inside_95_interval"] = float(1.0 - outside.mean())
+    return {
+        "lines": table.lines,
+        "predicted": told["predicted"],
+        "deviation": told["deviation"],
+        "measured": measured,
+        "figures": figures,
+        "notes": table.notes,
+    }
+
+
+def write_predictions(found, path):
+    """Writes what ``compare`` gave as a CSV. Raises InputError."""
+    lines = ["line,predicted,standard_deviation,measured"]
+    for row in zip(*(found[key] for key in ("lines", "predicted", "deviation", "measured"))):
+        known = "" if math.isnan(row[3]) else f"{row[3]:.6g}"
+        lines.append(f"{row[0]},{row[1]:.6g},{row[2]:.6g},{known}")
+    try:
+        write_whole(Path(path), ("\n".join(lines) + "\n").encode())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
 
 
 def _with_wear(rows, law, fitted, unit):

@@ -49,6 +49,11 @@ def _parser():
         "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
     )
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    told = commands.add_parser("predict", help="predict further grinds by a calibrated law")
+    told.add_argument("law", help="what calibrate wrote")
+    told.add_argument("table", help="CSV of the grinds; measured removals are compared")
+    told.add_argument("-o", "--output", help="CSV of the predictions")
+    told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials"))
     preset.add_argument("--json", action="store_true", help="as JSON")
@@ -163,6 +168,20 @@ def _calibrate(arguments):
     print(calibration_report.text(report))
 
 
+def _predict(arguments):
+    from . import calibration_law, schemas
+
+    law = schemas.checked(
+        schemas.read_json(Path(arguments.law)), schemas.schema("job")["properties"]["law"], "law"
+    )
+    found = calibration_law.compare(law, arguments.table, arguments.wheel_diameter)
+    if arguments.output:
+        calibration_law.write_predictions(found, arguments.output)
+    for note in found["notes"]:
+        print(f"warning: {note}", file=sys.stderr)
+    print(json.dumps(found["figures"]))
+
+
 def _report(summary, output):
     for warning in summary["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
@@ -198,6 +217,8 @@ def main(argv=None):
             _surrogate(arguments)
         elif arguments.command == "calibrate":
             _calibrate(arguments)
+        elif arguments.command == "predict":
+            _predict(arguments)
         elif arguments.command == "run":
             _run(arguments)
         else:

@@ -92,6 +92,8 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
         f.slope_s = -n_tangential / n_radial * (r / radius);
         f.slope_y = -normal.y() / n_radial + wheel_.drop_slope(y);
         f.inside = inside;
+        f.own_gap = static_cast<float>(gap);
+        f.cosine = static_cast<float>(-n_radial);
         f.area = field.area[sample];
         f.projected_area = static_cast<float>(-n_radial * inside * field.area[sample] * radius / r);
         f.boundary = (field.flags[sample] & kOnBoundary) != 0;
@@ -155,6 +157,18 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
         changed.push_back(footprints_[k].sample);
     }
     return scale * unscaled;
+}
+
+double GapMap::cut(HeightField& field, std::vector<std::uint32_t>& changed) const {
+    double volume = 0.0;
+    for (const Footprint& f : footprints_) {
+        if (f.own_gap >= 0.0f || f.inside < 0.5) continue;  // its middle lies beside the wheel
+        const double lowering = -f.own_gap / f.cosine;
+        field.height[f.sample] -= lowering;
+        volume += lowering * f.area;
+        changed.push_back(f.sample);
+    }
+    return volume;
 }
 
 void GapMap::spread(const Eigen::ArrayXd& rate, double duration,

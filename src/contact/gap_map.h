@@ -47,6 +47,10 @@ class GapMap {
     double remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
                   std::vector<std::uint32_t>& changed);
 
+    /// Lowers every sample that reaches into the wheel's envelope onto it, along its own normal: a
+    /// rigid tool. Appends them to `changed`. Returns the volume, mm3.
+    double cut(HeightField& field, std::vector<std::uint32_t>& changed) const;
+
     /// Adds what `rate` (mm/s per cell) takes from each sample in `duration` s to `amounts` (mm,
     /// one per sample of the field), without touching the field.
     void spread(const Eigen::ArrayXd& rate, double duration,
@@ -64,6 +68,8 @@ class GapMap {
         double inside;            // share of the sample's extent that lies within the wheel's width
         int cell;                 // the first of the four: lower s, lower y
         float u, v;               // weights of the cells of higher s, of higher y
+        float own_gap;            // mm, radial, at the sample itself
+        float cosine;             // of its normal against the wheel's radius
         float area;               // mm2, of the design surface
         float projected_area;     // mm2, on the wheel
         bool boundary;

@@ -87,8 +87,7 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
     double left = step.duration;
     Eigen::ArrayXd rate, shifted;
     if (pressing.rigid()) {  // all that overlaps goes, whatever the law
-        rate = (-pressing.map().gap()).max(0.0) / step.duration;
-        volume = pressing.map().remove(field, rate, step.duration, changed);
+        volume = pressing.map().cut(field, changed);
         result.belt.volume += volume;
         result.belt.time += step.duration;
         result.integrated_rate += volume;

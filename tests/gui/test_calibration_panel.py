@@ -32,7 +32,6 @@ assert names[:3] == ["coefficient\\nmm²/N", "pressure\\nexponent", "speed\\nexp
 assert abs(float(table.item(1, 1).text().split()[0]) - 1) < 0.1
 picture = field("calibrationPlot").pixmap().toImage()
 assert picture.width() > 150 and picture.height() > 150
-screenshot("calibration.png")
 steps = doc.UndoCount
 press("Use in the job")
 assert job.Law == "local"

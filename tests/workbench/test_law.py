@@ -45,6 +45,19 @@ def test_curves_come_in_the_jobs_units():
         run(model="local", pressure_curve=[[1, 1]])
 
 
+def test_geometric_law_cuts_all_that_the_envelope_meets():
+    job = plate_job()
+    job["law"] = {"model": "geometric"}
+    job["belt_machine"]["control"] = "position"
+    for pose in job["programs"][0]["poses"]:
+        pose["z_mm"] = 0.05
+    height = np.asarray(beltgrinding.run(job).field.height)
+    assert height.min() == pytest.approx(0.05, abs=0.005)
+    job["belt_machine"]["compliance"] = {"model": "geometric"}
+    job["law"] = {}
+    assert np.array_equal(np.asarray(beltgrinding.run(job).field.height), height)
+
+
 def test_geometric_law_needs_position_control():
     with pytest.raises(InputError, match="set the control to position"):
         run(model="geometric")
@@ -143,6 +156,21 @@ def test_a_law_from_the_calibration_predicts_and_grinds_a_job(tmp_path, capsys):
     sd = result.summary["deviation_sd_mm"]["p95"]
     depth = np.max(np.asarray(result.field.stock_height) - np.asarray(result.field.height))
     assert 0.03 * depth < sd < 0.3 * depth
+
+
+def test_a_scan_of_the_ground_part_gives_the_coefficient(tmp_path, capsys):
+    truth = run(coefficient_mm2_per_N=1.5e-4)
+    truth.write(tmp_path / "truth")  # its deviation.ply is the scan of the ground surface
+    run(coefficient_mm2_per_N=1.2e-4).write(tmp_path / "simulated")
+    scan = str(tmp_path / "truth" / "deviation.ply")
+    arguments = ["calibrate-scan", str(tmp_path / "simulated"), scan]
+    assert cli.main([*arguments, "-o", str(tmp_path / "law.json")]) == 0
+    low, high = json.loads(capsys.readouterr().out)["interval"]
+    law = json.loads((tmp_path / "law.json").read_text())
+    assert law["coefficient_mm2_per_N"] == pytest.approx(1.5e-4, rel=0.03)
+    assert low < law["coefficient_mm2_per_N"] < high
+    assert run(**law).summary["deviation_sd_mm"]["mean"] > 0
+    assert cli.main(["calibrate-scan", str(tmp_path), scan, "-o", "x.json"]) == 2
 
 
 def test_the_uncertainty_is_that_of_many_laws_drawn_at_random():

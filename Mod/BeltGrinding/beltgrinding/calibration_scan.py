@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from . import InputError
+from . import InputError, core
+from .result import Result
 
 CAUCHY = 2.385  # 95 % efficient under normal scatter
 ITERATIONS = 100
@@ -82,6 +83,41 @@ def calibrate_from_scan(
         "scatter_mm": float(scatter),
         "samples": int(used.sum()),
     }
+
+
+def from_files(result, scan, unit_mm=1.0, placement=None, offset=False):
+    """``calibrate_from_scan`` for a result's folder (as ``beltgrind run`` writes it) and a scan of the
+    ground part, a mesh's file in the job's coordinates; ``unit_mm``: mm of the file's 1; placement:
+    where the mesh lies, a 4 x 4 matrix. Returns (law with the new coefficient, figures). Raises
+    InputError.
+    """
+    result = Result.read(result)
+    field, law = result.field, result.job["law"]
+    scanned = field.copy()
+    stock = result.job["stock"]
+    mesh = core.read_mesh(str(scan), unit_mm, np.eye(4) if placement is None else placement)
+    core.apply_mesh(scanned, mesh, stock["search_above_mm"], stock["search_below_mm"])
+    missed = (np.asarray(scanned.flags) | np.asarray(field.flags)) & core.MISSED
+    measured = np.where(missed, math.nan, scanned.height)
+    removed = np.asarray(field.stock_height, dtype=float) - field.height
+    figures = calibrate_from_scan(
+        measured,
+        field.height,
+        removed,
+        law["coefficient_mm2_per_N"],
+        field.points,
+        offset=offset,
+    )
+    law = {
+        **law,
+        "coefficient_mm2_per_N": figures["coefficient"],
+        "calibration": {
+            "parameters": ["coefficient"],
+            "covariance": [[figures["ln_deviation"] ** 2]],
+            "scatter": 0.0,
+        },
+    }
+    return law, figures
 
 
 def _blocks(points, used, size):

@@ -49,6 +49,14 @@ def _parser():
         "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
     )
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    scan = commands.add_parser(
+        "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
+    )
+    scan.add_argument("result", help="folder that run wrote for the same grind")
+    scan.add_argument("scan", help="mesh of the ground part, where the job's design lies")
+    scan.add_argument("-o", "--output", required=True, help="file for the law (.json)")
+    scan.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
+    scan.add_argument("--offset", action="store_true", help="the scan may lie too high everywhere")
     told = commands.add_parser("predict", help="predict further grinds by a calibrated law")
     told.add_argument("law", help="what calibrate wrote")
     told.add_argument("table", help="CSV of the grinds; measured removals are compared")
@@ -168,6 +176,16 @@ def _calibrate(arguments):
     print(calibration_report.text(report))
 
 
+def _calibrate_scan(arguments):
+    from . import calibration, calibration_scan
+
+    law, figures = calibration_scan.from_files(
+        arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
+    )
+    calibration.write(law, arguments.output)
+    print(json.dumps(figures))
+
+
 def _predict(arguments):
     from . import calibration_law, schemas
 
@@ -217,6 +235,8 @@ def main(argv=None):
             _surrogate(arguments)
         elif arguments.command == "calibrate":
             _calibrate(arguments)
+        elif arguments.command == "calibrate-scan":
+            _calibrate_scan(arguments)
         elif arguments.command == "predict":
             _predict(arguments)
         elif arguments.command == "run":

@@ -3,6 +3,7 @@
     source tools/setup.sh && in_freecad freecad "$root/tools/manual_pictures.py"
 """
 
+import json
 import sys
 from pathlib import Path
 
@@ -43,6 +44,22 @@ def main():
     take("workbench-simulation")
     hands.press("Deviation")
     take("workbench-deviation")
+    hands.press("OK")
+    job = doc.BeltGrindingJob
+    job.Law, job.WearModel, job.WearScale = "local", "exponential", 40000
+    calibration = {
+        "parameters": ["coefficient", "pressure_exponent"],
+        "covariance": [[0.0025, 0.001], [0.001, 0.02]],
+        "scatter": 0.08,
+    }
+    job.Calibration = json.dumps(calibration)
+    hands.menu("Simulate")
+    hands.wait(lambda: not doc.Simulation.OutOfDate and doc.Simulation.RemainingCut < 99)
+    hands.press("Deviation")
+    box = hands.field("ColourBy")
+    box.setCurrentIndex(1)
+    hands.settle()
+    take("workbench-uncertainty")
 
 
 main()

@@ -146,6 +146,9 @@ class Form(QtGui.QGroupBox):
 
     def _enumeration(self, name, texts):
         widget = QtGui.QComboBox()
+        # A long choice must not make the panel wider than the view that holds it.
+        widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        widget.setMinimumContentsLength(10)
         values = self.obj.getEnumerationsOfProperty(name)
         for value in values:
             widget.addItem(texts.get(value, value))

@@ -36,7 +36,7 @@ class LawForms(QtGui.QWidget):
             "none": translate("BeltGrinding", "None"),
             "exponential": translate("BeltGrinding", "Exponential"),
             "two_stage": translate("BeltGrinding", "Two stages"),
-            "curve": translate("BeltGrinding", "Curve (property WearCurve)"),
+            "curve": translate("BeltGrinding", "By a curve"),
         }
         self.wear.add("WearModel", translate("BeltGrinding", "Model"), models)
         variables = {

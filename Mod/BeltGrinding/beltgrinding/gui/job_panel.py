@@ -28,7 +28,7 @@ class JobPanel(Panel):
         sampling.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
         sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
-        sampling.add("FlipNormals", translate("BeltGrinding", "Flip normals of loose faces"))
+        sampling.add("FlipNormals", translate("BeltGrinding", "Flip loose normals"))
         self.body.addWidget(sampling)
         self.law = LawForms(obj)
         self.body.addWidget(self.law)

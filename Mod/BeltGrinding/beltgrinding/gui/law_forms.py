@@ -19,7 +19,7 @@ class LawForms(QtGui.QWidget):
             "geometric": translate("BeltGrinding", "Geometric (rigid tool)"),
         }
         self.law.add("Law", translate("BeltGrinding", "Law"), texts)
-        self.law.add("LawCoefficient", translate("BeltGrinding", "Coefficient"), unit="mm²/N")
+        self.law.add("LawCoefficient", translate("BeltGrinding", "K"), unit="mm²/N")
         # Above the rows that come and go: hidden ones leave a gap.
         self.law.add("HeatLimit", translate("BeltGrinding", "Heat limit"), unit="MPa m/s")
         self.law.add("PressureExponent", translate("BeltGrinding", "Exponent of pressure"))

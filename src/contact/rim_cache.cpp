@@ -53,7 +53,7 @@ class Reader {
     explicit Reader(std::string_view data) : data_(data) {}
     bool take(void* to, std::size_t size) {
         if (data_.size() < size) return false;
-        std::memcpy(to, data_.data(), size);
+        if (size > 0) std::memcpy(to, data_.data(), size);
         data_.remove_prefix(size);
         return true;
     }

@@ -62,6 +62,9 @@ def _parser():
     told.add_argument("table", help="CSV of the grinds; measured removals are compared")
     told.add_argument("-o", "--output", help="CSV of the predictions")
     told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
+    program = commands.add_parser("program", help="read a robot program, and say what is in it")
+    program.add_argument("program", help="the program's file")
+    program.add_argument("-o", "--output", help="CSV of every programmed pose")
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials"))
     preset.add_argument("--json", action="store_true", help="as JSON")
@@ -186,6 +189,22 @@ def _calibrate_scan(arguments):
     print(json.dumps(figures))
 
 
+def _program(arguments):
+    from . import InputError
+    from .programs import ProgramError, read_program, table
+    from .result import write_whole
+
+    try:
+        program = read_program(arguments.program)
+        if arguments.output:
+            write_whole(Path(arguments.output), table.poses_csv(program).encode())
+    except ProgramError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+    print(json.dumps(table.summary(program), indent=2))
+
+
 def _predict(arguments):
     from . import calibration_law, schemas
 
@@ -237,6 +256,8 @@ def main(argv=None):
             _calibrate(arguments)
         elif arguments.command == "calibrate-scan":
             _calibrate_scan(arguments)
+        elif arguments.command == "program":
+            _program(arguments)
         elif arguments.command == "predict":
             _predict(arguments)
         elif arguments.command == "run":

@@ -10,11 +10,12 @@ from .. import InputError
 from ..objects import api, belt_machine, deviation, robot_path, simulation, stock
 from ..objects.job_object import BeltGrindingJob, child
 from ..objects.proxy import type_of
+from ..programs import file_pattern
 from .compat import QtGui, translate
 from .icons import icon
 from .panel import edit
 
-PROGRAMS = "Robot programs (*.src *.csv)"
+PROGRAMS = f"Robot programs ({file_pattern()})"
 EXPAND = 2  # toggleTreeItem's modes: 0 toggle, 1 collapse, 2 expand
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

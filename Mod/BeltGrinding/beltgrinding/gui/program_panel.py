@@ -4,6 +4,7 @@ from pathlib import Path
 
 from .. import InputError
 from ..objects import robot_path
+from ..programs import file_pattern
 from .compat import QtGui, translate
 from .form import Form
 from .panel import Panel
@@ -18,7 +19,7 @@ class ProgramPanel(Panel):
         title = translate("BeltGrinding", "Robot program")
         super().__init__(obj, title, "BeltGrinding_ImportProgram")
         form = Form(obj, translate("BeltGrinding", "Program"))
-        form.add("Source", translate("BeltGrinding", "File"), "Robot programs (*.src *.csv)")
+        form.add("Source", translate("BeltGrinding", "File"), f"Robot programs ({file_pattern()})")
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
         self.body.addWidget(form)

@@ -20,7 +20,39 @@ def _csv(path):
     return csv_program.read(path)
 
 
-READERS = {".src": _krl, ".csv": _csv}
+def _rapid(path):
+    from . import rapid
+
+    return rapid.read(path)
+
+
+def _urscript(path):
+    from . import urscript
+
+    return urscript.read(path)
+
+
+def _apt(path):
+    from . import apt
+
+    return apt.read(path)
+
+
+READERS = {
+    ".src": _krl,
+    ".csv": _csv,
+    ".mod": _rapid,
+    ".modx": _rapid,
+    ".prg": _rapid,
+    ".script": _urscript,
+    ".apt": _apt,
+    ".cls": _apt,
+}
+
+
+def file_pattern():
+    """What a file dialog shows: "*.src *.csv ..."; suffixes in upper case as well."""
+    return " ".join(f"*{s} *{s.upper()}" for s in sorted(READERS))
 
 
 def read_program(path):
@@ -33,4 +65,4 @@ def read_program(path):
     return reader(path)
 
 
-__all__ = ["Motion", "Problem", "Program", "ProgramError", "read_program"]
+__all__ = ["Motion", "Problem", "Program", "ProgramError", "file_pattern", "read_program"]

@@ -1,0 +1,57 @@
+"""A program as a table of its programmed poses, and in figures."""
+
+import csv
+import io
+
+import numpy as np
+
+from ..frames import to_quaternions
+
+COLUMNS = (
+    "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
+)
+SHOWN = 20  # problems in a summary
+
+
+def poses_csv(program):
+    """One row for every programmed pose in program order, an arc's auxiliary point with one of its
+    own (motion CIRC-AUX); mm and unit quaternions in the motion's base; joint targets have none.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for index, motion in enumerate(program.motions):
+        place = [""] * 7
+        if motion.pose is not None:
+            turn = to_quaternions(motion.pose[None, :3, :3])[0]
+            values = [*motion.pose[:3, 3].tolist(), *turn.tolist()]
+            place = [f"{value:.9g}" for value in values]
+        speed = "" if motion.speed_mm_s is None else f"{motion.speed_mm_s:.9g}"
+        kind = f"{motion.kind}-AUX" if motion.aux else motion.kind
+        row = [index, kind, *place, speed, motion.tool, motion.base, motion.file, motion.line]
+        writer.writerow(row)
+    return text.getvalue()
+
+
+def summary(program):
+    """Language, motions by kind, frames, extents (mm) and problems, as a dict."""
+    kinds = {}
+    for motion in program.motions:
+        kinds[motion.kind] = kinds.get(motion.kind, 0) + 1
+    places = [m.pose[:3, 3] for m in program.motions if m.pose is not None]
+    extents = None
+    if places:
+        low, high = np.min(places, axis=0), np.max(places, axis=0)
+        extents = {axis: [float(low[k]), float(high[k])] for k, axis in enumerate("xyz")}
+    return {
+        "language": program.language,
+        "file": program.file,
+        "motions": len(program.motions),
+        "poses": len(places),
+        "kinds": kinds,
+        "bases": sorted({m.base for m in program.motions if m.base}),
+        "tools": sorted({m.tool for m in program.motions if m.tool}),
+        "extents_mm": extents,
+        "problems": len(program.problems),
+        "first_problems": [str(problem) for problem in program.problems[:SHOWN]],
+    }

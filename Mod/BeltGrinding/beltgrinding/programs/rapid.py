@@ -1,0 +1,428 @@
+"""Reads ABB RAPID modules: .mod, .prg, .modx, .sys.
+
+Poses are those of the tool in the work object (object frame), as programmed. PERS data has the
+value the module gives. What only the controller can know is a Problem.
+"""
+
+import re
+
+from . import rapid_data as data
+from .rapid_calls import CHANGING, HARMLESS, Exit, Jump, Return
+from .rapid_data import Unknown, number
+from .rapid_expression import Reader, arguments, text_after, tokens, truth
+from .rapid_motion import MotionRunner, spec_of
+from .rapid_text import Node, tree
+from .program import ProgramError
+
+MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
+MAX_MOTIONS = 1_000_000
+MAX_CALLS = 20
+DECLARATION = re.compile(
+    r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(\{[^}]*\})?\s*(?::=(.*))?$",
+    re.IGNORECASE | re.DOTALL,
+)
+ROUTINE = re.compile(r"(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
+PARAMETER = re.compile(r"(?:(INOUT|VAR|PERS)\s+)?(\w+)\s+(\w+)\s*(?:\{[^}]*\})?$", re.IGNORECASE)
+FOR = re.compile(
+    r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
+)
+TARGET = re.compile(r"\s*(\w+)\s*(?:\{[^}]*\}\s*|\.\s*\w+\s*)*:=")
+NESTED_LATER = ("if", "for", "while", "test")
+
+
+def read(path):
+    """The Program of a RAPID module. Raises ProgramError when it cannot be read at all."""
+    interpreter = _Interpreter(path)
+    interpreter.run(tree(path))
+    return interpreter.finish()
+
+
+class _Interpreter(MotionRunner):
+    """Follows a program from PROC main on with the values it can know."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.routines = {}
+        self.calls = 0
+        self.rounds = 0
+        self.missing = set()
+
+    def run(self, nodes):
+        loose = self.module(nodes)
+        for name in list(self.globals):
+            try:
+                self.variable(name)
+            except Unknown:
+                pass  # whoever uses it reports it
+        starts = [self.routines["main"]] if "main" in self.routines else self.uncalled()
+        if loose and not self.routines:  # an excerpt without its PROC
+            starts = [(loose[0], [], loose)]
+        elif "main" not in self.routines and starts:
+            self.problem(
+                starts[0][0].line,
+                "there is no PROC main; the procedures nothing here calls are followed in turn",
+            )
+        try:
+            for head, parameters, body in starts:
+                self.forget_position()
+                self.locals = {name: [kind, None] for _, kind, name in parameters}
+                self.routine(head, body)
+        except Exit:
+            pass
+
+    def module(self, nodes):
+        """Declares a module's data and routines; returns statements outside of any routine."""
+        loose = []
+        for node in nodes:
+            if node.word == "module":
+                loose += self.module(node.body)
+            elif node.word == "record":
+                self.record(node)
+            elif node.word == "proc":
+                name, parameters = ROUTINE.match(node.text).groups()
+                handler = next(
+                    (k for k, n in enumerate(node.body) if n.word in ("error", "undo", "backward")),
+                    len(node.body),
+                )
+                self.routines[name.lower()] = (
+                    node,
+                    self.parameters(parameters),
+                    node.body[:handler],
+                )
+            elif node.word in ("func", "trap"):
+                continue  # evaluated, and interrupted by, on the controller only
+            elif DECLARATION.match(node.text):
+                self.declare(node, self.globals)
+            else:
+                loose.append(node)
+        return loose
+
+    def record(self, node):
+        parts = {}
+        for part in node.body:
+            words = part.text.lower().split()
+            if len(words) == 2:
+                parts[words[1]] = words[0]
+        self.records[node.text.split()[-1].lower()] = parts
+
+    def parameters(self, text):
+        """List of (by reference, type, name) of the required parameters."""
+        result = []
+        for part in text.split(","):
+            for piece in part.split("\\")[:1]:  # optional ones are never given here
+                match = PARAMETER.match(piece.strip())
+                if match:
+                    result.append((bool(match.group(1)), *(g.lower() for g in match.groups()[1:])))
+        return result
+
+    def uncalled(self):
+        called = set()
+
+        def visit(nodes):
+            stack = list(nodes)
+            while stack:
+                node = stack.pop()
+                stack += node.body or []
+                called.update(w.lower() for w in re.findall(r"\w+", node.text))
+
+        for _, _, body in self.routines.values():
+            visit(body)
+        return [r for name, r in self.routines.items() if name not in called] or list(
+            self.routines.values()
+        )[:1]
+
+    def declare(self, node, scope):
+        storage, kind, name, dimensions, text = DECLARATION.match(node.text).groups()
+        kind, name = kind.lower(), name.lower()
+        self.texts.clear()
+        scope[name] = [kind, None]
+        if text is not None:
+            if not text.strip():
+                raise ProgramError(f"{self.file}:{node.line}: {name} is given no value")
+            scope[name].append(text)
+            return
+        try:
+            value = data.initial(kind, self.records)
+            if dimensions:
+                row = tokens(dimensions[1:-1])
+                sizes = [int(number(self.value(p))) for p in arguments(row)[0]]
+                value = data.array(sizes, value)
+            # Persistent data without a value keeps what the controller last had.
+            scope[name][1] = None if storage.lower() == "pers" else value
+        except Unknown:
+            pass
+
+    def routine(self, node, body):
+        try:
+            self.block(body)
+        except Return:
+            pass
+        except Jump as jump:
+            self.problem(jump.line, f"GOTO {jump.label}: there is no such label to jump to")
+            self.gap(jump.line)
+
+    def tick(self, line):
+        self.rounds += 1
+        if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError(f"{self.file}:{line}: the program is too long")
+
+    def block(self, nodes):
+        at = 0
+        while at < len(nodes):
+            node = nodes[at]
+            self.tick(node.line)
+            at += 1
+            try:
+                self.statement(node)
+            except Jump as jump:
+                label = next(
+                    (k for k, n in enumerate(nodes) if n.word == "label" and n.text == jump.label),
+                    None,
+                )
+                if label is None:
+                    raise
+                if label >= at:
+                    at = label
+                else:
+                    self.problem(jump.line, f"GOTO {jump.label} jumps back; it is followed once")
+
+    def statement(self, node):
+        spec = spec_of(node.word)
+        if spec is not None:
+            self.motion(node.line, node.text, spec)
+        elif node.word in NESTED_LATER:
+            getattr(self, node.word + "_")(node)
+        elif node.word == "if;":
+            self.short_if(node)
+        elif node.word == "label":
+            return
+        elif DECLARATION.match(node.text):
+            scope = self.globals if self.locals is None else self.locals
+            self.declare(node, scope)
+            try:
+                self.variable(DECLARATION.match(node.text).group(3).lower())
+            except Unknown:
+                pass  # whoever uses it reports it
+        elif TARGET.match(node.text):
+            self.assign(node)
+        else:
+            self.instruction(node)
+
+    def assign(self, node):
+        name = TARGET.match(node.text).group(1).lower()
+        try:
+            row = tokens(node.text)
+            at = row.index(("op", ":="))
+            value = data.copied(self.value(row[at + 1 :]))
+            if at == 1:
+                self.store(name, value)
+                return
+            holder, kind = self.variable(name)
+            reader, path = Reader(row[:at], self), []
+            reader.next()
+            while reader.peek() is not None:
+                if reader.accept("{"):
+                    path += [("element", i) for i in reader.indices()]
+                else:
+                    reader.expect(".")
+                    index, kind = self.component(kind, reader.next()[1])
+                    path.append(("component", index + 1))
+            for _, index in path[:-1]:
+                holder = holder[reader.element(holder, index, name)]
+            holder[reader.element(holder, path[-1][1], name)] = value
+            self.texts.clear()
+        except Unknown:
+            # Not known from here on: whoever uses it reports it.
+            self.forget(name)
+
+    def instruction(self, node):
+        word, line = node.word, node.line
+        if word == "goto":
+            raise Jump(node.text[4:].strip().lower(), line)
+        if word in ("return", "raise"):
+            raise Return
+        if word in ("exit", "exitcycle"):
+            raise Exit
+        if word in ("velset", "pdispset", "pdispon", "pdispoff"):
+            self.setting(line, word, node.text)
+            return
+        if word in self.routines:
+            self.call(node)
+            return
+        if word in ("incr", "decr", "add", "clear"):
+            self.count(node)
+            return
+        if word in CHANGING or word not in HARMLESS:
+            for name in re.findall(r"\w+", node.text)[1:]:
+                self.forget(name.lower())
+        if word not in HARMLESS and word not in CHANGING and word not in self.missing:
+            self.missing.add(word)
+            what = node.text.split("\n")[0][:30] if not word else re.match(r"\w+", node.text)[0]
+            self.problem(line, f"{what} is not in this file; motions in it are left out")
+            self.gap(line)
+
+    def count(self, node):
+        name = ""
+        try:
+            row = arguments(tokens(node.text)[1:])[0]
+            name = row[0][0][1].lower() if len(row[0]) == 1 else ""
+            before = number(self.variable(name)[0])
+            step = number(self.value(row[1])) if node.word == "add" else 1.0
+            change = {"incr": 1.0, "decr": -1.0, "add": step, "clear": -before}[node.word]
+            self.store(name, before + change)
+        except (Unknown, IndexError, AttributeError):
+            self.forget(name)
+
+    def call(self, node):
+        head, parameters, body = self.routines[node.word]
+        if self.calls >= MAX_CALLS:
+            self.problem(node.line, f"{node.word} calls itself too deeply; it is left out")
+            self.gap(node.line)
+            return
+        own, inner, back = self.locals, {}, []
+        try:
+            row = tokens(node.text)[1:]
+            if row and row[0][1] == "(" and row[-1][1] == ")":
+                row = row[1:-1]  # not RAPID, yet found in programs
+            given = arguments(row)[0]
+        except Unknown:
+            given = []
+        for k, (by_reference, kind, name) in enumerate(parameters):
+            inner[name] = [kind, None]
+            try:
+                inner[name][1] = data.copied(self.value(given[k]))
+            except (Unknown, IndexError):
+                pass
+            if by_reference and k < len(given):
+                back.append((given[k], name))
+        self.calls, self.locals = self.calls + 1, inner
+        self.texts.clear()
+        try:
+            self.routine(head, body)
+        finally:
+            self.calls, self.locals = self.calls - 1, own
+            self.texts.clear()
+        for row, name in back:
+            value = inner[name][1]
+            if len(row) == 1 and value is not None:
+                self.store(str(row[0][1]).lower(), value)
+            else:
+                self.forget(str(row[0][1]).lower())
+
+    def skip(self, nodes, line, message):
+        """Leaves out statements that may or may not run: what they change is unknown then."""
+        moves, stack = False, list(nodes)
+        while stack:
+            node = stack.pop()
+            stack += node.body or []
+            words = [w.lower() for w in re.findall(r"\w+", node.text)]
+            target = TARGET.match(node.text)
+            if target:
+                self.forget(target.group(1).lower())
+            elif node.word not in HARMLESS:
+                for word in words[1:] if spec_of(node.word) is None else []:
+                    self.forget(word)
+            found = words if node.word == "if;" else words[:1]
+            moves = moves or any(spec_of(w) is not None or w in self.routines for w in found)
+        if moves:
+            self.problem(line, message)
+            self.gap(line)
+
+    def if_(self, node):
+        branches = [(node.line, re.sub(r"(?i)^IF\b", "", node.text), [])]
+        for inner in node.body:
+            if inner.word in ("elseif", "else"):
+                condition = "TRUE" if inner.word == "else" else inner.text[6:]
+                branches.append((inner.line, condition, []))
+            else:
+                branches[-1][2].append(inner)
+        for k, (line, condition, body) in enumerate(branches):
+            try:
+                known = truth(self.value(tokens(condition)))
+            except Unknown as unknown:
+                message = f"IF is decided at run time ({unknown}); its motions are left out"
+                self.skip([n for b in branches[k:] for n in b[2]], line, message)
+                return
+            if known:
+                self.block(body)
+                return
+
+    def short_if(self, node):
+        try:
+            row = tokens(node.text)
+            reader = Reader(row[1:], self)
+            known = truth(reader.expression())
+        except Unknown as unknown:
+            message = f"IF is decided at run time ({unknown}); its motion is left out"
+            self.skip([node], node.line, message)
+            return
+        rest = text_after(node.text, reader.at + 1)
+        word = re.match(r"\w+", rest)
+        if known and word:
+            self.statement(Node(node.line, word.group().lower(), rest))
+        elif not word:
+            self.problem(node.line, "IF has neither THEN nor a statement")
+
+    def for_(self, node):
+        match = FOR.match(node.text)
+        try:
+            if not match:
+                raise Unknown("it is not understood")
+            name = match.group(1).lower()
+            first, last = (int(number(self.value(tokens(match.group(k))))) for k in (2, 3))
+            step = 1 if last >= first else -1
+            if match.group(4):
+                step = int(number(self.value(tokens(match.group(4)))))
+            if step == 0:
+                raise Unknown("its STEP is 0")
+        except Unknown as unknown:
+            message = f"FOR has no static bounds ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+            return
+        scope = self.globals if self.locals is None else self.locals
+        before = scope.get(name)
+        for value in range(first, last + (1 if step > 0 else -1), step):
+            self.tick(node.line)
+            scope[name] = ["num", float(value)]
+            self.block(node.body)
+        scope.pop(name, None)  # the loop's variable ends with it
+        if before is not None:
+            scope[name] = before
+
+    def while_(self, node):
+        condition = re.sub(r"(?i)^WHILE\b", "", node.text)
+        if re.fullmatch(r"[\s(]*TRUE[\s)]*", condition, re.IGNORECASE):
+            self.problem(node.line, "an endless WHILE is followed once")
+            self.block(node.body)
+            return
+        try:
+            while truth(self.value(tokens(condition))):
+                self.tick(node.line)
+                self.block(node.body)
+        except Unknown as unknown:
+            message = f"WHILE is decided at run time ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+
+    def test_(self, node):
+        cases, otherwise, bodies = [], None, []
+        for inner in node.body:
+            if inner.word in ("case", "default"):
+                bodies.append([])
+                if inner.word == "case":
+                    cases.append((inner, bodies[-1]))
+                else:
+                    otherwise = bodies[-1]
+            elif bodies:
+                bodies[-1].append(inner)
+        try:
+            value = self.value(tokens(re.sub(r"(?i)^TEST\b", "", node.text)))
+            for inner, body in cases:
+                if any(value == self.value(row) for row in arguments(tokens(inner.text[4:]))[0]):
+                    break
+            else:
+                body = otherwise or []
+        except Unknown as unknown:
+            message = f"TEST is decided at run time ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+            return
+        self.block(body)

@@ -7,15 +7,14 @@ value the module gives. What only the controller can know is a Problem.
 import re
 
 from . import rapid_data as data
-from .rapid_calls import CHANGING, HARMLESS, Exit, Jump, Return
-from .rapid_data import Unknown, number
-from .rapid_expression import Reader, arguments, text_after, tokens, truth
-from .rapid_motion import MotionRunner, spec_of
-from .rapid_text import Node, tree
 from .program import ProgramError
+from .rapid_calls import CHANGING, HARMLESS, Exit, Jump, Return
+from .rapid_control import TARGET, Control
+from .rapid_data import Unknown, number
+from .rapid_expression import Reader, arguments, tokens
+from .rapid_motion import spec_of
+from .rapid_text import tree
 
-MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
-MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
 DECLARATION = re.compile(
     r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(\{[^}]*\})?\s*(?::=(.*))?$",
@@ -23,28 +22,27 @@ DECLARATION = re.compile(
 )
 ROUTINE = re.compile(r"(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
 PARAMETER = re.compile(r"(?:(INOUT|VAR|PERS)\s+)?(\w+)\s+(\w+)\s*(?:\{[^}]*\})?$", re.IGNORECASE)
-FOR = re.compile(
-    r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
-)
-TARGET = re.compile(r"\s*(\w+)\s*(?:\{[^}]*\}\s*|\.\s*\w+\s*)*:=")
-NESTED_LATER = ("if", "for", "while", "test")
+BLOCKS = ("if", "for", "while", "test")
 
 
 def read(path):
     """The Program of a RAPID module. Raises ProgramError when it cannot be read at all."""
     interpreter = _Interpreter(path)
-    interpreter.run(tree(path))
+    try:
+        interpreter.run(tree(path))
+    except RecursionError:
+        where = f"{interpreter.file}:{interpreter.line}"
+        raise ProgramError(f"{where}: statements and values are nested too deeply") from None
     return interpreter.finish()
 
 
-class _Interpreter(MotionRunner):
+class _Interpreter(Control):
     """Follows a program from PROC main on with the values it can know."""
 
     def __init__(self, path):
         super().__init__(path)
         self.routines = {}
         self.calls = 0
-        self.rounds = 0
         self.missing = set()
 
     def run(self, nodes):
@@ -146,7 +144,7 @@ class _Interpreter(MotionRunner):
             if dimensions:
                 row = tokens(dimensions[1:-1])
                 sizes = [int(number(self.value(p))) for p in arguments(row)[0]]
-                value = data.array(sizes, value)
+                value = self.copy(data.array(sizes, value), node.line)
             # Persistent data without a value keeps what the controller last had.
             scope[name][1] = None if storage.lower() == "pers" else value
         except Unknown:
@@ -161,36 +159,11 @@ class _Interpreter(MotionRunner):
             self.problem(jump.line, f"GOTO {jump.label}: there is no such label to jump to")
             self.gap(jump.line)
 
-    def tick(self, line):
-        self.rounds += 1
-        if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{self.file}:{line}: the program is too long")
-
-    def block(self, nodes):
-        at = 0
-        while at < len(nodes):
-            node = nodes[at]
-            self.tick(node.line)
-            at += 1
-            try:
-                self.statement(node)
-            except Jump as jump:
-                label = next(
-                    (k for k, n in enumerate(nodes) if n.word == "label" and n.text == jump.label),
-                    None,
-                )
-                if label is None:
-                    raise
-                if label >= at:
-                    at = label
-                else:
-                    self.problem(jump.line, f"GOTO {jump.label} jumps back; it is followed once")
-
     def statement(self, node):
         spec = spec_of(node.word)
         if spec is not None:
             self.motion(node.line, node.text, spec)
-        elif node.word in NESTED_LATER:
+        elif node.word in BLOCKS:
             getattr(self, node.word + "_")(node)
         elif node.word == "if;":
             self.short_if(node)
@@ -213,11 +186,14 @@ class _Interpreter(MotionRunner):
         try:
             row = tokens(node.text)
             at = row.index(("op", ":="))
-            value = data.copied(self.value(row[at + 1 :]))
+            value = self.copy(self.value(row[at + 1 :]), node.line)
             if at == 1:
                 self.store(name, value)
                 return
             holder, kind = self.variable(name)
+            if self.entry(name) is None:  # predefined: this program's own from here on
+                self.store(name, data.copied(holder))
+                holder = self.variable(name)[0]
             reader, path = Reader(row[:at], self), []
             reader.next()
             while reader.peek() is not None:
@@ -231,8 +207,11 @@ class _Interpreter(MotionRunner):
                 holder = holder[reader.element(holder, index, name)]
             holder[reader.element(holder, path[-1][1], name)] = value
             self.texts.clear()
-        except Unknown:
+        except Unknown as unknown:
             # Not known from here on: whoever uses it reports it.
+            self.forget(name, str(unknown))
+        except ValueError:
+            self.problem(node.line, f"the assignment to {name} is not understood")
             self.forget(name)
 
     def instruction(self, node):
@@ -290,7 +269,7 @@ class _Interpreter(MotionRunner):
         for k, (by_reference, kind, name) in enumerate(parameters):
             inner[name] = [kind, None]
             try:
-                inner[name][1] = data.copied(self.value(given[k]))
+                inner[name][1] = self.copy(self.value(given[k]), node.line)
             except (Unknown, IndexError):
                 pass
             if by_reference and k < len(given):
@@ -308,121 +287,3 @@ class _Interpreter(MotionRunner):
                 self.store(str(row[0][1]).lower(), value)
             else:
                 self.forget(str(row[0][1]).lower())
-
-    def skip(self, nodes, line, message):
-        """Leaves out statements that may or may not run: what they change is unknown then."""
-        moves, stack = False, list(nodes)
-        while stack:
-            node = stack.pop()
-            stack += node.body or []
-            words = [w.lower() for w in re.findall(r"\w+", node.text)]
-            target = TARGET.match(node.text)
-            if target:
-                self.forget(target.group(1).lower())
-            elif node.word not in HARMLESS:
-                for word in words[1:] if spec_of(node.word) is None else []:
-                    self.forget(word)
-            found = words if node.word == "if;" else words[:1]
-            moves = moves or any(spec_of(w) is not None or w in self.routines for w in found)
-        if moves:
-            self.problem(line, message)
-            self.gap(line)
-
-    def if_(self, node):
-        branches = [(node.line, re.sub(r"(?i)^IF\b", "", node.text), [])]
-        for inner in node.body:
-            if inner.word in ("elseif", "else"):
-                condition = "TRUE" if inner.word == "else" else inner.text[6:]
-                branches.append((inner.line, condition, []))
-            else:
-                branches[-1][2].append(inner)
-        for k, (line, condition, body) in enumerate(branches):
-            try:
-                known = truth(self.value(tokens(condition)))
-            except Unknown as unknown:
-                message = f"IF is decided at run time ({unknown}); its motions are left out"
-                self.skip([n for b in branches[k:] for n in b[2]], line, message)
-                return
-            if known:
-                self.block(body)
-                return
-
-    def short_if(self, node):
-        try:
-            row = tokens(node.text)
-            reader = Reader(row[1:], self)
-            known = truth(reader.expression())
-        except Unknown as unknown:
-            message = f"IF is decided at run time ({unknown}); its motion is left out"
-            self.skip([node], node.line, message)
-            return
-        rest = text_after(node.text, reader.at + 1)
-        word = re.match(r"\w+", rest)
-        if known and word:
-            self.statement(Node(node.line, word.group().lower(), rest))
-        elif not word:
-            self.problem(node.line, "IF has neither THEN nor a statement")
-
-    def for_(self, node):
-        match = FOR.match(node.text)
-        try:
-            if not match:
-                raise Unknown("it is not understood")
-            name = match.group(1).lower()
-            first, last = (int(number(self.value(tokens(match.group(k))))) for k in (2, 3))
-            step = 1 if last >= first else -1
-            if match.group(4):
-                step = int(number(self.value(tokens(match.group(4)))))
-            if step == 0:
-                raise Unknown("its STEP is 0")
-        except Unknown as unknown:
-            message = f"FOR has no static bounds ({unknown}); its motions are left out"
-            self.skip(node.body, node.line, message)
-            return
-        scope = self.globals if self.locals is None else self.locals
-        before = scope.get(name)
-        for value in range(first, last + (1 if step > 0 else -1), step):
-            self.tick(node.line)
-            scope[name] = ["num", float(value)]
-            self.block(node.body)
-        scope.pop(name, None)  # the loop's variable ends with it
-        if before is not None:
-            scope[name] = before
-
-    def while_(self, node):
-        condition = re.sub(r"(?i)^WHILE\b", "", node.text)
-        if re.fullmatch(r"[\s(]*TRUE[\s)]*", condition, re.IGNORECASE):
-            self.problem(node.line, "an endless WHILE is followed once")
-            self.block(node.body)
-            return
-        try:
-            while truth(self.value(tokens(condition))):
-                self.tick(node.line)
-                self.block(node.body)
-        except Unknown as unknown:
-            message = f"WHILE is decided at run time ({unknown}); its motions are left out"
-            self.skip(node.body, node.line, message)
-
-    def test_(self, node):
-        cases, otherwise, bodies = [], None, []
-        for inner in node.body:
-            if inner.word in ("case", "default"):
-                bodies.append([])
-                if inner.word == "case":
-                    cases.append((inner, bodies[-1]))
-                else:
-                    otherwise = bodies[-1]
-            elif bodies:
-                bodies[-1].append(inner)
-        try:
-            value = self.value(tokens(re.sub(r"(?i)^TEST\b", "", node.text)))
-            for inner, body in cases:
-                if any(value == self.value(row) for row in arguments(tokens(inner.text[4:]))[0]):
-                    break
-            else:
-                body = otherwise or []
-        except Unknown as unknown:
-            message = f"TEST is decided at run time ({unknown}); its motions are left out"
-            self.skip(node.body, node.line, message)
-            return
-        self.block(body)

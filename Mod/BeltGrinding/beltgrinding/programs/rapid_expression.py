@@ -5,7 +5,8 @@ import json
 import math
 import re
 
-from .rapid_data import Unknown, about, cross, inverse, number, numbers, pose_of, product, turn
+from .rapid_data import Unknown, cross, number, numbers, turn
+from .rapid_functions import FUNCTIONS
 
 TOKEN = re.compile(
     r"""\s*(?:(?P<number>(?:0[xX][0-9a-fA-F]+|0[bB][01]+|0[oO][0-7]+
@@ -21,6 +22,7 @@ DECODER = json.JSONDecoder(parse_int=float)
 BASES = {"x": 16, "b": 2, "o": 8}
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
 MAX_DEPTH = 50
+MAX_COMPARED = 16  # components of a record
 
 
 @functools.lru_cache(maxsize=4096)
@@ -172,6 +174,8 @@ class Reader:
         self.at += 1
         right = self.sum()
         if operator in ("=", "<>"):
+            if isinstance(left, list) and len(left) > MAX_COMPARED:
+                raise Unknown("arrays are not compared")
             return (left == right) == (operator == "=")
         left, right = number(left), number(right)
         if operator in ("<", ">"):
@@ -246,7 +250,7 @@ class Reader:
             return name == "true"
         if self.peek() == "(":
             return self.call(name, text)
-        return self.select(*self.data.variable(name), text)
+        return self.select(*self.data.variable(text), text)
 
     def select(self, value, kind, name):
         """An element or a component of data: name{i,j}.part"""
@@ -347,62 +351,3 @@ def times(a, b):
         vector, factor = (a, b) if isinstance(a, list) else (b, a)
         return [v * number(factor) for v in numbers(vector, 3, "a pos")]
     return number(a) * number(b)
-
-
-def _offs(point, x, y, z):
-    position = numbers(point[0], 3, "a position")
-    return [[p + number(d) for p, d in zip(position, (x, y, z))], *point[1:]]
-
-
-def _rel_tool(point, x, y, z, *, rx=0.0, ry=0.0, rz=0.0):
-    # The manual: first about x, then about the new y, then about the new z.
-    turns = turn(turn(about(0, number(rx)), about(1, number(ry))), about(2, number(rz)))
-    return [*product(pose_of(point), [[number(x), number(y), number(z)], turns]), *point[2:]]
-
-
-def _orient_zyx(z, y, x):
-    return turn(turn(about(2, number(z)), about(1, number(y))), about(0, number(x)))
-
-
-def _normalised(q):
-    length = math.sqrt(sum(v * v for v in numbers(q, 4, "an orient")))
-    return [v / length for v in q]
-
-
-def _distance(a, b):
-    return math.dist(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
-
-
-def _rounded(value, *, dec=0.0):
-    scale = 10.0 ** min(15, max(0, int(dec)))
-    return math.copysign(math.floor(abs(number(value)) * scale + 0.5) / scale, value)
-
-
-FUNCTIONS = {
-    "offs": _offs,
-    "reltool": _rel_tool,
-    "posemult": lambda a, b: product(pose_of(a), pose_of(b)),
-    "poseinv": lambda a: inverse(pose_of(a)),
-    "posevect": lambda a, v: product(pose_of(a), [numbers(v, 3, "a pos"), [1.0, 0.0, 0.0, 0.0]])[0],
-    "orientzyx": _orient_zyx,
-    "norient": _normalised,
-    "distance": _distance,
-    "vectmagn": lambda v: _distance(v, [0.0, 0.0, 0.0]),
-    "dotprod": lambda a, b: sum(
-        p * q for p, q in zip(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
-    ),
-    "abs": lambda v: abs(number(v)),
-    "sin": lambda v: math.sin(math.radians(number(v))),
-    "cos": lambda v: math.cos(math.radians(number(v))),
-    "tan": lambda v: math.tan(math.radians(number(v))),
-    "asin": lambda v: math.degrees(math.asin(number(v))),
-    "acos": lambda v: math.degrees(math.acos(number(v))),
-    "atan": lambda v: math.degrees(math.atan(number(v))),
-    "atan2": lambda y, x: math.degrees(math.atan2(number(y), number(x))),
-    "sqrt": lambda v: math.sqrt(number(v)),
-    "exp": lambda v: math.exp(number(v)),
-    "pow": lambda a, b: math.pow(number(a), number(b)),
-    "round": _rounded,
-    "trunc": lambda v: float(math.trunc(number(v))),
-    "dim": lambda a, k: float(len(a)) if k == 1 else float(len(a[0])),
-}

@@ -12,7 +12,7 @@ from .program import Motion, Problem, Program, name_of
 from .rapid_data import PREDEFINED, Unknown, copied, inverse, number, pose_of, product
 from .rapid_expression import Reader, arguments, tokens
 
-MAX_RESOLVING = 50  # constants defined by constants
+MAX_RESOLVING = 10  # constants defined by constants
 NAME = re.compile(
     r"(?:(?P<search>search)|move|(?P<trigg>trigg)|(?P<arc>arc)|paint|(?P<disp>disp))"
     r"(?P<kind>absj|j|l|c)(?:[1-9])?(?:do|ao|go|sync|start|end|(?P<ios>ios))?$"
@@ -42,6 +42,7 @@ class State:
         self.locals = None  # of the running routine
         self.records = dict(data.RECORDS)
         self.resolving = 0
+        self.reasons = {}  # why a value is not known
         self.texts = {}  # frames in words; cleared when data changes
 
     def value(self, row):
@@ -55,18 +56,20 @@ class State:
             return self.locals[name]
         return self.globals.get(name)
 
-    def variable(self, name):
+    def variable(self, written):
         """(value, type) of data. Raises Unknown."""
+        name = written.lower()
         entry = self.entry(name)
         if entry is None and name in PREDEFINED:
             kind, value = PREDEFINED[name]
             return value, kind
         if entry is None:
-            raise Unknown(f"{name} is not declared in this file")
+            raise Unknown(f"{written} is not declared in this file")
         if len(entry) == 3:
             self.resolve(entry, name)
         if entry[1] is None:
-            raise Unknown(f"{name} has no value that this file gives")
+            why = self.reasons.get(name, "this file gives it no value")
+            raise Unknown(f"{written} is not known ({why})"[:200])
         return entry[1], entry[0]
 
     def resolve(self, entry, name):
@@ -77,7 +80,7 @@ class State:
         try:
             entry[1] = copied(self.value(tokens(text)))
         except Unknown as unknown:
-            raise Unknown(f"the value of {name} is not known: {unknown}") from None
+            self.reasons[name] = str(unknown)
         finally:
             self.resolving -= 1
 
@@ -95,8 +98,9 @@ class State:
         entry[1:] = [value]
         self.texts.clear()
 
-    def forget(self, name):
-        """What is assigned at run time is unknown from here on."""
+    def forget(self, name, why="it is assigned at run time"):
+        """Whoever uses the data from here on reports ``why``."""
+        self.reasons[name] = why
         entry = self.entry(name)
         if entry is not None:
             entry[1:] = [None]
@@ -116,11 +120,14 @@ class MotionRunner(State):
         self.said = set()
         self.override, self.most = 1.0, math.inf  # VelSet: factor, mm/s
         self.displacement = None  # PDispSet; False: known to the controller only
-        self.here = None
+        self.here = None  # target, tool, work object; None: not known
+        self.written = {}  # names of tools and work objects as the program writes them
 
     def problem(self, line, message, once=None):
-        if once is None or once not in self.said:
-            self.said.add(once)
+        """Says something once, however often a loop comes by."""
+        key = once or (line, message)
+        if key not in self.said:
+            self.said.add(key)
             self.program.problems.append(Problem(self.file, line, message))
 
     def forget_position(self):
@@ -159,16 +166,17 @@ class MotionRunner(State):
                 self.forget_position()
                 self.add(Motion(kind, None, line, self.file), tool, wobj)
                 return
-            poses = [self.displaced(pose_of(target)) for target in targets]
+            programmed = [pose_of(target) for target in targets]
+            poses = [self.displaced(pose) for pose in programmed]
             length = None
             if kind == "LIN" and self.here is not None and self.here[1:] == (tool, wobj):
-                length = math.dist(self.here[0][0], targets[0][0])
+                length = math.dist(self.here[0][0], programmed[0][0])
             speed = self.speed(line, kind, row[speed_at], options, length)
             for k, pose in enumerate(poses):
                 motion = Motion(kind, None, line, self.file, speed, aux=k < count - 1)
                 self.add(motion, tool, wobj)
                 self.poses.append((motion, *pose))
-            self.here = (targets[-1], tool, wobj)
+            self.here = ([*programmed[-1], *targets[-1][2:]], tool, wobj)
             if search:
                 self.found(line, row[1], options)
         except Unknown as unknown:
@@ -231,12 +239,13 @@ class MotionRunner(State):
             if len(row) != 1 or row[0][0] != "name":
                 raise Unknown(f"its {what} is not given by a name")
             names.append(row[0][1].lower())
+            self.written.setdefault(names[-1], row[0][1])
         if (key := tuple(names)) not in self.said:
             self.said.add(key)
             holds = []
             for name, kind in zip(names, ("tooldata", "wobjdata")):
                 try:
-                    holds.append(self.frame_data(name, kind)[0])
+                    holds.append(self.frame_data(self.written[name], kind)[0])
                 except Unknown as unknown:
                     self.problem(line, f"{unknown}; the poses are kept as programmed", name)
             if len(holds) == 2 and holds[0] is holds[1]:
@@ -253,13 +262,13 @@ class MotionRunner(State):
     def described(self, name, at):
         """A tool (at 1) or a work object (at 3) in words."""
         if (name, at) not in self.texts:
-            text = name
+            text = self.written.get(name, name)
             try:
                 value = self.frame_data(name, "tooldata" if at == 1 else "wobjdata")
                 pose = pose_of(value[at])
                 if at == 3:
                     pose = pose_of(product(pose, pose_of(value[4])))
-                text = f"{name} {data.components(pose)}"
+                text = f"{text} {data.components(pose)}"
                 if value[0] == (at == 3):
                     text += " held by the robot" if at == 3 else " fixed in the room"
             except (Unknown, IndexError):

@@ -49,7 +49,7 @@ TAILS = {
 SEMICOLON = re.compile(";")
 # A line that begins like this cannot be the continuation of a statement.
 NO_CONTINUATION = re.compile(
-    r"\n\s*(?:(?:LOCAL|TASK)\s+)*(?:END(?:PROC|MODULE|FUNC|TRAP|IF|FOR|WHILE|TEST)|PROC|FUNC|TRAP"
+    r"\n[^\S\n]*(?:(?:LOCAL|TASK)\s+)*(?:END(?:PROC|MODULE|FUNC|TRAP|IF|FOR|WHILE|TEST)|PROC|FUNC|TRAP"
     r"|CONST|PERS|VAR|MODULE|IF|FOR|WHILE|Move[LJC]|MoveAbsJ)\b",
     re.IGNORECASE,
 )

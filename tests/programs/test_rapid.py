@@ -223,7 +223,7 @@ def test_displacement_and_joint_targets(tmp_path):
     )
     assert program.motions[0].pose is None and program.motions[0].speed_mm_s is None
     assert positions(program) == [[11, 2, 3], [1, 2, 3]]
-    assert [p.line for p in program.problems] == [6]
+    assert [p.line for p in program.problems] == [7]
 
 
 @pytest.mark.parametrize(
@@ -298,7 +298,7 @@ def test_truncated_numbers_are_never_silent(tmp_path):
         ("MODULE m\nPROC main()\nMoveL p1,v100,fi", "p.mod:3: .*cut off"),
         ("MODULE m\nPROC main()\nStop;\n", "p.mod:3: the PROC of line 2 has no ENDPROC"),
         ("MODULE m\nPROC main()\nFOR i FROM 1 TO 3 DO\nENDPROC\nENDMODULE", "p.mod:4: the FOR"),
-        ("MODULE m\nPROC main()\nStop\nENDPROC\nENDMODULE", "p.mod:4: .*';'"),
+        ("MODULE m\nPROC main()\nStop\nENDPROC\nENDMODULE", "p.mod:3: .*';'"),
         ("MODULE m\nENDMODULE\nENDIF\n", "p.mod:3: ENDIF closes nothing"),
         ("MODULE m\nPROC main(\nENDMODULE", "p.mod:2: the head"),
         ("%%%\nVERSION:1\nMODULE m\nENDMODULE", "p.mod:1: the header"),

@@ -134,6 +134,8 @@ class _Interpreter(Control):
         kind, name = kind.lower(), name.lower()
         self.texts.clear()
         scope[name] = [kind, None]
+        if storage.lower() == "const" and scope is self.globals:
+            self.constants.add(name)
         if text is not None:
             if not text.strip():
                 raise ProgramError(f"{self.file}:{node.line}: {name} is given no value")

@@ -74,7 +74,7 @@ class Control(MotionRunner):
             if target:
                 self.forget(target.group(1).lower())
             elif node.word not in HARMLESS:
-                for word in words[1:] if spec_of(node.word) is None else []:
+                for word in words[1:] if not any(map(spec_of, words[:-1])) else []:
                     self.forget(word)
             found = words if node.word == "if;" else words[:1]
             moves = moves or any(spec_of(w) is not None or w in self.routines for w in found)

@@ -162,7 +162,9 @@ class Reader:
         value = self.comparison()
         while self.word() == "and":
             self.at += 1
-            left, right = truth(value), truth(self.comparison())
+            inverted = self.word() == "not"  # not in the manual's grammar, yet in programs
+            self.at += inverted
+            left, right = truth(value), truth(self.comparison()) != inverted
             value = left and right
         return not truth(value) if negated else value
 

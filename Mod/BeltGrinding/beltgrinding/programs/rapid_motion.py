@@ -42,6 +42,7 @@ class State:
         self.locals = None  # of the running routine
         self.records = dict(data.RECORDS)
         self.resolving = 0
+        self.constants = set()
         self.reasons = {}  # why a value is not known
         self.texts = {}  # frames in words; cleared when data changes
 
@@ -100,8 +101,10 @@ class State:
 
     def forget(self, name, why="it is assigned at run time"):
         """Whoever uses the data from here on reports ``why``."""
-        self.reasons[name] = why
         entry = self.entry(name)
+        if name in self.constants and entry is self.globals.get(name):
+            return
+        self.reasons[name] = why
         if entry is not None:
             entry[1:] = [None]
             self.texts.clear()
@@ -136,8 +139,9 @@ class MotionRunner(State):
     def gap(self, line):
         """The path beyond must not be joined over the gap as if nothing were missing."""
         self.forget_position()
-        if not (self.program.motions and self.program.motions[-1].pose is None):
-            self.program.motions.append(Motion("PTP", None, line, self.file))
+        motions = self.program.motions
+        if not motions or (self.poses and self.poses[-1][0] is motions[-1]):
+            motions.append(Motion("PTP", None, line, self.file))
 
     def finish(self):
         """The Program with all poses."""
@@ -150,7 +154,6 @@ class MotionRunner(State):
 
     def motion(self, line, text, spec):
         kind, joint, search, before, to_tool = spec
-        start = len(self.program.motions)
         try:
             row, options = arguments(tokens(text)[1:])
             count = 2 if kind == "CIRC" else 1
@@ -180,7 +183,6 @@ class MotionRunner(State):
             if search:
                 self.found(line, row[1], options)
         except Unknown as unknown:
-            del self.program.motions[start:]
             self.problem(line, f"{text.split()[0]} is left out: {unknown}")
             self.gap(line)
 

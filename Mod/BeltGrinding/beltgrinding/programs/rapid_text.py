@@ -150,6 +150,12 @@ def _statements(text, name):
             continue
         else:
             tail = TAILS.get(word, SEMICOLON).search(masked, at)
+            open_end = NO_CONTINUATION.search(masked, at, tail.start() if tail else len(masked))
+            if open_end:
+                raise ProgramError(
+                    f"{name}:{line + masked.count(chr(10), at, open_end.start())}: "
+                    "the statement has no ';' at its end"
+                )
             if not tail:
                 raise ProgramError(f"{name}:{line}: the statement has no end; is the file cut off?")
             end, after = tail.start(), tail.end()
@@ -158,11 +164,5 @@ def _statements(text, name):
             if word == "if" and tail.group() == ";":
                 word = "if;"  # the short form: one statement and no ENDIF
             body = [] if word in CLOSED_BY else None
-            open_end = "\n" in masked[at:end] and NO_CONTINUATION.search(masked, at, end)
-            if open_end:
-                raise ProgramError(
-                    f"{name}:{line + masked.count(chr(10), at, open_end.start())}: "
-                    "the statement has no ';' at its end"
-                )
         yield Node(line, word, text[at:end].strip(), body)
         at = after

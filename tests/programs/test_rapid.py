@@ -275,6 +275,16 @@ def test_what_may_have_been_assigned_is_unknown(tmp_path):
     assert positions(program) == [[7, 0, 0]]
 
 
+def test_what_a_skipped_procedure_assigns_is_unknown(tmp_path):
+    program = main(
+        tmp_path,
+        "IF DI1=1 change;\nMoveL Offs(p,b,0,0),v5,fine,tool0;\nMoveL p,v5,fine,tool0;",
+        f"CONST robtarget p:={point(0, 0, 0)};VAR num b;\nPROC change()\nb:=3;\nENDPROC",
+    )
+    assert [p.line for p in program.problems] == [7, 8]
+    assert positions(program) == [[0, 0, 0]]
+
+
 def test_without_main_every_uncalled_procedure_is_followed(tmp_path):
     move = "MoveL [[{},0,0],[1,0,0,0],[0,0,0,0],[0,0,0,0,0,0]],v5,fine,tool0;"
     program = read(

@@ -41,11 +41,14 @@ class _Interpreter(Control):
 
     def __init__(self, path):
         super().__init__(path)
-        self.routines = {}
         self.calls = 0
         self.missing = set()
 
     def run(self, nodes):
+        stack = list(nodes)
+        while stack:
+            stack += stack.pop().body or []
+            self.rounds -= 1
         loose = self.module(nodes)
         for name in list(self.globals):
             try:

@@ -10,7 +10,7 @@ from .rapid_expression import Reader, arguments, text_after, tokens, truth
 from .rapid_motion import MotionRunner, spec_of
 from .rapid_text import Node
 
-MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
+MAX_ROUNDS = 400_000  # statements executed, loops unrolled, beyond those the file has
 MAX_MOTIONS = 1_000_000
 FOR = re.compile(
     r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
@@ -23,7 +23,8 @@ class Control(MotionRunner):
 
     def __init__(self, path):
         super().__init__(path)
-        self.rounds = 0
+        self.routines = {}  # (node, parameters, body) by name
+        self.rounds = 0  # below 0: as many as the file has statements
         self.line = 1
 
     def tick(self, line, rounds=1):
@@ -64,7 +65,7 @@ class Control(MotionRunner):
 
     def skip(self, nodes, line, message):
         """Leaves out statements that may or may not run: what they change is unknown then."""
-        moves, stack = False, list(nodes)
+        moves, stack, entered = False, list(nodes), set()
         while stack:
             node = stack.pop()
             self.tick(line)
@@ -74,9 +75,15 @@ class Control(MotionRunner):
             if target:
                 self.forget(target.group(1).lower())
             elif node.word not in HARMLESS:
-                for word in words[1:] if not any(map(spec_of, words[:-1])) else []:
+                specs = [spec for spec in map(spec_of, words) if spec]
+                for word in words[1:] if not specs or specs[0][2] else []:  # a search writes
                     self.forget(word)
             found = words if node.word == "if;" else words[:1]
+            if {"pdispset", "pdispon", "pdispoff"} & set(found):
+                self.displacement = False
+            for routine in set(found) & self.routines.keys() - entered:
+                entered.add(routine)
+                stack += self.routines[routine][2]
             moves = moves or any(spec_of(w) is not None or w in self.routines for w in found)
         if moves:
             self.problem(line, message)

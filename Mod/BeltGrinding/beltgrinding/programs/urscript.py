@@ -9,6 +9,7 @@ What only the controller can know is a Problem.
 """
 
 import ast
+import contextlib
 import math
 import re
 import warnings
@@ -22,7 +23,7 @@ MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
 MAX_IDLE = 50_000  # of them since the last motion, in a loop
 MAX_CALLS = 20
 MAX_NESTING = 20
-DEFAULT_SPEED = 0.25  # m/s, of movel, movep and movec without v
+DEFAULT_SPEED = 0.25  # m/s, without v
 MOVE = re.compile(r"\b(?:move[jlpc]|servo[jc]|speed[jl])\s*\(")
 ASSIGN = re.compile(r"^(?:(global|local)\s+)?([A-Za-z_]\w*)\s*(\[.*?\])?\s*=(?!=)\s*(.+)$")
 DEFINE = re.compile(r"^def\s+([A-Za-z_]\w*)\s*\((.*)\)\s*:?$")
@@ -123,7 +124,7 @@ class _Interpreter:
 
     def run(self, blocks):
         self.block(blocks)
-        if not self.called and self.routines:  # the controller runs what it is sent
+        if self.routines and not self.called:  # the controller runs what it is sent
             self.invoke(next(iter(self.routines)), [])
 
     def block(self, blocks):
@@ -257,12 +258,10 @@ class _Interpreter:
             raise Unknown(f"{name}() does not take these arguments")
         scope = {}
         for k, (parameter, default) in enumerate(parameters):
-            try:
+            with contextlib.suppress(Unknown):  # whoever uses it reports it
                 scope[parameter] = (
                     self.node(arguments[k]) if k < len(arguments) else self.evaluate(default)
                 )
-            except Unknown:
-                pass  # whoever uses it reports it
         self.scopes.append(scope)
         self.returned = None
         try:
@@ -303,13 +302,9 @@ class _Interpreter:
         if text in ("break", "continue", "halt"):
             return text
         if re.match(r"return\b", text):
-            try:
-                self.returned = self.evaluate(text[6:]) if text[6:].strip() else None
-            except Unknown:
-                self.returned = None
+            with contextlib.suppress(Unknown):
+                self.returned = self.evaluate(text[6:])
             return "return"
-        if text == "pass":
-            return None
         match = ASSIGN.match(text)
         if match:
             self.assign(match, line)
@@ -337,9 +332,7 @@ class _Interpreter:
 
     def set_tool(self, line, tree):
         try:
-            if len(tree.args) < 1:
-                raise Unknown("it has no argument")
-            self.tool = str(a_pose(self.node(tree.args[0])))
+            self.tool = str(a_pose(self.node(tree.args[0]) if tree.args else None))
         except Unknown as unknown:
             self.tool = ""
             self.problem(line, f"the tool of set_tcp is not known: {unknown}")
@@ -351,11 +344,9 @@ class _Interpreter:
             if keyword.arg in given or (keyword.arg not in names and keyword.arg != "pose"):
                 raise Unknown(f"the argument {keyword.arg} is not understood")
             given[keyword.arg if keyword.arg in names else names[0]] = keyword.value
-        if len(tree.args) > len(names):
-            raise Unknown("it has too many arguments")
         targets = names[:2] if name == "movec" else names[:1]
-        if any(target not in given for target in targets):
-            raise Unknown("its target is missing")
+        if len(tree.args) > len(names) or any(target not in given for target in targets):
+            raise Unknown("its arguments are too many or too few")
         values = [self.node(given[target]) for target in targets]
         if name == "movec" and "mode" in given and self.node(given["mode"]) != 0:
             raise Unknown("mode 1 turns the tool with the arc; only mode 0 is supported")
@@ -390,7 +381,7 @@ class _Interpreter:
         return frame
 
     def speed(self, line, given, frames):
-        """mm/s by t (it goes before v) or v; None where it is not known."""
+        """mm/s by t (before v) or v; None: not known."""
         try:
             time = number(self.node(given["t"])) if "t" in given else 0.0
             if time > 0 and self.here is None:

@@ -1,0 +1,156 @@
+"""The reader of APT: against the truth where shared data is there, and by small programs."""
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+from beltgrinding import frames  # noqa: E402
+from beltgrinding.programs import ProgramError, apt  # noqa: E402
+
+PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
+needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
+
+
+def cl(tmp_path, source, units="UNITS/MM\n"):
+    (tmp_path / "p.apt").write_bytes((units + source).encode("latin-1"))
+    return apt.read(tmp_path / "p.apt")
+
+
+def positions(program):
+    return [np.round(m.pose[:3, 3], 6).tolist() for m in program.motions if m.pose is not None]
+
+
+@needs_shared
+def test_flagship_program_against_its_truth():
+    program = apt.read(PROGRAMS / "same_path_crs_part5" / "crs_part5.apt")
+    lines = (PROGRAMS / "same_path_crs_part5" / "truth.csv").read_text().splitlines()
+    truth = [line.split(",") for line in lines if not line.startswith(("#", "i,"))]
+    assert len(program.motions) == len(truth) == 423
+    assert not program.problems
+    for motion, row in zip(program.motions, truth):
+        expected = frames.from_quaternion(row[4:7], row[7:11])
+        assert np.abs(motion.pose[:3, 3] - expected[:3, 3]).max() <= 1e-3, row
+        sine = np.linalg.norm(np.cross(motion.pose[:3, 2], expected[:3, 2]))
+        assert np.degrees(np.arctan2(sine, motion.pose[:3, 2] @ expected[:3, 2])) <= 1e-3, row
+        np.testing.assert_allclose(
+            motion.pose[:3, :3].T @ motion.pose[:3, :3], np.eye(3), atol=1e-9
+        )
+        assert np.linalg.det(motion.pose[:3, :3]) > 0
+    assert program.motions[0].kind == "PTP" and program.motions[1].kind == "LIN"
+    assert program.motions[1].speed_mm_s == pytest.approx(100.0)
+
+
+@needs_shared
+def test_a_real_file():
+    program = apt.read(PROGRAMS / "real" / "apt_rybakov25_test.apt")
+    assert positions(program) == [[0, 0, 100], [50, 50, 10], [100, 100, 0], [150, 150, 0]]
+    assert [p.line for p in program.problems] == [13, 16, 17, 19, 21]
+
+
+def test_axis_and_direction_give_the_orientation(tmp_path):
+    program = cl(tmp_path, "GOTO/0,0,0,0,0,1\nGOTO/0,10,5,0,0,1\nGOTO/0,10,9\n")
+    pose = program.motions[1].pose
+    np.testing.assert_allclose(pose[:3, 2], [0, 0, -1], atol=1e-12)
+    np.testing.assert_allclose(pose[:3, 0], [0, 1, 0], atol=1e-12)
+    np.testing.assert_allclose(program.motions[2].pose[:3, 0], [0, 1, 0], atol=1e-12)  # it stays
+
+
+def test_units_feeds_rapids_and_blanks(tmp_path):
+    program = cl(
+        tmp_path,
+        "PARTNO a / b, c\nMULTAX / ON\nLOADTL / 3\nFROM / 0, 0, 1\nFEDRAT / 60 , IPM\n"
+        "GOTO / 1, 0, $\n 0 , 0,0 , 1\nRAPID\nGOTO / 2, 0, 0 $$ away\nFEDRAT/MMPM,120\n"
+        "GODLTA/0,1,0\nGODLTA/1\nFEDRAT/0.2,MMPR\nGOTO/0,0,0\nPPRINT GOTO/1\nFINI\nGOTO/9,9,9\n",
+        units="UNITS / INCHES\n",
+    )
+    assert [m.kind for m in program.motions] == ["PTP", "LIN", "PTP", "LIN", "LIN", "LIN"]
+    assert [m.speed_mm_s for m in program.motions] == [None, pytest.approx(25.4), None, 2, 2, None]
+    np.testing.assert_allclose(program.motions[4].pose[:3, 3], [50.8, 25.4, 25.4])
+    assert [m.line for m in program.motions][:3] == [5, 7, 10]
+    assert [p.line for p in program.problems] == [14] and "revolution" in str(program.problems[0])
+    assert program.motions[0].tool == "3"
+
+
+def test_arcs(tmp_path):
+    program = cl(
+        tmp_path,
+        "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,0.01\nGOTO/-10,0,0\n"
+        "MOVARC/0,0,0,0,0,-1,10,ANGLE,90\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\n",
+    )
+    assert not program.problems
+    half = np.sqrt(50.0)
+    expected = [[0, 10], [-10, 0], [-half, half], [0, 10], [-10, 0], [0, -10], [10, 0], [0, 10]]
+    np.testing.assert_allclose([m.pose[:2, 3] for m in program.motions[1:]], expected, atol=1e-9)
+    assert [m.aux for m in program.motions[1:]] == [True, False] * 4
+    points = program.path_arrays(10.0)["frames"][:, :3, 3]
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 10.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "text, culprit",
+    [
+        ("CYCLE/DRILL,10", "cycle"),
+        ("GOHOME", "GOHOME"),
+        ("GOTO/1,2", "2 values"),
+        ("GOTO/1,2,x", "no number"),
+        ("GOTO/1,2,3,0,0,0", "length 1"),
+        ("GOTO/1,2,3,0,0,2", "length 1"),
+        ("CIRCLE/0,0,0,0,0,1,3\nGOTO/1,1,1", "not on its circle"),
+        ("CIRCLE/0,0,0,0,0,1,3\nRAPID", "no GOTO"),
+        ("L1=LINE/P1,P2", "not known"),
+    ],
+)
+def test_what_is_not_known_is_said_with_its_line(tmp_path, text, culprit):
+    program = cl(tmp_path, f"GOTO/0,0,0\n{text}\nFEDRAT/100,MMPM\nGOTO/0,0,1\n")
+    assert [p.line for p in program.problems] == [2 + len(text.split("\n"))]
+    assert culprit in str(program.problems[0])
+    arrays = program.path_arrays(50.0)
+    assert len(arrays["frames"]) == 2 and arrays["rapid"][1]  # the gap is not ground over
+
+
+def test_units_and_compensation_are_not_silent(tmp_path):
+    program = cl(tmp_path, "GOTO/1,2,3\nTLCOMP/ON,LEFT\nGOTO/1,2,4\n", units="")
+    assert ["UNITS" in str(p) or "TLCOMP" in str(p) for p in program.problems] == [True, True]
+    assert len(program.motions) == 2
+    with pytest.raises(ProgramError, match="p.apt:1: UNITS"):
+        cl(tmp_path, "", units="UNITS/FURLONGS\n")
+
+
+def test_truncated_numbers_are_never_silent(tmp_path):
+    for text in ("1.2.3", "12abc", "1e", "--3", "nan", "1e999", "1_0", "1 2", "", "9" * 20):
+        program = cl(tmp_path, f"GOTO/{text},0,0\n")
+        assert program.problems and all(m.pose is None for m in program.motions), text
+    program = cl(tmp_path, "GOTO/1,2,3,$")
+    assert "file ends" in str(program.problems[0])
+
+
+def test_no_text_is_an_error(tmp_path):
+    with pytest.raises(ProgramError, match="zero bytes"):
+        cl(tmp_path, "a\0b")
+    with pytest.raises(ProgramError, match="absent"):
+        apt.read(tmp_path / "absent.apt")
+
+
+def test_mutated_programs_never_crash(tmp_path):
+    rng = np.random.default_rng(1)
+    source = (
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1\nRAPID\nFROM/0,0,100,0,0,1\nFEDRAT/6000.0,MMPM\n"
+        "GOTO/10,0,0,$\n 0,0.6,0.8\nGODLTA/1,2,3\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,0.1\n"
+        "GOTO/-10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,90\nCYCLE/DRILL,3\nPPRINT x\nFINI\n"
+    ).encode()
+    for _ in range(300):
+        bad = bytearray(source)
+        for _ in range(rng.integers(1, 6)):
+            bad[rng.integers(len(bad))] = rng.integers(256)
+        (tmp_path / "m.apt").write_bytes(bytes(bad[: rng.integers(10, len(bad))]))
+        try:
+            program = apt.read(tmp_path / "m.apt")
+            assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
+        except ProgramError as error:
+            assert "m.apt" in str(error)

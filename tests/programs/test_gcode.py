@@ -154,6 +154,10 @@ def test_truncated_numbers_are_never_silent(tmp_path):
         assert program.problems and all(m.pose is None for m in program.motions), text
 
 
+def test_deep_comments_do_not_hang(tmp_path):
+    assert nc(tmp_path, "(" * 50000 + ")" * 50000 + "\n").problems
+
+
 def test_no_text_is_an_error(tmp_path):
     with pytest.raises(ProgramError, match="zero bytes"):
         nc(tmp_path, "a\0b")

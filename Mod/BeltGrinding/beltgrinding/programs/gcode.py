@@ -6,6 +6,7 @@ axis itself. The pose's z points into the work (-axis); the rotation about it is
 along the motion's direction, projected across the axis (``tool_axis``). Without rotary words the
 axis is Z, and no TCP control is needed. What needs the machine's kinematics or the control's memory
 is a Problem, and the motions that depend on it are left out.
+A file that does not say G20 or G21, G90 or G91, is taken in mm and as absolute.
 """
 
 import math
@@ -94,8 +95,10 @@ class _Reader:
     def block(self, line, text):
         """Follows one line; False at the program's end."""
         count = 1 if "(" in text or ";" in text else 0
-        while count:  # comments within comments
+        for _ in range(10 * count):  # comments within comments
             text, count = COMMENT.subn(" ", text)
+            if not count:
+                break
         text = text.strip().upper()
         if not text or text.startswith(("%", "/")):
             if text.startswith("/"):

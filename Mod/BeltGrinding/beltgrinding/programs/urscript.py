@@ -159,8 +159,7 @@ class _Interpreter:
 
     def skip(self, block, why):
         """Leaves a block out: its motions are a gap, what it assigns is unknown afterwards."""
-        moves = self.forget(block)
-        if moves:
+        if self.forget(block) or MOVE.search(block.text):
             self.problem(block.line, f"{why}; its motions are left out")
             self.gap(block.line)
 

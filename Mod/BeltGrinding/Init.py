@@ -2,4 +2,7 @@
 
 import FreeCAD
 
-FreeCAD.addImportType("Robot program (*.src *.csv)", "beltgrinding.objects.importer")
+FreeCAD.addImportType(
+    "Robot program (*.src *.csv *.mod *.modx *.prg *.script *.apt *.cls *.nc *.ngc *.mpf)",
+    "beltgrinding.objects.importer",
+)

@@ -38,15 +38,27 @@ def _apt(path):
     return apt.read(path)
 
 
+def _gcode(path):
+    from . import gcode
+
+    return gcode.read(path)
+
+
 READERS = {
     ".src": _krl,
     ".csv": _csv,
     ".mod": _rapid,
     ".modx": _rapid,
     ".prg": _rapid,
+    ".sys": _rapid,
     ".script": _urscript,
     ".apt": _apt,
     ".cls": _apt,
+    ".nc": _gcode,
+    ".ngc": _gcode,
+    ".gcode": _gcode,
+    ".mpf": _gcode,
+    ".tap": _gcode,
 }
 
 

@@ -63,8 +63,9 @@ class _Reader(Registers):
         section, begin, ended = "", None, False
         for number, text in enumerate(lines, 1):
             head = text.strip()
-            if re.match(r"/(PROG|ATTR|APPL|MN|POS|END)\b", head):
-                section = head.split()[0]
+            mark = re.match(r"/(?:PROG|ATTR|APPL|MN|POS|END)\b", head)
+            if mark:
+                section = mark.group(0)
                 if section == "/END":
                     ended = True
                     break

@@ -32,11 +32,11 @@ def lines_of(path, language):
     return re.split(r"\r\n|\n|\r", raw.decode("latin-1"))
 
 
-def value_of(text, what, file, line):
+def value_of(text, what, file, line, limit=LARGEST):
     """The finite number ``text`` is. Raises ProgramError naming file, line and ``what``."""
     text = text.strip()
     value = float(text) if re.fullmatch(NUMBER, text, re.ASCII) else math.nan
-    if not abs(value) <= LARGEST:
+    if not abs(value) <= limit:
         raise ProgramError(f"{file}:{line}: {what} is '{text}', no sound number")
     return value
 
@@ -54,6 +54,7 @@ class TaughtPath:
         self.file = name_of(path)
         self.program = Program(language, self.file)
         self.run = []  # points of an arc taught one a statement
+        self.joined = False  # the first of them is the arc before's last
         self.frame = None  # (base, tool) of the motion before, None: none yet
 
     def problem(self, line, message):
@@ -70,6 +71,10 @@ class TaughtPath:
             self.close_arc()
         self.run.append(motion)
 
+    def continue_arc(self, motion):
+        """Begins the next arc at the point just reached."""
+        self.run, self.joined = [motion], True
+
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
         self.add(Motion("PTP", None, line, self.file))
@@ -78,8 +83,11 @@ class TaughtPath:
         """Ends an arc: its first point is reached on a line, the others along circles through
         three neighbours. Half-way points on the circle keep each point's own orientation."""
         run, self.run = self.run, []
+        joined, self.joined = self.joined, False
         for k, motion in enumerate(run):
             middle = None
+            if k == 0 and joined:
+                continue
             if k > 0 and len(run) >= 3:
                 third = run[k + 1] if k + 1 < len(run) else run[k - 2]
                 middle = _half_way(*(m.pose[:3, 3] for m in (run[k - 1], motion, third)))

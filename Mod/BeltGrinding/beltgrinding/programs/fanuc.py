@@ -119,13 +119,17 @@ class _Reader(Registers):
                 closing[opened.pop()] = k
         self.labels, self.closing, self.loops = labels, closing, {}
         self.opening = {end: begin for begin, end in closing.items()}
+        jumps = {
+            int(n) for s in self.statements for n in re.findall(r"JMP\s+LBL\[(\d{1,6})\b", s[1])
+        }
+        targets = {k for n, k in labels.items() if n in jumps}
         seen, rounds, at = set(), 0, 0
         while at is not None and at < len(self.statements):
             line, text, _ = self.statements[at]
             rounds += 1
             if rounds > MAX_ROUNDS:
                 raise self.error(line, "the program is too long")
-            if text.startswith("LBL"):
+            if at in targets:
                 state = (at, frozenset(self.registers.items()))
                 if state in seen:
                     self.problem(line, "an endless loop is followed once")

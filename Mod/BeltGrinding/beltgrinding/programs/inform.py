@@ -23,7 +23,7 @@ KINDS = {"MOVJ": "PTP", "MOVL": "LIN", "MOVS": "SPL"}
 POSITION = re.compile(r"(C|P)(\d{1,6})(?=\s|$)\s*(.*)$", re.ASCII)
 OTHER = re.compile(r"(?:BC|EC|BP|EX)\d{1,6}(?=\s|$)", re.ASCII)
 SPEED = re.compile(r"(?:^|\s)(V|VR|VE)=(\S*)")
-SHIFTED = re.compile(r"\b(SRCH|UNTIL|SPL|EOFS)\b")
+SHIFTED = re.compile(r"\b(SRCH|UNTIL)\b")
 # What changes a position variable: the instruction's first operand.
 CHANGES = re.compile(
     r"(?:SET|SETE|GETS|GETPOS|GETE|ADD|SUB|MUL|DIV|INC|DEC|CNVRT|MULMAT|INVMAT|MFRAME)\s+"
@@ -32,8 +32,8 @@ CHANGES = re.compile(
 HARMLESS = re.compile(
     r"(NOP|DOUT|DIN|AOUT|ARATION|ARATIOF|WAIT|TIMER|PAUSE|SET|SETE|ADD|SUB|MUL|DIV|INC|DEC|GETE|GETS|"
     r"GETPOS|CNVRT|MULMAT|INVMAT|AND|OR|NOT|XOR|MSG|CLS|PULSE|SKILLSND|TSYNC|CLEAR|ARCON|ARCOF|"
-    r"ARCSET|SVSPOT|GUNCHG|WVON|WVOF|ADVINIT|ADVSTOP|REFP|PSTART|PWAIT|ABORT|ACC|DEC|HSEN|CNVSET|"
-    r"SETREG|GETREG|LATCH|VSTART|DIALOG|GETS|STRING)\b"
+    r"ARCSET|SVSPOT|GUNCHG|WVON|WVOF|ADVINIT|ADVSTOP|REFP|PSTART|PWAIT|ABORT|ACC|HSEN|CNVSET|"
+    r"SETREG|GETREG|LATCH|VSTART|DIALOG|STRING)\b"
 )
 BLOCKS = {
     "IFTHEN": "ENDIF",
@@ -61,7 +61,7 @@ class _Reader(TaughtPath):
     def __init__(self, path):
         super().__init__("Yaskawa INFORM", path)
         self.statements = []  # (line, text)
-        self.positions = {}
+        self.positions = self.variables = {}
         self.speed_set = None  # by SPEED, mm/s
         self.here = None  # (components, base) of the current pose, None: unknown
         self.noted = set()
@@ -75,7 +75,9 @@ class _Reader(TaughtPath):
         """Splits the file into positions and instructions."""
         first = next((k for k, text in enumerate(lines) if text.strip()), 0)
         if not lines[first].strip().upper().startswith("/JOB"):
-            raise ProgramError(f"{self.file}:{first + 1}: is no INFORM job (it begins without /JOB)")
+            raise ProgramError(
+                f"{self.file}:{first + 1}: is no INFORM job (it begins without /JOB)"
+            )
         section, positions, ended = "", [], False
         for number, text in enumerate(lines, 1):
             text = text.strip()
@@ -95,6 +97,7 @@ class _Reader(TaughtPath):
                 f"{self.file}:{len(lines)}: the job is cut, its END is missing; transfer it again"
             )
         self.positions = positions_of(positions, self.file, self.problem)
+        self.variables = {n: p for (letter, n), p in self.positions.items() if letter == "P"}
 
     def follow(self):
         labels = {}
@@ -173,10 +176,9 @@ class _Reader(TaughtPath):
         """A position variable set at run time is unknown from here on."""
         match = CHANGES.match(text)
         if match:
-            self.positions.pop(("P", int(match.group(1)[:6])), None)
+            self.variables.pop(int(match.group(1)[:6]), None)
         elif text.startswith("CALL"):
-            for key in [key for key in self.positions if key[0] == "P"]:
-                del self.positions[key]
+            self.variables.clear()
         elif text.startswith("SPEED"):
             self.speed_set = None
 
@@ -206,7 +208,7 @@ class _Reader(TaughtPath):
         if not match:
             raise Unknown("its position is not in this file")
         letter, n, rest = match.group(1), int(match.group(2)), match.group(3)
-        position = self.positions.get((letter, n))
+        position = self.positions.get((letter, n)) if letter == "C" else self.variables.get(n)
         if position is None:
             raise Unknown(f"{letter}{match.group(2)} has no value that this file gives")
         components, base, tool = position

@@ -21,7 +21,7 @@ needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data
 HEAD = "///USER 4\n///TOOL 2\n///POSTYPE USER\n///RECTAN\n///RCONF 0,0,0,0,0,0,0,0\n"
 POINTS = HEAD + "".join(f"C{n:05}={10 * n}.000,{n * n},0.5,0,0.,0.0000\n" for n in range(1, 7))
 POINTS += "P0001=1.0,2.0,3.0,0.0,0.0,0.0\nP0002=1.0,2.0,3.0,0.0,0.0,90.0\n"
-FIRST = 17  # line of the first instruction after NOP
+FIRST = 20  # line of NOP, before the first instruction
 
 
 def job(tmp_path, *instructions, points=POINTS, end="END\n"):

@@ -108,7 +108,8 @@ class _Reader(Registers):
 
     def follow(self):
         """Executes the statements; every label is passed once in each state of the registers."""
-        labels, closing, opened = {}, {}, []
+        labels, closing, opened, ifs = {}, {}, [], []
+        self.ends, self.elses = {}, {}
         for k, (line, text, _) in enumerate(self.statements):
             match = re.match(rf"LBL\s*{INDEX}", text)
             if match and re.match(r"\d+", match.group(1)):
@@ -117,6 +118,13 @@ class _Reader(Registers):
                 opened.append(k)
             elif text == "ENDFOR" and opened:
                 closing[opened.pop()] = k
+            if re.match(r"IF\b.*\bTHEN$", text):
+                ifs.append([k])
+            elif text == "ELSE" and ifs:
+                self.elses[ifs[-1][0]] = k
+                ifs[-1].append(k)
+            elif text == "ENDIF" and ifs:
+                self.ends.update(dict.fromkeys(ifs.pop(), k))
         self.labels, self.closing, self.loops = labels, closing, {}
         self.opening = {end: begin for begin, end in closing.items()}
         jumps = {
@@ -243,13 +251,8 @@ class _Reader(Registers):
 
     def after_if(self, at, stop="ENDIF"):
         """Index after the ENDIF (or ELSE) of the IF or ELSE at ``at``."""
-        depth = 0
-        for k in range(at + 1, len(self.statements)):
-            text = self.statements[k][1]
-            if depth == 0 and text in ("ENDIF", stop):
-                return k + 1
-            depth += bool(re.match(r"IF\b.*\bTHEN$", text)) - (text == "ENDIF")
-        return len(self.statements)
+        end = self.ends.get(at, len(self.statements) - 1)
+        return (self.elses.get(at, end) if stop == "ELSE" else end) + 1
 
     def do_else(self, at, line, text):
         return at + 1 if text != "ELSE" else self.after_if(at)

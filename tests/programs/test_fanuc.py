@@ -213,6 +213,8 @@ def test_loops_jumps_and_conditions(tmp_path):
         + ["L P[1] 10mm/sec FINE", "LBL[2]", "L P[2] 10mm/sec FINE"],
     )
     assert xs(program) == [None, 20] and [p.line for p in program.problems] == [FIRST, FIRST]
+    program = tp(tmp_path, ["R[1]=1", "IF R[1]=1," * 5000, "L P[2] 10mm/sec FINE"])
+    assert xs(program) == [None, 20] and program.problems[0].line == FIRST + 1
     program = tp(tmp_path, ["JMP LBL[5]", "L P[1] 10mm/sec FINE"])
     assert xs(program) == [] and "nowhere" in program.problems[0].message
 

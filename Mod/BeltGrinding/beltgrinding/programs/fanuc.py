@@ -236,7 +236,7 @@ class _Reader(Registers):
     def do_if(self, at, line, text):
         then = re.match(r"IF\s*(.*?)\s*\bTHEN$", text)
         split = re.match(r"IF\s*((?:[^,\[(]|\[[^\]]*\]|\((?:[^()]|\([^()]*\))*\))*),(.*)$", text)
-        if not then and not split:
+        if not then and (not split or split.group(2).lstrip().startswith("IF")):
             raise Unknown("it is not understood")
         end = self.after_if(at) if then else at + 1
         try:

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import ProgramError, inform  # noqa: E402
+from beltgrinding.programs import ProgramError, inform, read_program  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -258,3 +258,11 @@ def test_mutated_jobs_never_crash(tmp_path):
         except ProgramError:
             continue
         assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
+
+
+def test_a_program_without_motions_says_so(tmp_path):
+    path = tmp_path / "WAIT.JBI"
+    path.write_text("/JOB\n//NAME WAIT\n//POS\n///NPOS 0,0,0,0,0,0\n//INST\nNOP\nEND\n")
+    program = read_program(path)
+    assert not program.motions
+    assert "no instruction of the program moves the robot" in str(program.problems[0])

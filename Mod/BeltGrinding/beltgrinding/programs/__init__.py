@@ -44,6 +44,18 @@ def _gcode(path):
     return gcode.read(path)
 
 
+def _fanuc(path):
+    from . import fanuc
+
+    return fanuc.read(path)
+
+
+def _inform(path):
+    from . import inform
+
+    return inform.read(path)
+
+
 READERS = {
     ".src": _krl,
     ".csv": _csv,
@@ -52,6 +64,8 @@ READERS = {
     ".prg": _rapid,
     ".sys": _rapid,
     ".script": _urscript,
+    ".ls": _fanuc,
+    ".jbi": _inform,
     ".apt": _apt,
     ".cls": _apt,
     ".nc": _gcode,
@@ -74,7 +88,11 @@ def read_program(path):
     if reader is None:
         known = ", ".join(sorted(READERS))
         raise ProgramError(f"{path}: no robot language is known by '{path.suffix}'; known: {known}")
-    return reader(path)
+    program = reader(path)
+    if not program.motions and not program.problems:
+        text = "no instruction of the program moves the robot; there is no pose to read"
+        program.problems.append(Problem(program.file, 1, text))
+    return program
 
 
 __all__ = ["Motion", "Problem", "Program", "ProgramError", "file_pattern", "read_program"]

@@ -17,8 +17,8 @@ PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) /
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
 
 
-def cl(tmp_path, source, units="UNITS/MM\n"):
-    (tmp_path / "p.apt").write_bytes((units + source).encode("latin-1"))
+def cl(tmp_path, source, units="UNITS/MM\n", end="\nFINI\n"):
+    (tmp_path / "p.apt").write_bytes((units + source + end).encode("latin-1"))
     return apt.read(tmp_path / "p.apt")
 
 
@@ -126,7 +126,7 @@ def test_truncated_numbers_are_never_silent(tmp_path):
     for text in ("1.2.3", "12abc", "1e", "--3", "nan", "1e999", "1_0", "1 2", "", "9" * 20):
         program = cl(tmp_path, f"GOTO/{text},0,0\n")
         assert program.problems and all(m.pose is None for m in program.motions), text
-    program = cl(tmp_path, "GOTO/1,2,3,$")
+    program = cl(tmp_path, "GOTO/1,2,3,$", end="")
     assert "file ends" in str(program.problems[0])
 
 

@@ -206,7 +206,7 @@ def test_nothing_hangs_or_overflows(tmp_path):
 
 
 def test_mutated_programs_never_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr(urscript, "MAX_ROUNDS", 2000)
+    monkeypatch.setattr(urscript, "MAX_UNROLLED", 2000)
     monkeypatch.setattr(urscript, "MAX_IDLE", 500)
     rng = np.random.default_rng(1)
     source = (

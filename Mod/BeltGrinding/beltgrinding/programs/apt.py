@@ -67,6 +67,8 @@ class _Reader:
         self.circle = None  # (line, centre, normal, radius) waiting for its end
         self.tool = self.base = ""
         self.told = set()
+        self.line = 1
+        self.ended = False  # FINI, or NX's END-OF-PATH without motions after it
 
     def problem(self, line, message):
         self.program.problems.append(Problem(self.file, line, message))
@@ -92,13 +94,17 @@ class _Reader:
 
     def statement(self, line, text):
         """Follows one statement; False at the program's end."""
+        self.line = line
         if text.upper().startswith(TEXT):
+            self.ended = self.ended or text.upper().startswith("END-OF-PATH")
             return True
         word, _, rest = text.partition("/")
         word = word.strip().upper()
         values = [v.strip() for v in rest.split(",")] if rest.strip() else []
         if word == "FINI":
+            self.ended = True
             return False
+        self.ended = self.ended and word not in ("GOTO", "GODLTA", "MOVARC")
         try:
             if self.circle and word not in ("GOTO", "FEDRAT", "PAINT"):
                 self.circle = None
@@ -147,6 +153,8 @@ class _Reader:
     def finish(self):
         if self.circle:
             self.problem(self.circle[0], "the arc has no GOTO as its end; it is left out")
+        if not self.ended:
+            self.problem(self.line, "the file ends without FINI; it may be cut off")
 
     @staticmethod
     def numbers(values, *counts):

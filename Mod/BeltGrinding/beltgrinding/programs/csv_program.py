@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 from .. import frames
-from .program import Motion, Program, ProgramError, name_of
+from .program import MAX_COORDINATE, Motion, Problem, Program, ProgramError, name_of
 
 POSITION = ("x_mm", "y_mm", "z_mm")
 QUATERNION = ("qw", "qx", "qy", "qz")
@@ -48,6 +48,9 @@ def read(path):
                 "use a point as the decimal mark"
             )
         program.motions.append(_motion(dict(zip(columns, row)), name, number))
+    if not text.endswith(("\n", "\r")):
+        message = "the last line has no end; a number in it may be cut off"
+        program.problems.append(Problem(name, lines[-1][0], message))
     return program
 
 
@@ -79,6 +82,8 @@ def _motion(row, name, line):
             ) from None
         if not math.isfinite(value):
             raise ProgramError(f"{name}:{line}: {column} is not finite")
+        if abs(value) > MAX_COORDINATE:
+            raise ProgramError(f"{name}:{line}: {column} is {value:g}, out of all bounds")
         return value
 
     def optional(column, least):

@@ -10,8 +10,8 @@ import numpy as np
 
 from .fanuc_positions import positions_of
 from .fanuc_registers import INDEX, Registers
-from .program import Motion, ProgramError
-from .taught import DIGITS, MAX_ROUNDS, Unknown, lines_of, pose_of
+from .program import MAX_UNROLLED, Motion, ProgramError, work_of
+from .taught import DIGITS, Unknown, lines_of, pose_of
 
 KINDS = {"J": "PTP", "L": "LIN", "C": "CIRC", "A": "A", "S": "SPL"}
 MOTION = re.compile(rf"([JLCAS])\s+(PR|P)\s*{INDEX}\s*(.*)$")
@@ -131,13 +131,14 @@ class _Reader(Registers):
             int(n) for s in self.statements for n in re.findall(r"JMP\s+LBL\[(\d{1,6})\b", s[1])
         }
         targets = {k for n, k in labels.items() if n in jumps}
-        seen, rounds, at = set(), 0, 0
+        seen, rounds, at = set(), -sum(work_of(text) for _, text, _ in self.statements), 0
         while at is not None and at < len(self.statements):
             line, text, _ = self.statements[at]
-            rounds += 1
-            if rounds > MAX_ROUNDS:
+            rounds += work_of(text)
+            if rounds > MAX_UNROLLED:
                 raise self.error(line, "the program is too long")
             if at in targets:
+                rounds += len(self.registers) // 10
                 state = (at, frozenset(self.registers.items()))
                 if state in seen:
                     self.problem(line, "an endless loop is followed once")
@@ -392,6 +393,8 @@ class _Reader(Registers):
                 length = float(np.linalg.norm(np.subtract(self.here[0][:3], before[0][:3])))
             if length == 0.0:
                 raise Unknown(f"{match.group(1)}{unit} tells no path speed")
+            if value < 1e-6:
+                raise Unknown(f"{match.group(1)}{unit} is too short a time")
             return length / (value * SECONDS[unit])
         except Unknown as unknown:
             self.problem(line, f"the path speed is not known: {unknown}")

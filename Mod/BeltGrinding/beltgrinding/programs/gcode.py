@@ -49,6 +49,8 @@ def read(path):
             raise ProgramError(f"{path.name}:{line}: the program is too long")
         if not reader.block(line, text):
             break
+    else:
+        reader.finish(line)
     return reader.program
 
 
@@ -74,6 +76,7 @@ class _Reader:
         self.base = self.tool = ""
         self.shifted = None  # why coordinates mean something that is not known here
         self.told = set()
+        self.ended = False  # by % or M99
 
     def problem(self, line, message):
         self.program.problems.append(Problem(self.file, line, message))
@@ -92,6 +95,11 @@ class _Reader:
         if not motions or motions[-1].pose is not None:
             self.trace.gap(line)
 
+    def finish(self, line):
+        """At the file's last line, without M2 or M30."""
+        if not self.ended:
+            self.problem(line, "the file ends without M30, M2 or %; it may be cut off")
+
     def block(self, line, text):
         """Follows one line; False at the program's end."""
         count = 1 if "(" in text or ";" in text else 0
@@ -100,12 +108,17 @@ class _Reader:
             if not count:
                 break
         text = text.strip().upper()
+        if text.startswith("%") and self.program.motions:
+            self.ended = True
         if not text or text.startswith(("%", "/")):
             if text.startswith("/"):
                 self.lost(line, "a block with / is skipped or not by a switch; it is left out")
                 self.forget(text)
             return True
         body = re.sub(r"^(?:[N:]\s*\d+|O\d+)\s*", "", text)
+        if body in ("RET", "M17"):  # Siemens' ends of a subprogram
+            return False
+        self.ended = body == "M99"
         try:
             if MACRO.search(body):
                 raise _Unknown("variables and macros are known to the control only")

@@ -14,8 +14,8 @@ import re
 import numpy as np
 
 from .inform_positions import positions_of
-from .program import Motion, ProgramError
-from .taught import NUMBER, MAX_ROUNDS, TaughtPath, Unknown, lines_of, pose_of
+from .program import MAX_UNROLLED, Motion, ProgramError, work_of
+from .taught import NUMBER, TaughtPath, Unknown, lines_of, pose_of
 
 MOVE = re.compile(r"(MOV[JLCS]|IMOV)(?=\s|$)\s*(.*)$")
 MOVING = re.compile(r"[+S]?MOV[JLCS]\b|IMOV\b|CALL\b")
@@ -104,11 +104,12 @@ class _Reader(TaughtPath):
         for k, (_, text) in enumerate(self.statements):
             if text.startswith("*"):
                 labels.setdefault(text.split()[0][1:], k)
-        at, rounds, jumped = 0, 0, set()
+        at, jumped = 0, set()
+        rounds = -sum(work_of(text) for _, text in self.statements)
         while at is not None and at < len(self.statements):
             line, text = self.statements[at]
-            rounds += 1
-            if rounds > MAX_ROUNDS:
+            rounds += work_of(text)
+            if rounds > MAX_UNROLLED:
                 raise ProgramError(f"{self.file}:{line}: the program is too long")
             word = re.match(r"\w*", text).group(0)
             if word == "JUMP":

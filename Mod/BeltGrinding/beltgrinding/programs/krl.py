@@ -7,12 +7,16 @@ System Software operating manuals. What only the controller can know is a Proble
 import re
 from pathlib import Path
 
+import numpy as np
+
 from .krl_expression import FRAME, Reader, Unknown, components_of, frame_of, number
-from .program import Motion, Problem, Program, ProgramError, name_of
+from .program import MAX_COORDINATE, MAX_UNROLLED, Motion, Problem, Program, ProgramError
+from .program import name_of, work_of
 
 MAX_MOTIONS = 1_000_000
-MAX_ROUNDS = 5_000_000  # statements executed, loops unrolled
 MAX_CALLS = 20
+MAX_NESTING = 60
+MAX_SPEED = 1e6  # m/s; beyond, the file is damaged
 MOTION = re.compile(
     r"^(PTP_REL|LIN_REL|CIRC_REL|SPTP_REL|SLIN_REL|SPTP|SLIN|SCIRC|SPL|PTP|LIN|CIRC)\b\s*(.*)$",
     re.IGNORECASE,
@@ -31,6 +35,14 @@ OPENING = {
     "repeat": "until",
     "switch": "endswitch",
 }
+# Words that begin a statement without a motion and without a value that a path depends on.
+QUIET = set(
+    "decl int real bool char frame pos e3pos e6pos axis e3axis e6axis fdat ldat pdat struc enum "
+    "global ext extp extfct extfctp signal ini import wait halt interrupt trigger continue brake "
+    "resume pulse anin anout cwrite cread copen cclose endspline time_block const_vel defdat "
+    "enddat channel sread swrite on confirm".split()
+)
+LABEL = re.compile(r"\w+\s*:(?!=)|[{}()\]]*$")
 HARMLESS = {"bas", "msgquit", "ir_stopm", "varstate", "msgnotify"}
 
 
@@ -52,7 +64,10 @@ def read(path):
     )
     if data is not None:
         interpreter.read_data(_statements(data), name_of(data))
-    interpreter.run(_statements(path))
+    try:
+        interpreter.run(_statements(path))
+    except RecursionError:
+        raise ProgramError(f"{path.name}: calls and blocks are nested too deeply") from None
     return interpreter.program
 
 
@@ -77,6 +92,10 @@ def _word(text):
     return match.group(0).lower() if match else ""
 
 
+class _Leave(Exception):
+    """EXIT of a loop, or RETURN from a routine; the word says which."""
+
+
 class _Interpreter:
     """Follows a program from top to bottom with the values it can know."""
 
@@ -87,8 +106,8 @@ class _Interpreter:
         self.here = None  # components of the current pose, None: unknown
         self.speed = None
         self.routines = {}
-        self.calls = 0
-        self.rounds = 0
+        self.calls = self.depth = 0
+        self.rounds = 0  # units of work; below 0: as many as the file has
         self.missing = set()
 
     def problem(self, line, message):
@@ -140,10 +159,10 @@ class _Interpreter:
             self.set_speed(value, line)
 
     def set_speed(self, metres_per_second, line):
-        if isinstance(metres_per_second, float) and metres_per_second > 0:
+        if isinstance(metres_per_second, float) and 0 < metres_per_second < MAX_SPEED:
             self.speed = 1000.0 * metres_per_second
         else:
-            self.problem(line, "the path speed is not positive; the last one stays")
+            self.problem(line, "the path speed is no sensible number; the last one stays")
 
     def read_data(self, statements, name):
         own, self.file = self.file, name
@@ -157,6 +176,7 @@ class _Interpreter:
         body, name = [], None
         order = []
         for line, text in statements:
+            self.rounds -= work_of(text)
             word = _word(text)
             if word in ("def", "deffct") or text.lower().startswith("global def"):
                 match = re.search(r"(\w+)\s*\(", text)
@@ -171,22 +191,40 @@ class _Interpreter:
                 name, body = "", [(line, text)]
                 order.append(body)
         if order:
-            self.block(order[0])
+            self.routine(order[0])
+        if name:
+            self.problem(statements[-1][0], "the routine has no END; the file may be cut off")
+
+    def routine(self, statements):
+        try:
+            self.block(statements)
+        except _Leave as leave:
+            if leave.args[0] != "return":
+                self.problem(leave.args[1], "EXIT is in no loop; what follows it is left out")
+
+    def tick(self, line, work):
+        self.rounds += work
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError(f"{self.file}:{line}: the program is too long")
 
     def block(self, statements):
         at = 0
         while at < len(statements):
-            self.rounds += 1
-            if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
-                raise ProgramError(f"{self.file}:{statements[at][0]}: the program is too long")
             line, text = statements[at]
+            self.tick(line, work_of(text))
             word = _word(text)
             if word in OPENING:
                 end = self.closing(statements, at, word)
                 if end is None:
                     self.problem(line, f"{word.upper()} has no {OPENING[word].upper()}")
                     return
-                self.structure(word, line, text, statements[at + 1 : end])
+                if self.depth >= MAX_NESTING:
+                    raise ProgramError(f"{self.file}:{line}: blocks are nested too deeply")
+                self.depth += 1
+                try:
+                    self.structure(word, line, text, statements[at + 1 : end])
+                finally:
+                    self.depth -= 1
                 at = end + 1
                 continue
             self.statement(line, text, word)
@@ -209,12 +247,22 @@ class _Interpreter:
             self.branch(line, text, body)
         elif word == "loop":
             self.skipped(line, "an endless LOOP is followed once", body)
-            self.block(body)
+            self.within(body)
         else:
             self.skipped(
                 line, f"{word.upper()} is decided at run time; its motions are left out", body
             )
             self.forget(body)
+
+    def within(self, body):
+        """Runs a loop's statements; False after EXIT."""
+        try:
+            self.block(body)
+        except _Leave as leave:
+            if leave.args[0] != "exit":
+                raise
+            return False
+        return True
 
     def skipped(self, line, message, body):
         if any(MOTION.match(text) for _, text in body):
@@ -268,8 +316,10 @@ class _Interpreter:
             self.forget(body)
             return
         for value in range(first, last + (1 if step > 0 else -1), step):
+            self.tick(line, 1)
             self.values[name, ()] = float(value)
-            self.block(body)
+            if not self.within(body):
+                break
 
     def statement(self, line, text, word):
         motion = MOTION.match(text)
@@ -292,6 +342,12 @@ class _Interpreter:
         call = CALL.match(text)
         if call:
             self.call(line, call.group(1).lower(), call.group(2))
+        elif word in ("return", "exit"):
+            raise _Leave(word, line)
+        elif word not in QUIET and not LABEL.match(text) and text[:40] not in self.missing:
+            self.missing.add(text[:40])
+            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+            self.speed = None if word == "bas" else self.speed
 
     def speed_text(self, text, line):
         try:
@@ -308,8 +364,9 @@ class _Interpreter:
             if self.calls >= MAX_CALLS:
                 self.problem(line, f"{name} calls itself too deeply; its motions are left out")
                 return
+            self.tick(line, 1)
             self.calls += 1
-            self.block(self.routines[name])
+            self.routine(self.routines[name])
             self.calls -= 1
         elif name not in HARMLESS and name not in self.missing:
             self.missing.add(name)
@@ -358,6 +415,8 @@ class _Interpreter:
         if missing:
             raise Unknown(f"{', '.join(missing)} is not given, and the pose before is not known")
         motion.pose = frame_of(components)
+        if np.abs(motion.pose[:3, 3]).max() > MAX_COORDINATE:
+            raise Unknown("the position is out of all bounds")
         motion.speed_mm_s = None if simple == "PTP" else self.speed
         if not aux:
             self.here = components

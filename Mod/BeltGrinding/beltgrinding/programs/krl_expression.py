@@ -24,6 +24,7 @@ FUNCTIONS = {
     "abs": abs,
 }
 MAX_DEPTH = 50
+MAX_LENGTH = 1e12  # mm; products of frames stay finite
 
 
 class Unknown(Exception):
@@ -48,7 +49,10 @@ def frame_of(value):
     missing = [name for name in FRAME if name not in value]
     if missing:
         raise Unknown(f"the frame has no {', '.join(missing).upper()}")
-    return from_abc([value[k] for k in "xyz"], [value[k] for k in "abc"])
+    x, y, z, a, b, c = (number(value[k]) for k in FRAME)
+    if max(abs(x), abs(y), abs(z)) > MAX_LENGTH:
+        raise Unknown("the frame is out of all bounds")
+    return from_abc((x, y, z), (a, b, c))
 
 
 def components_of(frame):

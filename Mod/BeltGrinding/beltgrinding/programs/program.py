@@ -11,6 +11,8 @@ from ..frames import to_quaternions
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 MAX_CHORDS = 10_000
+MAX_COORDINATE = 1e7  # mm; beyond, a file is damaged
+MAX_UNROLLED = 60_000  # units of work in loops, beyond what the file has: about a second
 
 
 class ProgramError(ValueError):
@@ -82,6 +84,11 @@ class Program:
             "rapid": np.array(columns[3], dtype=bool),
             "lines": np.array(columns[4], dtype=int),
         }
+
+
+def work_of(text):
+    """Units of work that following a statement takes: one, and more for a long one."""
+    return 1 + len(text) // 25
 
 
 def name_of(path):

@@ -7,7 +7,7 @@ value the module gives. What only the controller can know is a Problem.
 import re
 
 from . import rapid_data as data
-from .program import ProgramError
+from .program import ProgramError, work_of
 from .rapid_calls import CHANGING, HARMLESS, Exit, Jump, Return
 from .rapid_control import TARGET, Control
 from .rapid_data import Unknown, number
@@ -47,8 +47,9 @@ class _Interpreter(Control):
     def run(self, nodes):
         stack = list(nodes)
         while stack:
-            stack += stack.pop().body or []
-            self.rounds -= 1
+            node = stack.pop()
+            stack += node.body or []
+            self.rounds -= work_of(node.text) + 2 * node.text.count("(")
         loose = self.module(nodes)
         for name in list(self.globals):
             try:
@@ -263,6 +264,7 @@ class _Interpreter(Control):
             self.problem(node.line, f"{node.word} calls itself too deeply; it is left out")
             self.gap(node.line)
             return
+        self.tick(node.line, 2)
         own, inner, back = self.locals, {}, []
         try:
             row = tokens(node.text)[1:]

@@ -3,14 +3,13 @@
 import re
 
 from . import rapid_data as data
-from .program import ProgramError
+from .program import MAX_UNROLLED, ProgramError, work_of
 from .rapid_calls import HARMLESS, Jump
 from .rapid_data import Unknown, number
 from .rapid_expression import Reader, arguments, text_after, tokens, truth
 from .rapid_motion import MotionRunner, spec_of
 from .rapid_text import Node
 
-MAX_ROUNDS = 400_000  # statements executed, loops unrolled, beyond those the file has
 MAX_MOTIONS = 1_000_000
 FOR = re.compile(
     r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
@@ -24,20 +23,20 @@ class Control(MotionRunner):
     def __init__(self, path):
         super().__init__(path)
         self.routines = {}  # (node, parameters, body) by name
-        self.rounds = 0  # below 0: as many as the file has statements
+        self.rounds = 0  # units of work; below 0: as many as the file has
         self.line = 1
 
     def tick(self, line, rounds=1):
         self.line = line
         self.rounds += rounds
-        if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
             raise ProgramError(f"{self.file}:{line}: the program is too long")
 
     def block(self, nodes):
         at = 0
         while at < len(nodes):
             node = nodes[at]
-            self.tick(node.line)
+            self.tick(node.line, work_of(node.text) + 2 * node.text.count("("))
             at += 1
             try:
                 self.statement(node)

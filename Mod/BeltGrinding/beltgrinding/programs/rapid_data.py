@@ -82,11 +82,16 @@ def initial(kind, records, depth=0):
 
 def array(dimensions, value):
     """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
-    if math.prod(dimensions) > MAX_ARRAY or min(dimensions) < 1:
+    if min(dimensions) < 1 or math.prod(dimensions) * size(value) > MAX_ARRAY:
         raise Unknown("the array's size is not sensible")
     if len(dimensions) == 1:
         return [copied(value) for _ in range(dimensions[0])]
     return [array(dimensions[1:], value) for _ in range(dimensions[0])]
+
+
+def size(value):
+    """How many numbers, strings and truth values data holds."""
+    return sum(map(size, value)) if isinstance(value, list) else 1
 
 
 def copied(value):

@@ -211,7 +211,7 @@ class MotionRunner(State):
             if options.get("t"):
                 seconds = number(self.value(options["t"]))
                 if length and seconds > 0:
-                    return length / seconds
+                    return number(length / seconds)
                 raise Unknown("the length of the way that takes the time \\T is not known")
             if options.get("v"):
                 speed = number(self.value(options["v"]))

@@ -30,8 +30,8 @@ FIRST = re.compile(r"(?:(?:LOCAL|TASK)\s+)*(\w+)", re.IGNORECASE)
 LABEL = re.compile(r"\w+\s*:(?!=)")
 HEADS = {
     "module": re.compile(r"MODULE\s+\w+(?:\s*\([^)]*\))?", re.IGNORECASE),
-    "proc": re.compile(r"(?:LOCAL\s+)?PROC\s+\w+\s*\([^)]*\)", re.IGNORECASE),
-    "func": re.compile(r"(?:LOCAL\s+)?FUNC\s+\w+\s+\w+\s*\([^)]*\)", re.IGNORECASE),
+    "proc": re.compile(r"(?:LOCAL\s+)?PROC\s+\w+\s*\([^()]*\)", re.IGNORECASE),
+    "func": re.compile(r"(?:LOCAL\s+)?FUNC\s+\w+\s+\w+\s*\([^()]*\)", re.IGNORECASE),
     "trap": re.compile(r"(?:LOCAL\s+)?TRAP\s+\w+", re.IGNORECASE),
     "record": re.compile(r"(?:LOCAL\s+)?RECORD\s+\w+", re.IGNORECASE),
     "error": re.compile(r"ERROR(?:\s*\([^)]*\))?", re.IGNORECASE),

@@ -10,7 +10,6 @@ from .. import frames
 from .program import Motion, Problem, Program, ProgramError, name_of
 
 MAX_MOTIONS = 1_000_000
-MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
 LARGEST = 1e6  # mm or degrees; beyond it a number is damaged, not taught
 DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 NUMBER = DIGITS + r"(?![\w.])"

@@ -9,9 +9,8 @@ import math
 
 import numpy as np
 
-from .program import Motion
+from .program import MAX_COORDINATE, Motion  # noqa: F401
 
-MAX_COORDINATE = 1e7  # mm; beyond, the file is damaged
 LEAST_STEP = 1e-9  # relative; below, a motion has no direction across the axis
 
 

@@ -15,12 +15,11 @@ import re
 import warnings
 from pathlib import Path
 
-from .program import Motion, Problem, Program, ProgramError, name_of
+from .program import MAX_UNROLLED, Motion, Problem, Program, ProgramError, name_of, work_of
 from .urscript_expression import Pose, Unknown, a_pose, evaluate, number, parse, pose_of
 
 MAX_MOTIONS = 1_000_000
-MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled
-MAX_IDLE = 50_000  # of them since the last motion, in a loop
+MAX_IDLE = 25_000  # units of work since the last motion, in a loop
 MAX_CALLS = 20
 MAX_NESTING = 20
 DEFAULT_SPEED = 0.25  # m/s, without v
@@ -66,7 +65,7 @@ class _Block:
     """A statement, or one with blocks in it: ``parts`` holds (line, condition, statements)."""
 
     def __init__(self, kind, line, text):
-        self.kind, self.line, self.text = kind, line, text
+        self.kind, self.line, self.text, self.closed = kind, line, text, True
         self.parts = [] if kind == "statement" else [(line, text, [])]
 
 
@@ -78,7 +77,7 @@ class _Interpreter:
         self.file = name
         self.scopes = [{}]  # the global one first; the innermost last
         self.routines = {}
-        self.rounds = self.line = 0
+        self.rounds = self.line = 0  # rounds: units of work; below 0: as many as the file has
         self.called = False
         self.missing = set()
         self.inverse = None  # of the frame all poses are given in, 4 x 4 in metres
@@ -100,6 +99,7 @@ class _Interpreter:
             text = COMMENT.sub(lambda m: m.group(1) or "", text).strip()
             if not text:
                 continue
+            self.rounds -= work_of(text)
             word = re.match(r"\w*", text).group(0)
             inner = open_blocks[-1].parts[-1][2] if open_blocks else root
             if word in ("def", "while", "if", "thread", "sec"):
@@ -119,6 +119,7 @@ class _Interpreter:
             else:
                 inner.append(_Block("statement", line, text))
         for block in open_blocks:
+            block.closed = False
             self.problem(block.line, f"{block.kind} has no end; the file may be cut off")
         return root
 
@@ -130,8 +131,8 @@ class _Interpreter:
     def block(self, blocks):
         """Runs statements; how they end: None, break, continue, return or halt."""
         for block in blocks:
-            self.rounds, self.line = self.rounds + 1, block.line
-            if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
+            self.rounds, self.line = self.rounds + work_of(block.text), block.line
+            if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
                 raise ProgramError(f"{self.file}:{block.line}: the program is too long")
             end = None
             if block.kind == "statement":
@@ -195,7 +196,7 @@ class _Interpreter:
 
     def loop(self, block):
         _, condition, blocks = block.parts[0]
-        once = condition.strip(" ()\t") in ("True", "true")
+        once = condition.strip(" ()\t") in ("True", "true") or not block.closed
         count, start = len(self.program.motions), self.rounds
         while True:
             try:
@@ -207,7 +208,7 @@ class _Interpreter:
             self.rounds += 1
             if len(self.program.motions) > count:
                 count, start = len(self.program.motions), self.rounds
-            if self.rounds > min(MAX_ROUNDS, start + MAX_IDLE):
+            if self.rounds > min(MAX_UNROLLED, start + MAX_IDLE):
                 raise ProgramError(f"{self.file}:{block.line}: the loop does not end")
             end = self.block(blocks)
             if end == "break":
@@ -387,11 +388,11 @@ class _Interpreter:
                 raise Unknown("t is given, and the position before is not known")
             if time > 0:
                 length = math.dist(self.here, frames[-1][:3, 3])
-                return length / time if length > 0 else None
+                return number(length / time) if length > 0 else None
             speed = number(self.node(given["v"])) if "v" in given else DEFAULT_SPEED
             if speed <= 0:
                 raise Unknown("v is not positive")
-            return 1000.0 * speed
+            return number(1000.0 * speed)
         except Unknown as unknown:
             self.problem(line, f"the path speed is not known: {unknown}")
             return None

@@ -1,0 +1,153 @@
+"""What fuzzing the readers of programs (tests/fuzz/fuzz_programs.py) once found."""
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+from beltgrinding.programs import ProgramError, read_program  # noqa: E402
+
+LIN = "LIN {X 1,Y 2,Z 3,A 4,B 5,C 6}\n"
+POINT = "[[1,2,3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+MOVE = f"MoveL {POINT},v100,fine,tool0;\n"
+LS = "/PROG A\n/MN\n{}/POS\n/END\n"
+
+
+def read(tmp_path, name, text):
+    path = tmp_path / name
+    path.write_bytes(text.encode("latin-1"))
+    return read_program(path)
+
+
+@pytest.mark.parametrize(
+    "name, text, line",
+    [
+        ("cut.apt", "UNITS/MM\nGOTO/1,2,3.4", 2),
+        ("cut.apt", "UNITS/MM\nGOTO/1,2,3\nEND-OF-PATH\nGOTO/1,2,3.4", 4),
+        ("cut.nc", "G21 G90\nG1 X1 Y2 Z3.4", 2),
+        ("cut.nc", "%\nG21 G90\nG1 X1 Y2 Z3.4\nM3", 4),
+        ("cut.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,4,5,6\n1,2,3,4,5,6.7", 3),
+        ("cut.src", "DEF a()\n" + LIN, 2),
+    ],
+)
+def test_a_file_cut_off_is_said(tmp_path, name, text, line):
+    problems = read(tmp_path, name, text).problems
+    assert [(p.file, p.line) for p in problems] == [(name, line)]
+    assert "cut" in str(problems[0])
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("whole.apt", "UNITS/MM\nGOTO/1,2,3\nFINI"),
+        ("whole.apt", "UNITS/MM\nGOTO/1,2,3\nEND-OF-PATH\n$$ NX"),
+        ("whole.nc", "G21 G90\nG1 X1 Y2 Z3.4\nM30"),
+        ("whole.nc", "%\nG21 G90\nG1 X1 Y2 Z3.4\n%"),
+        ("whole.mpf", "G71 G90\nN20 G1 X1 Y2 Z3.4\nN30 RET\n"),
+        ("whole.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n1,2,3,4,5,6.7\n"),
+        ("whole.src", "DEF a()\n" + LIN + "END"),
+    ],
+)
+def test_a_whole_file_is_no_problem(tmp_path, name, text):
+    program = read(tmp_path, name, text)
+    assert len(program.motions) == 1 and not program.problems
+
+
+CALLED = zip("bcdefghij", "cdefghijk")
+LOOPS = {
+    "empty.src": "DEF a()\nFOR I=1 TO 1000000000\nENDFOR\nEND\n",
+    "long.src": "DEF a()\nFOR I=1 TO 9999999\nX=1" + "+1" * 5000 + "\nENDFOR\nEND\n",
+    "nested.src": "DEF a()\n" + "IF 1==1 THEN\n" * 2000 + LIN + "ENDIF\n" * 2000 + "END\n",
+    "self.src": "DEF a()\n" + LIN + "a()\na()\nEND\n",
+    "empty.mod": "MODULE a\nPROC main()\nFOR i FROM 1 TO 1000000000 DO\nENDFOR\nENDPROC\nENDMODULE",
+    "relative.mod": "MODULE a\nPROC main()\nFOR i FROM 1 TO 100000 DO\nMoveL "
+    + "RelTool(" * 20
+    + POINT
+    + ",1,2,3)" * 20
+    + ",v100,fine,tool0;\nENDFOR\nENDPROC\nENDMODULE",
+    "calls.mod": "MODULE a\nPROC main()\nb;\nENDPROC\n"
+    + "".join(f"PROC {name}()\n" + f"{next_};\n" * 30 + "ENDPROC\n" for name, next_ in CALLED)
+    + "PROC k()\n"
+    + MOVE
+    + "ENDPROC\nENDMODULE",
+    "moving.script": "while 1 < 2:\n  movel(p[0,0,0,0,0,0])\nend\n",
+    "registers.ls": LS.format(
+        "".join(f" {k}: R[{k}]=0 ;\n" for k in range(1, 3000))
+        + " 1: LBL[1] ;\n 2: R[1]=R[1]+1 ;\n 3: JMP LBL[1] ;\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_endless_work_is_refused_soon(tmp_path, name):
+    begin = time.process_time()
+    with pytest.raises(ProgramError, match=rf"{name}:\d+: .*(too long|too deeply|does not end)"):
+        read(tmp_path, name, LOOPS[name])
+    assert time.process_time() - begin < 4.0
+
+
+def test_a_loop_without_its_end_is_followed_once(tmp_path):
+    program = read(tmp_path, "a.script", "while 1 < 2:\n  movel(p[0,0,0,0,0,0])\n")
+    assert len(program.motions) == 1
+    assert "while has no end" in str(program.problems[0])
+
+
+def test_a_huge_array_is_not_made(tmp_path):
+    begin = time.process_time()
+    text = f"MODULE a\nVAR robtarget p{{1000,1000}};\nPROC main()\n{MOVE}ENDPROC\nENDMODULE"
+    assert len(read(tmp_path, "a.mod", text).motions) == 1
+    assert time.process_time() - begin < 1.0
+
+
+def test_a_head_that_swallows_a_statement_is_refused(tmp_path):
+    with pytest.raises(ProgramError, match="a.mod:2: the head of this PROC"):
+        read(tmp_path, "a.mod", f"MODULE a\nPROC main(\nb(1);\n{MOVE}ENDPROC\nENDMODULE")
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("a.script", "movel(p[0,0,0,0,0,0])\nmovel(p[1,0,0,0,0,0], t=1e-320)\n"),
+        ("a.script", "movel(p[0,0,0,0,0,0])\nmovel(p[1,0,0,0,0,0], v=1e308)\n"),
+        ("a.src", f"DEF a()\n{LIN}$VEL.CP=1e308\n{LIN}END\n"),
+    ],
+)
+def test_a_speed_beyond_all_bounds_is_not_known(tmp_path, name, text):
+    program = read(tmp_path, name, text)
+    assert program.motions[1].speed_mm_s is None and program.problems
+
+
+@pytest.mark.parametrize("text", ["X 99999999999", "X 1e308", "X #1"])
+def test_a_position_beyond_all_bounds_is_left_out(tmp_path, text):
+    program = read(
+        tmp_path, "a.src", f"DEF a()\n{LIN}LIN {{{text}}}\nLIN $NULLFRAME:{{{text}}}\nEND\n"
+    )
+    assert [motion.pose is None for motion in program.motions] == [False, True, True]
+    assert len(program.problems) == 2
+    assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
+
+
+def test_a_csv_beyond_all_bounds_is_refused(tmp_path):
+    with pytest.raises(ProgramError, match="a.csv:2: x_mm is 9e.09"):
+        read(tmp_path, "a.csv", "x_mm,y_mm,z_mm,a_deg,b_deg,c_deg\n9E9,2,3,4,5,6\n")
+
+
+def test_krl_words_that_are_not_understood_are_said(tmp_path):
+    program = read(tmp_path, "a.src", f"DEF a()\n{LIN}LIM {{X 1}}\nGOTO M1\nBAS(#\n{LIN}END\n")
+    assert [p.line for p in program.problems] == [3, 4, 5]
+    assert program.motions[1].speed_mm_s is None
+
+
+def test_krl_leaves_loops_and_routines(tmp_path):
+    text = (
+        "DEF a()\nFOR I=1 TO 5\nIF I==3 THEN\nEXIT\nENDIF\nLIN {X I,Y 0,Z 0,A 0,B 0,C 0}\n"
+        "ENDFOR\nb()\nLIN {X 8}\nEND\nDEF b()\nLIN {X 7}\nRETURN\nLIN {X 9}\nEND\n"
+    )
+    program = read(tmp_path, "a.src", text)
+    assert [motion.pose[0, 3] for motion in program.motions] == [1, 2, 7, 8]
+    assert not program.problems

@@ -1,0 +1,105 @@
+"""A short run of fuzz_programs.py, and proof that its oracles see what they are for."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
+
+import fuzz_programs as fuzzing  # noqa: E402
+from beltgrinding.programs import READERS, ProgramError  # noqa: E402
+from beltgrinding.programs.program import Motion, Problem, Program  # noqa: E402
+
+INPUTS = 40  # of each seed: damaged files
+STRIDE = 29  # bytes between the cuts of each seed
+SEEDS = [seed for group in fuzzing.seeds([fuzzing.OWN]).values() for seed in group]
+
+
+@pytest.mark.parametrize("seed", SEEDS, ids=lambda seed: seed.name)
+def test_damaged_programs(seed):
+    every = fuzzing.seeds([fuzzing.OWN])
+    others = fuzzing.others_of(Path(seed.name).suffix, every)
+    numbers = [*range(0, fuzzing.SHORT, STRIDE), *range(10_000, 10_000 + INPUTS)]
+    counts, _, findings = fuzzing.fuzz(seed, numbers, others)
+    assert not findings, f"replay with fuzz_programs.py --replay {seed.name}:NUMBER"
+    assert sum(counts.values()) == len(numbers)
+    assert counts["refused"] < len(numbers)  # it does read some
+
+
+@pytest.mark.parametrize("suffix", sorted(READERS))
+def test_every_language_has_a_seed(suffix):
+    if suffix in fuzzing.uncovered([fuzzing.OWN]):
+        pytest.skip(f"no seed in tests/fuzz/programs reaches the reader of {suffix}")
+
+
+def program(*motions, problems=()):
+    return Program("KRL", "a.src", list(motions), list(problems))
+
+
+def motion(x=1.0, line=1, **changes):
+    pose = np.eye(4)
+    pose[0, 3] = x
+    return Motion("LIN", changes.pop("pose", pose), line, "a.src", **changes)
+
+
+def test_another_pose_after_a_cut_is_a_finding():
+    whole = program(motion(1.25, 1), motion(2.5, 2))
+    fuzzing.compare(program(motion(1.25, 1)), whole, ("a.src", 2))
+    cut = program(motion(1.25, 1), motion(2.0, 2))
+    with pytest.raises(fuzzing.Finding, match="a.src:2: LIN is another"):
+        fuzzing.compare(cut, whole, ("a.src", 2))
+    cut.problems.append(Problem("a.src", 2, "it is cut"))
+    fuzzing.compare(cut, whole, ("a.src", 2))
+    whole.problems.append(Problem("a.src", 2, "it is cut"))  # no news: it does not tell
+    with pytest.raises(fuzzing.Finding):
+        fuzzing.compare(cut, whole, ("a.src", 2))
+
+
+@pytest.mark.parametrize(
+    "wrong, kind",
+    [
+        (motion(x=np.nan), "pose"),
+        (motion(pose=np.diag([1.0, 1.0, -1.0, 1.0])), "pose"),
+        (motion(pose=2.0 * np.eye(4)), "pose"),
+        (motion(speed_mm_s=0.0), "speed"),
+        (motion(speed_mm_s=np.inf), "speed"),
+        (motion(force_N=-1.0), "speed"),
+    ],
+)
+def test_unsound_motions_are_findings(wrong, kind):
+    arrays = {"frames": np.eye(4)[None]}
+    fuzzing.check(program(motion()), arrays)
+    with pytest.raises(fuzzing.Finding) as found:
+        fuzzing.check(program(wrong), arrays)
+    assert found.value.args[0] == kind
+
+
+def spin(path):
+    while True:
+        pass
+
+
+def refuse(path):
+    raise ProgramError(f"{path.name}: no")
+
+
+@pytest.mark.parametrize(
+    "reader, kind",
+    [
+        (spin, "slow"),
+        (lambda path: 1 / 0, "crash"),
+        (lambda path: exec("import os; os._exit(3)"), "crash"),
+        (lambda path: refuse(path.with_name("other")), "message"),
+        (refuse, None),
+    ],
+)
+def test_wrong_readers_are_found(monkeypatch, reader, kind):
+    monkeypatch.setattr(fuzzing, "read_program", reader)
+    monkeypatch.setattr(fuzzing, "LIMIT", 0.2)
+    seed = fuzzing.Seed("small.src", {"small.src": b"DEF a()\nEND\n"})
+    counts, _, findings = fuzzing.fuzz(seed, range(10_000, 10_002), [b"x"], most=1)
+    assert [found[1] for found in findings] == ([kind] if kind else [])
+    assert counts["refused"] == (0 if kind else 2)

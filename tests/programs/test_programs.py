@@ -11,8 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import ProgramError, read_program  # noqa: E402
-from beltgrinding.programs.krl_writer import write_krl  # noqa: E402
+from beltgrinding.programs import ProgramError, read_program, write_program  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -101,6 +100,19 @@ def test_what_is_not_known_is_said_with_its_line(tmp_path):
     assert arrays["rapid"][1]  # the gap is not ground over
 
 
+def test_speeds_of_blocks_and_of_single_motions(tmp_path):
+    pose = "{X 1,Y 0,Z 0,A 0,B 0,C 0}"
+    program = krl(
+        tmp_path,
+        f"DEF p()\n$VEL={{CP 0.2, ORI1 100}}\nLIN {pose}\nSPLINE WITH $VEL.CP=0.1\nSPL {pose}\n"
+        f"SPL {pose} WITH $VEL.CP=0.3, $ACC.CP=1\nSPL {pose}\nENDSPLINE\nLIN {pose}\n"
+        f"IF $IN[1] THEN\nBAS(#CP_PARAMS,2)\nENDIF\nLIN {pose}\nEND\n",
+    )
+    assert [m.speed_mm_s for m in program.motions] == [200, 100, 300, 100, 200, None]
+    (problem,) = program.problems
+    assert problem.line == 11 and "speed is not known" in problem.message
+
+
 def test_truncated_numbers_are_never_silent(tmp_path):
     for text in ("1.2.3", "12abc", "1e", "--3", "nan", "1e999"):
         program = krl(tmp_path, f"DEF p()\nLIN {{X {text},Y 0,Z 0,A 0,B 0,C 0}}\nEND\n")
@@ -133,7 +145,7 @@ def test_joint_targets_are_kept_without_a_pose(tmp_path):
 def test_krl_round_trip(tmp_path):
     rng = np.random.default_rng(4)
     poses = [frames.from_abc(rng.uniform(-500, 500, 3), rng.uniform(-89, 89, 3)) for _ in range(20)]
-    write_krl(tmp_path / "w.src", "w", [{"poses": poses, "feed_mm_s": 42.0}])
+    write_program(tmp_path / "w.src", None, [{"poses": poses, "feed_mm_s": 42.0}])
     program = read_program(tmp_path / "w.src")
     assert not program.problems
     for motion, pose in zip(program.motions, poses):

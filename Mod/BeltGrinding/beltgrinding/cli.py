@@ -62,9 +62,17 @@ def _parser():
     told.add_argument("table", help="CSV of the grinds; measured removals are compared")
     told.add_argument("-o", "--output", help="CSV of the predictions")
     told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
-    program = commands.add_parser("program", help="read a robot program, and say what is in it")
-    program.add_argument("program", help="the program's file")
-    program.add_argument("-o", "--output", help="CSV of every programmed pose")
+    program = commands.add_parser(
+        "program",
+        help="read a robot program, write changes back into it, or convert it",
+        usage="beltgrind program FILE [-o POSES.csv]\n"
+        "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.csv",
+        description="Says what is in a robot program. write: changed speeds, forces and offsets "
+        "go back into the original, nothing else changes. convert: writes it in another language.",
+    )
+    program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
+    program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials"))
     preset.add_argument("--json", action="store_true", help="as JSON")
@@ -191,12 +199,26 @@ def _calibrate_scan(arguments):
 
 def _program(arguments):
     from . import InputError
-    from .programs import ProgramError, read_program, table
+    from .programs import ProgramError, patch_program, read_program, table, write_program
     from .result import write_whole
 
+    action, *files = arguments.program
+    counts = {"write": 2, "convert": 1}
+    if action not in counts:
+        action, files = "read", arguments.program
+    if len(files) != counts.get(action, 1):
+        raise InputError(f"program {action}: {len(files)} files; see beltgrind program --help")
+    if action != "read" and not arguments.output:
+        raise InputError(f"program {action}: say by -o what file to write")
     try:
-        program = read_program(arguments.program)
-        if arguments.output:
+        if action == "write":
+            changed = patch_program(*files, arguments.output)
+            print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
+            return
+        program = read_program(files[0])
+        if action == "convert":
+            write_program(arguments.output, None, program)
+        elif arguments.output:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except ProgramError as error:
         raise InputError(str(error)) from None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..programs.krl_writer import write_krl
+from ..programs import write_program
 from .aerofoil import blade_sides
 
 ROOT_BLOCK = (90.0, 50.0, 25.0)  # mm: length, depth, height of the root
@@ -85,9 +85,9 @@ def make(folder):
     folder.mkdir(parents=True, exist_ok=True)
     solid, face = shape()
     solid.exportStep(str(folder / "blade.step"))
-    write_krl(
+    write_program(
         folder / "blade_pressure_side.src",
-        "blade_pressure_side",
+        None,
         [{"poses": poses, "feed_mm_s": FEED} for poses in passes(solid.Faces[face - 1])],
         comment="pressure side of the example blade",
     )

@@ -95,4 +95,27 @@ def read_program(path):
     return program
 
 
-__all__ = ["Motion", "Problem", "Program", "ProgramError", "file_pattern", "read_program"]
+def write_program(path, language, program, **options):
+    """Writes a new program; see ``writer.write_program``. Raises ProgramError."""
+    from . import writer
+
+    writer.write_program(path, language, program, **options)
+
+
+def patch_program(path, changes, output):
+    """Writes changed speeds, forces and offsets back into a program; see ``patch.patch``."""
+    from . import patch
+
+    return patch.patch(path, changes, output)
+
+
+__all__ = [
+    "Motion",
+    "Problem",
+    "Program",
+    "ProgramError",
+    "file_pattern",
+    "patch_program",
+    "read_program",
+    "write_program",
+]

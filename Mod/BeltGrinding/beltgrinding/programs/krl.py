@@ -27,6 +27,7 @@ ASSIGN = re.compile(
 FOR = re.compile(r"^FOR\s+(\w+)\s*=\s*(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE)
 CALL = re.compile(r"^([A-Za-z_]\w*)\s*\((.*)\)$")
 SPEED = re.compile(r"(?:\$VEL\.CP\s*=|SVEL_CP\s*\()\s*([^,)\s]+)", re.IGNORECASE)
+SETS_SPEED = re.compile(r"\$VEL(?:\.CP)?\s*=|BAS\s*\(\s*#(?:CP_PARAMS|VEL_CP)\b", re.IGNORECASE)
 OPENING = {
     "for": "endfor",
     "if": "endif",
@@ -104,7 +105,7 @@ class _Interpreter:
         self.file = name
         self.values = {}
         self.here = None  # components of the current pose, None: unknown
-        self.speed = None
+        self.speed = self.around = None  # around: before the spline block
         self.routines = {}
         self.calls = self.depth = 0
         self.rounds = 0  # units of work; below 0: as many as the file has
@@ -157,6 +158,8 @@ class _Interpreter:
             self.values[head, ()][component] = value
         if name == "$vel.cp":
             self.set_speed(value, line)
+        elif name == "$vel" and isinstance(value, dict) and "cp" in value:
+            self.set_speed(value["cp"], line)
 
     def set_speed(self, metres_per_second, line):
         if isinstance(metres_per_second, float) and 0 < metres_per_second < MAX_SPEED:
@@ -270,13 +273,16 @@ class _Interpreter:
 
     def forget(self, body):
         """What a block assigns that may or may not run is unknown afterwards."""
-        for _, text in body:
+        for line, text in body:
             match = ASSIGN.match(text)
             if match:
                 name = match.group(2).lower()
                 for key in [k for k in self.values if k[0] == name]:
                     del self.values[key]
-            elif MOTION.match(text):
+            if SETS_SPEED.match(text) and self.speed is not None:
+                self.problem(line, "the path speed is not known after this; the default is used")
+                self.speed = None
+            if not match and MOTION.match(text):
                 self.here = None
 
     def branch(self, line, text, body):
@@ -327,9 +333,13 @@ class _Interpreter:
             self.motion(line, motion.group(1).upper(), motion.group(2))
             return
         if word == "spline":
+            self.around = self.speed
             found = SPEED.search(text)
             if found:
                 self.speed_text(found.group(1), line)
+            return
+        if word == "endspline":  # WITH holds within the block
+            self.speed = self.around
             return
         match = ASSIGN.match(text)
         if (
@@ -375,7 +385,12 @@ class _Interpreter:
 
     def motion(self, line, kind, text):
         try:
-            reader = Reader(re.split(r"(?i)\bWITH\b", text)[0], self.lookup)
+            text, *options = re.split(r"(?i)\bWITH\b", text, maxsplit=1)
+            own = SPEED.search(options[0]) if options else None
+            if own:
+                self.own_speed(line, kind, text, own.group(1))
+                return
+            reader = Reader(text, self.lookup)
             targets = [reader.expression()]
             if "CIRC" in kind:
                 reader.expect(",")
@@ -388,6 +403,13 @@ class _Interpreter:
             self.here = None
             # The path beyond must not be joined over the gap as if nothing were missing.
             self.program.motions.append(Motion("PTP", None, line, self.file))
+
+    def own_speed(self, line, kind, text, speed):
+        """A motion with a speed of its own."""
+        before = self.speed
+        self.speed_text(speed, line)
+        self.motion(line, kind, text)
+        self.speed = before
 
     def target(self, line, kind, target, aux, rest):
         if not isinstance(target, dict):

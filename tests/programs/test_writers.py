@@ -1,0 +1,255 @@
+"""New programs: what is written reads back the same, in every language."""
+
+import os
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+from beltgrinding import cli, frames  # noqa: E402
+from beltgrinding.programs import Motion, ProgramError, read_program, write_program  # noqa: E402
+from beltgrinding.programs.writer import frame_in_words, identifier  # noqa: E402
+
+PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
+needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
+SAME_PATH = [
+    "crs_part5.src",
+    "CrsPart5.mod",
+    "CRS_PART5.ls",
+    "crs_part5.script",
+    "CRSPART5.JBI",
+    "crs_part5_AC.nc",
+    "crs_part5.apt",
+]
+LANGUAGES = [".src", ".mod", ".script"]
+
+
+def angle_deg(a, b):
+    """From the chord of the matrices, exact for small angles."""
+    return np.degrees(np.linalg.norm(a[:3, :3] - b[:3, :3]) / np.sqrt(2.0))
+
+
+def assert_same(before, after, kinds=True):
+    before = [m for m in before if m.pose is not None]
+    after = [m for m in after if m.pose is not None]
+    assert len(before) == len(after)
+    for a, b in zip(before, after):
+        assert np.abs(a.pose[:3, 3] - b.pose[:3, 3]).max() <= 1e-6
+        assert angle_deg(a.pose, b.pose) <= 1e-6
+        assert a.aux == b.aux
+        assert a.kind == b.kind or (not kinds and (a.kind, b.kind) == ("SPL", "LIN"))
+        if a.speed_mm_s is not None and a.kind != "PTP":
+            assert b.speed_mm_s == pytest.approx(a.speed_mm_s, rel=1e-6)
+
+
+def some_motions(rng, count, kinds=("PTP", "LIN", "CIRC", "SPL")):
+    """Random motions all over the rotations, gimbal lock and half turns among them."""
+    special = [(0, 90, 0), (30, -90, 20), (180, 0, 0), (0, 180, 0), (0, 0, 180), (0, 0, 0)]
+
+    def pose():
+        place = rng.uniform(-2000, 2000, 3)
+        if rng.random() < 0.3:
+            return frames.from_abc(place, special[rng.integers(len(special))])
+        q = rng.normal(size=4)
+        return frames.from_quaternion(place, q / np.linalg.norm(q))
+
+    motions = [Motion("PTP", pose(), 0, "")]
+    while len(motions) < count:
+        kind = kinds[rng.integers(len(kinds))]
+        speed = None if kind == "PTP" else float(rng.choice([100.0, 33.3, 0.125, 2500.0]))
+        if kind == "CIRC":
+            motions.append(Motion(kind, pose(), 0, "", speed, aux=True))
+        motions.append(Motion(kind, pose(), 0, "", speed))
+    return motions
+
+
+@needs_shared
+@pytest.mark.parametrize("suffix", LANGUAGES)
+@pytest.mark.parametrize("name", SAME_PATH)
+def test_real_paths_go_round(tmp_path, name, suffix):
+    before = read_program(PROGRAMS / "same_path_crs_part5" / name)
+    file = tmp_path / f"path{suffix}"
+    write_program(file, None, before)
+    after = read_program(file)
+    assert not after.problems
+    assert_same(before.motions, after.motions, kinds=suffix == ".src")
+    # The second time round nothing changes any more.
+    write_program(tmp_path / f"again{suffix}", None, after, name="path")
+    again = read_program(tmp_path / f"again{suffix}")
+    assert_same(after.motions, again.motions)
+    assert {m.base for m in after.motions} == {m.base for m in again.motions} or suffix == ".mod"
+    rapid = [b.path_arrays(9.0)["rapid"] for b in (before, after)]
+    np.testing.assert_array_equal(*rapid)
+
+
+@pytest.mark.parametrize("suffix", LANGUAGES)
+def test_generated_motions_go_round(tmp_path, suffix):
+    for seed in range(4):
+        motions = some_motions(np.random.default_rng(seed), 200)
+        write_program(tmp_path / f"p{suffix}", None, motions)
+        after = read_program(tmp_path / f"p{suffix}")
+        assert not after.problems
+        assert_same(motions, after.motions, kinds=suffix == ".src")
+
+
+def test_poses_go_round_in_csv_with_forces(tmp_path):
+    motions = some_motions(np.random.default_rng(5), 100, ("PTP", "LIN"))
+    for k, motion in enumerate(motions):
+        motion.force_N = [None, 30.0, 12.5][k % 3]
+    write_program(tmp_path / "p.csv", None, motions)
+    after = read_program(tmp_path / "p.csv").motions
+    assert_same(motions, after)
+    assert [m.force_N for m in after] == [m.force_N for m in motions]
+    assert [m.speed_mm_s for m in after] == [m.speed_mm_s for m in motions]
+
+
+def test_arcs_become_chords_in_csv(tmp_path):
+    def at(angle):
+        turn = np.radians(angle)
+        return frames.from_abc((50 * np.cos(turn), 50 * np.sin(turn), 0), (angle, 0, 0))
+
+    motions = [Motion("PTP", at(0), 0, "")]
+    motions += [Motion("CIRC", at(a), 0, "", 10.0, aux=a == 45) for a in (45, 90)]
+    write_program(tmp_path / "p.csv", None, motions)
+    poses = read_program(tmp_path / "p.csv").path_arrays(9.0)["frames"]
+    np.testing.assert_allclose(np.linalg.norm(poses[:, :2, 3], axis=1), 50.0, atol=2e-6)
+    assert len(poses) > 20
+
+
+@pytest.mark.parametrize("suffix", LANGUAGES)
+def test_forces_are_comments(tmp_path, suffix):
+    motions = [Motion("LIN", frames.from_abc((k, 0, 0), (0, 0, 0)), 0, "", 50.0) for k in range(4)]
+    motions[1].force_N = motions[2].force_N = 30.0
+    write_program(tmp_path / f"p{suffix}", None, motions)
+    text = (tmp_path / f"p{suffix}").read_text()
+    assert text.count("force 30 N") == 1 and text.count("force as set") == 1
+    assert all(m.force_N is None for m in read_program(tmp_path / f"p{suffix}").motions)
+
+
+def test_tools_and_bases_by_their_matrices(tmp_path):
+    tool = frames.from_abc((10, 20, 300.5), (0, 90, 0))
+    base = frames.from_abc((1500, -250, 420), (30, 0, 0))
+    other = frames.from_abc((0, 0, 99), (0, 0, 0))
+    motions = some_motions(np.random.default_rng(1), 6, ("LIN",))
+    motions[3].tool = motions[4].tool = "finger"
+    options = {"tools": {"": tool, "finger": other}, "bases": base}
+    for suffix in LANGUAGES:
+        write_program(tmp_path / f"p{suffix}", None, motions, **options)
+        after = read_program(tmp_path / f"p{suffix}")
+        assert not after.problems
+        assert_same(motions, after.motions)
+        for k, expected in ((0, tool), (3, other), (5, tool)):
+            found = frame_in_words(after.motions[k].tool)
+            np.testing.assert_allclose(found, expected, atol=2e-3 if suffix == ".script" else 1e-6)
+        np.testing.assert_allclose(frame_in_words(after.motions[0].base), base, atol=2e-3)
+
+
+def test_a_part_in_the_hand_is_robhold(tmp_path):
+    motions = some_motions(np.random.default_rng(2), 5, ("LIN",))
+    write_program(tmp_path / "p.mod", None, motions, part_in_hand=True)
+    text = (tmp_path / "p.mod").read_text()
+    assert "tooldata tool_1:=[FALSE," in text and "wobjdata wobj_1:=[TRUE," in text
+    program = read_program(tmp_path / "p.mod")
+    assert not program.problems
+    assert program.motions[0].base.endswith("held by the robot")
+    write_program(tmp_path / "q.mod", None, program)  # told by the words of its frames
+    assert "wobjdata wobj_1:=[TRUE," in (tmp_path / "q.mod").read_text()
+    for suffix in (".src", ".script"):
+        with pytest.raises(ProgramError, match="robhold"):
+            write_program(tmp_path / f"p{suffix}", None, program)
+
+
+@pytest.mark.parametrize("suffix", LANGUAGES)
+def test_over_a_gap_nothing_is_ground(tmp_path, suffix):
+    motions = some_motions(np.random.default_rng(3), 4, ("LIN",))
+    motions.insert(2, Motion("PTP", None, 17, "x"))
+    write_program(tmp_path / f"p{suffix}", None, motions)
+    after = read_program(tmp_path / f"p{suffix}")
+    assert [m.kind for m in after.motions] == ["PTP", "LIN", "PTP", "LIN"]
+    assert "no pose is known for line 17" in (tmp_path / f"p{suffix}").read_text()
+    arc = some_motions(np.random.default_rng(3), 3, ("CIRC",))
+    arc.insert(2, Motion("PTP", None, 17, "x"))  # between the auxiliary point and the end
+    write_program(tmp_path / f"p{suffix}", None, arc)
+    assert read_program(tmp_path / f"p{suffix}").motions[1].kind == "PTP"
+
+
+def test_splines_speeds_and_blends(tmp_path):
+    at = [frames.from_abc((10.0 * k, 0, 0), (0, 0, 0)) for k in range(6)]
+    kinds = ["PTP", "SPL", "SPL", "SPL", "LIN", "LIN"]
+    feeds = [None, 50.0, 50.0, 80.0, 50.0, 60.0]
+    motions = [Motion(k, p, 0, "", v) for k, p, v in zip(kinds, at, feeds)]
+    write_program(tmp_path / "p.src", None, motions, blend_mm=2.0, comment="näïve\r\nDEF x()")
+    data = (tmp_path / "p.src").read_bytes()
+    assert data.count(b"\n") == data.count(b"\r\n") and data.isascii()
+    rows = data.decode().splitlines()
+    assert "&COMMENT n??ve DEF x()" in rows and "$APO.CDIS=2" in rows
+    assert sum(row.startswith("SPLINE") for row in rows) == 1
+    assert [row for row in rows if "WITH $VEL.CP=0.08" in row][0].startswith("SPL {X 30")
+    assert sum(row.startswith("$VEL.CP") for row in rows) == 2
+    assert [m.speed_mm_s for m in read_program(tmp_path / "p.src").motions] == feeds
+    write_program(tmp_path / "p.mod", None, motions, blend_mm=7.0)
+    text = (tmp_path / "p.mod").read_text()
+    assert text.count(",z5,") == 5 and text.count(",fine,") == 1
+    write_program(tmp_path / "p.script", None, motions, blend_mm=7.0)
+    text = (tmp_path / "p.script").read_text()
+    assert text.count("r=0.004)") == 4 and text.count("r=0.0)") == 1  # never to the middle
+
+
+@pytest.mark.parametrize(
+    "change, culprit",
+    [
+        (lambda m: m[1].pose.__setitem__((0, 0), 5.0), "pose 1: its matrix is no rotation"),
+        (lambda m: m[1].pose.__setitem__((0, 3), np.nan), "not finite"),
+        (lambda m: setattr(m[1], "speed_mm_s", -1.0), "motion 1: the speed is -1"),
+        (lambda m: setattr(m[1], "kind", "CIRC"), "motion 1: the arc has no auxiliary"),
+        (lambda m: m.clear(), "no pose"),
+    ],
+)
+def test_what_cannot_be_written_is_named(tmp_path, change, culprit):
+    motions = some_motions(np.random.default_rng(1), 3, ("LIN",))
+    change(motions)
+    for suffix in LANGUAGES:
+        with pytest.raises(ProgramError, match=culprit):
+            write_program(tmp_path / f"p{suffix}", None, motions)
+        assert not (tmp_path / f"p{suffix}").exists()
+
+
+def test_names_and_languages(tmp_path):
+    motions = some_motions(np.random.default_rng(1), 3, ("LIN",))
+    for name in ("1st", "a-b", "a" * 25):
+        with pytest.raises(ProgramError, match="no name of a KRL module"):
+            write_program(tmp_path / f"{name}.src", None, motions)
+    write_program(tmp_path / "1st part.mod", None, motions)
+    assert (tmp_path / "1st part.mod").read_text().startswith("MODULE p_1st_part\n")
+    assert len(identifier("x" * 90, 32)) == 32
+    with pytest.raises(ProgramError, match="no program is written as '.ls'"):
+        write_program(tmp_path / "p.ls", None, motions)
+    write_program(tmp_path / "p.txt", ".src", motions)
+    assert "DEF p ( )" in (tmp_path / "p.txt").read_text()
+    bases = [Motion("LIN", np.eye(4), 0, "", 9.0, base=b) for b in ("a", "b")]
+    with pytest.raises(ProgramError, match="one frame"):
+        write_program(tmp_path / "p.script", None, bases)
+
+
+@pytest.mark.parametrize("suffix", [*LANGUAGES, ".csv"])
+def test_many_poses_are_written_in_seconds(tmp_path, suffix):
+    poses = np.tile(np.eye(4), (50_000, 1, 1))
+    poses[:, 0, 3] = np.arange(50_000) * 0.5
+    begin = time.perf_counter()
+    write_program(tmp_path / f"p{suffix}", None, [{"poses": poses, "feed_mm_s": 40.0}])
+    assert time.perf_counter() - begin < 5.0
+
+
+def test_convert_from_the_command_line(tmp_path, capsys):
+    motions = some_motions(np.random.default_rng(1), 5, ("LIN",))
+    write_program(tmp_path / "p.src", None, motions)
+    new = tmp_path / "p.mod"
+    assert cli.main(["program", "convert", str(tmp_path / "p.src"), "-o", str(new)]) == 0
+    assert_same(motions, read_program(new).motions)
+    assert cli.main(["program", "convert", str(new), "-o", str(tmp_path / "p.xyz")]) == 2
+    assert "no program is written as '.xyz'" in capsys.readouterr().err

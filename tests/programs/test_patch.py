@@ -209,6 +209,15 @@ def test_krl_speed_of_one_motion_is_set_and_put_back(tmp_path):
     assert after == KRL.replace("=0.2", "=0.0015")
 
 
+def test_what_is_so_already_changes_no_byte(tmp_path):
+    write(tmp_path, "p.dat", DATA)
+    changes = [{"index": k, "speed_mm_s": 100, "dx_mm": 0} for k in (1, 2, 3)]
+    assert patched(tmp_path, "p.src", KRL, changes)[0] == KRL
+    file = tmp_path / "p.src"
+    patch_program(file, [{"index": 4, "speed_mm_s": 150}], file)  # in place
+    assert file.read_bytes().decode() == KRL.replace("=0.2", "=0.15")
+
+
 def test_krl_offsets(tmp_path):
     write(tmp_path, "p.dat", DATA)
     after, program = patched(tmp_path, "p.src", KRL, [{"index": 3, "tool_dz_mm": 0.05}])
@@ -269,6 +278,15 @@ def test_krl_what_may_run_or_not_keeps_its_speed(tmp_path):
         "$VEL.CP=0.1"
     ]
     source = "DEF p()\n$VEL.CP=0.1\nother()\nLIN {X 0,Y 0,Z 0,A 0,B 0,C 0}\nLIN {X 1}\nEND\n"
+    refused(tmp_path, "p.src", source, [{"index": 0, "speed_mm_s": 50}], "cannot be put back")
+
+
+def test_krl_an_unknown_speed_is_made_known(tmp_path):
+    pose = "LIN {X 0,Y 0,Z 0,A 0,B 0,C 0}\n"
+    source = f"DEF p()\n$VEL.CP=vel\n{pose}END\n"
+    after, program = patched(tmp_path, "p.src", source, [{"index": 0, "speed_mm_s": 50}])
+    assert after == source.replace("vel", "0.05") and not program.problems
+    source = f"DEF p()\n$VEL.CP=vel\n{pose}{pose}END\n"
     refused(tmp_path, "p.src", source, [{"index": 0, "speed_mm_s": 50}], "cannot be put back")
 
 

@@ -8,6 +8,7 @@ import csv
 import io
 import math
 import tempfile
+from bisect import bisect_right
 from collections import Counter
 from pathlib import Path
 
@@ -165,7 +166,7 @@ def _work(program, changes, source, module):
     for line in sorted({motions[i].line for i in named}):
         for key, found in (("speed_mm_s", work.speeds), ("force_N", work.forces)):
             value = _agreed(work, line, [i for i in lines[line] if not motions[i].aux], named, key)
-            if value is not None:
+            if value is not None and not _has(work, line, key, value):
                 found[line] = value
         _shifts(work, line, named, source, module)
     return work
@@ -230,6 +231,12 @@ def _agreed(work, line, members, named, key):
     return values.pop()
 
 
+def _has(work, line, key, value):
+    """Whether all motions of a line have the value already: nothing is to be written then."""
+    ends = [work.program.motions[i] for i in work.lines[line]]
+    return all(getattr(m, key) == value for m in ends)
+
+
 def _shifts(work, line, named, source, module):
     """The displacements of a statement's targets."""
     motions, keys = work.program.motions, COLUMNS[2:]
@@ -267,7 +274,8 @@ def _verify(program, again, work, source, module):
     problems = Counter(problem.message for problem in again.problems)
     before = Counter(problem.message for problem in program.problems)
     # A speed that was not known may be now.
-    solved = Counter(p.message for p in program.problems if p.line in work.speeds)
+    edited = {bisect_right(source.starts, begin) for begin, _, _ in source.edits}
+    solved = Counter(p.message for p in program.problems if p.line in edited)
     if len(old) != len(new) or problems - before or before - solved - problems:
         raise ProgramError(
             f"{program.file}: the changed program does not read like the original; it is not written"

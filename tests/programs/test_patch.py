@@ -205,6 +205,8 @@ def test_krl_speed_of_one_motion_is_set_and_put_back(tmp_path):
     change = [{"line": k, "speed_mm_s": 80} for k in (4, 5, 6)]
     after, program = patched(tmp_path, "p.src", KRL, change)
     assert after == KRL.replace("=0.1 ;", "=0.08 ;")
+    spaced = KRL.replace("=0.1 ;", "=\t0.1\t;")
+    assert patched(tmp_path, "p.src", spaced, change)[0] == spaced.replace("0.1\t", "0.08\t")
     after, program = patched(tmp_path, "p.src", KRL, [{"index": 4, "speed_mm_s": 1.5}])
     assert after == KRL.replace("=0.2", "=0.0015")
 
@@ -395,6 +397,15 @@ def test_urscript(tmp_path, change, old, new):
     before = read_program(tmp_path / "p.script")
     moved = np.abs(places(program) - places(before)).max(axis=1) > 1e-9
     assert moved.sum() == (0 if "speed_mm_s" in change else 1)
+
+
+def test_urscript_in_a_loop(tmp_path):
+    source = "def p():\n  i = 0\n  while i < 3:\n    movel(p[0.1 * i, 0, 0, 0, 0, 0], v=0.1)\n"
+    source += "    i = i + 1\n  end\nend\n"
+    after, program = patched(tmp_path, "p.script", source, [{"line": 4, "dy_mm": 1}])
+    assert "movel(pose_trans(p[0.1 * i, 0, 0, 0, 0, 0], p[0.0, 0.001, 0.0, 0.0" in after
+    np.testing.assert_allclose(places(program)[:, 1], 1.0)
+    refused(tmp_path, "p.script", source, [{"index": 1, "dy_mm": 1}], "motions 0, 1, 2")
 
 
 def test_urscript_an_offset_in_another_frame(tmp_path):

@@ -159,7 +159,7 @@ def _set(source, codes, line, value):
     bas = BAS.match(code)
     span = bas.span(1) if bas else ASSIGN.match(code).span(4)
     first, last = begin + span[0], begin + span[1]
-    while source.text[first] == " " and first < last:
+    while first < last and source.text[first].isspace():
         first += 1
     source.replace(first, last, text)
     for k in range(line - 1, max(0, line - 1 - FORM_LINES), -1) if bas else ():

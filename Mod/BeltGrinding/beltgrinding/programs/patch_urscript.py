@@ -86,22 +86,30 @@ def _move(source, work, line, shift, begin, end):
     literal = IN_FRAME.match(text) if _in_frame(work, shift) else LITERAL.match(text)
     if literal and step is not None:
         first = begin + literal.start(1) + (literal.group(1).find("[") + 1)
-        for value, text in zip(step, literal.group(1).split("[")[-1].rstrip("]").split(",")):
-            number = NUMBER.match(text)
-            if not number:
-                break
-            if value:
-                place = moved(number.group(1), value / 1000.0, PLACE_DIGITS)
-                source.replace(first + number.start(1), first + number.end(1), place)
-            first += len(text) + 1
-        else:
+        edits = _literal(literal.group(1).split("[")[-1].rstrip("]"), first, step)
+        if edits is not None:
+            for place in edits:
+                source.replace(*place)
             return
-        raise work.refuse(line, "its target's coordinates are no plain numbers")
     step = work.in_tool(shift)
     if step is None:
         raise work.refuse(line, "its passes are turned differently; give the offset as tool_dz_mm")
     place = ", ".join(decimal(v / 1000.0, PLACE_DIGITS + 2, 1) for v in np.round(step, 9))
     source.replace(begin, end, f"pose_trans({text}, p[{place}, 0.0, 0.0, 0.0])")
+
+
+def _literal(text, first, step):
+    """(begin, end, number) of each coordinate to be changed; None: they are no plain numbers."""
+    edits = []
+    for value, part in zip(step, text.split(",")):
+        number = NUMBER.match(part)
+        if not number:
+            return None
+        if value:
+            place = moved(number.group(1), value / 1000.0, PLACE_DIGITS)
+            edits.append((first + number.start(1), first + number.end(1), place))
+        first += len(part) + 1
+    return edits
 
 
 def _in_frame(work, shift):

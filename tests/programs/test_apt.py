@@ -154,3 +154,10 @@ def test_mutated_programs_never_crash(tmp_path):
             assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
         except ProgramError as error:
             assert "m.apt" in str(error)
+
+
+def test_feet_per_minute(tmp_path):
+    program = cl(tmp_path, "FEDRAT/2,FPM\nGOTO/1,2,3\nFEDRAT/2,FPR\nGOTO/2,2,3\n")
+    assert program.motions[0].speed_mm_s == pytest.approx(2 * 304.8 / 60)
+    assert program.motions[1].speed_mm_s is None
+    assert [p.line for p in program.problems] == [4]

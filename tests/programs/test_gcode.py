@@ -182,3 +182,17 @@ def test_mutated_programs_never_crash(tmp_path):
             assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
         except ProgramError as error:
             assert "m.nc" in str(error)
+
+
+def test_siemens_direction_vectors_are_the_axis(tmp_path):
+    program = nc(
+        tmp_path,
+        "TRAORI\nG1 X0 Y0 Z0 A3=0 B3=2 C3=2 F600\nX10\nA3=1\nX20 A0 C0\nX30 A3=0 B3=0 C3=0\n"
+        "X40\nTRAFOOF\nX50 A3=1\n",
+    )
+    half = [0.0, 0.7071, 0.7071]
+    for motion, axis in zip(program.motions, [half, half, [1, 0, 0], [0, 0, 1]]):
+        np.testing.assert_allclose(-motion.pose[:3, 2], axis, atol=1e-4)
+    # What a direction that is none leaves behind is not known.
+    assert all(motion.pose is None for motion in program.motions[4:])
+    assert [p.line for p in program.problems] == [6, 7, 9]

@@ -12,6 +12,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import frames  # noqa: E402
 from beltgrinding.programs import ProgramError, urscript  # noqa: E402
+from beltgrinding.programs.urscript_expression import pose_of  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -226,3 +227,39 @@ def test_mutated_programs_never_crash(tmp_path, monkeypatch):
             assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
         except ProgramError as error:
             assert "m.script" in str(error)
+
+
+def test_the_manuals_own_numbers(tmp_path):
+    # Universal Robots, Script Manual e-Series, 16.20 pose_add, 16.22 pose_inv, 16.24 pose_trans.
+    poses = "p[.2,.5,.1,1.57,0,0], p[.2,.5,.6,1.57,0,0]"
+    program = script(
+        tmp_path,
+        f"movel(pose_add({poses}))\nmovel(pose_trans({poses}))\n"
+        "movel(pose_inv(p[.2,.5,.1,1.57,0,3.14]))\n",
+    )
+    for motion, expected in zip(
+        program.motions,
+        [
+            [0.4, 1.0, 0.7, 3.14, 0, 0],
+            [0.4, -0.0996, 0.60048, 3.14, 0, 0],
+            [0.19324, 0.41794, -0.29662, 1.23993, 0, 2.47985],
+        ],
+    ):
+        wanted = pose_of(expected).frame
+        np.testing.assert_allclose(motion.pose[:3, :3], wanted[:3, :3], atol=2e-3)
+        np.testing.assert_allclose(motion.pose[:3, 3], 1000.0 * wanted[:3, 3], atol=0.02)
+    assert not program.problems
+
+
+def test_optimove_has_poses_and_no_speed(tmp_path):
+    pose = "p[0.1,0,0,0,0,0]"
+    program = script(tmp_path, f"optimovej({pose}, v=0.5)\noptimovel({pose}, a=0.4, v=0.6)\n")
+    assert [m.kind for m in program.motions] == ["PTP", "LIN"]
+    assert all(m.speed_mm_s is None for m in program.motions)
+    assert [p.line for p in program.problems] == [2]
+
+
+def test_each_unknown_call_is_a_gap(tmp_path):
+    program = script(tmp_path, "movel(p[0,0,0,0,0,0])\nfoo()\nmovel(p[1,0,0,0,0,0])\nfoo()\n")
+    assert [m.pose is None for m in program.motions] == [False, True, False, True]
+    assert len(program.problems) == 1

@@ -19,8 +19,14 @@ MAX_CONTINUED = 200  # lines of one statement
 INCH = 25.4  # mm
 RADIUS_ERROR = 0.05  # mm, between an arc's radius at its start and at its end
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
-FEED_UNITS = {"MMPM": 1.0 / 60.0, "IPM": INCH / 60.0, "MMPS": 1.0, "IPS": INCH}
-PER_REVOLUTION = ("MMPR", "IPR")
+FEED_UNITS = {
+    "MMPM": 1.0 / 60.0,
+    "IPM": INCH / 60.0,
+    "FPM": 12.0 * INCH / 60.0,
+    "MMPS": 1.0,
+    "IPS": INCH,
+}
+PER_REVOLUTION = ("MMPR", "IPR", "FPR")
 TEXT = ("PARTNO", "PPRINT", "REMARK", "TOOL PATH", "END-OF-PATH", "INSERT", "LETTER", "DISPLAY")
 # Statements without motion.
 HARMLESS = set(

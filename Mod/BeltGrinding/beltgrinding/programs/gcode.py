@@ -2,7 +2,7 @@
 
 Under G43.4 or TRAORI X, Y, Z are the tool's tip in the part and the rotary words give the axis from
 the part to the spindle: Rz(C) Rx(A) [0,0,1], or Rz(C) Ry(B) [0,0,1]; under G43.5 I, J, K are the
-axis itself. The pose's z points into the work (-axis); the rotation about it is free: x is chosen
+axis itself, and so are A3, B3, C3 under TRAORI. The pose's z points into the work (-axis); the rotation about it is free: x is chosen
 along the motion's direction, projected across the axis (``tool_axis``). Without rotary words the
 axis is Z, and no TCP control is needed. What needs the machine's kinematics or the control's memory
 is a Problem, and the motions that depend on it are left out.
@@ -21,6 +21,7 @@ INCH = 25.4  # mm
 RADIUS_ERROR = 0.05  # mm, between an arc's radius at its start and at its end
 COMMENT = re.compile(r"\([^()]*\)|;.*")
 WORD = re.compile(r"\s*([A-Z])\s*=?\s*([-+]?(?:\d+\.?\d*|\.\d+))(?![\d.]|[A-Z]\w*\s*\()")
+VECTOR = re.compile(r"(?<![A-Z0-9])([ABC])3\s*=\s*([-+]?(?:\d+\.?\d*|\.\d+))(?![\w.])")
 MACRO = re.compile(r"#|\[|\b(?:IF|WHILE|GOTO|GOTOF|GOTOB|FOR|REPEAT|DEF|R\d+\s*=|Q\d+|CALL)\b|\$")
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 OFFSETS = {54, 55, 56, 57, 58, 59, 500, *range(505, 600), 54.1, 59.1, 59.2, 59.3}
@@ -71,6 +72,7 @@ class _Reader:
         self.plane = 17
         self.tcp = None  # None, "angles" or "vector"
         self.axis = (0.0, 0.0, 1.0)
+        self.vector = None  # the axis by A3, B3, C3, as long as it holds
         self.feed_mode = 94
         self.feed = None  # mm/s
         self.base = self.tool = ""
@@ -129,11 +131,12 @@ class _Reader:
                     self.shifted = f"{frame.group(0)} changes the frame in the control"
                     self.problem(line, f"{self.shifted}; the motions in it are left out")
             elif body == "TRAORI":
-                self.tcp = "angles"
+                self.tcp, self.vector = "angles", None
             elif body == "TRAFOOF":
-                self.tcp = None
+                self.tcp = self.vector = None
             elif body and not NAMED.match(body):
-                return self.words(line, self.split(body))
+                turned = self.turn(body)
+                return self.words(line, self.split(VECTOR.sub(" ", body).strip()), turned)
         except _Unknown as unknown:
             self.lost(line, f"the block is left out: {unknown}")
             self.forget(body)
@@ -147,7 +150,7 @@ class _Reader:
         self.at = [None if jumps or k in body else v for k, v in zip("XYZ", self.at)]
         for letter in "ABC":
             if letter in body and not jumps:
-                self.rotary[letter] = None
+                self.rotary[letter] = self.vector = None
         if "F" in body:
             self.feed = None
         if "G" in body:
@@ -170,7 +173,19 @@ class _Reader:
             at = match.end()
         return words
 
-    def words(self, line, words):
+    def turn(self, body):
+        """Takes the tool's axis from A3, B3, C3 (any length; left out: 0); True where it is given."""
+        parts = VECTOR.findall(body)
+        if not parts:
+            return False
+        values = {letter: float(text) for letter, text in parts}
+        axis = unit([values.get(letter, 0.0) for letter in "ABC"])
+        if len(values) < len(parts) or axis is None or self.tcp != "angles":
+            raise _Unknown("A3, B3, C3 are no direction, or without TRAORI")
+        self.vector = axis
+        return True
+
+    def words(self, line, words, turned):
         given, codes, going = {}, [], True
         for letter, value in words:
             if letter == "G":
@@ -198,8 +213,10 @@ class _Reader:
             if any(letter in given for letter in "XYZABC"):
                 self.shifted = "G92 sets an origin that is not known here"
             return going
-        moves = any(letter in given for letter in "XYZABC") or (
-            any(letter in given for letter in "IJK") and (self.mode in (2, 3) or self.tcp)
+        moves = (
+            turned
+            or any(letter in given for letter in "XYZABC")
+            or (any(letter in given for letter in "IJK") and (self.mode in (2, 3) or self.tcp))
         )
         if moves:
             if once in (28, 30, 53):
@@ -225,7 +242,7 @@ class _Reader:
         elif code in (43.4, 43.5):
             self.tcp = "angles" if code == 43.4 else "vector"
         elif code == 49:
-            self.tcp = None
+            self.tcp = self.vector = None
         elif code in OFFSETS:
             self.base = f"G{code:g}"
         elif code in (41, 42, 43, 44):
@@ -265,6 +282,7 @@ class _Reader:
                 target[k] = None if target[k] is None else target[k] + self.scale * given[letter]
         for letter in "ABC":
             if letter in given:
+                self.vector = None
                 turn = 0.0 if self.absolute else self.rotary.get(letter)
                 self.rotary[letter] = None if turn is None else turn + given[letter]
         start, self.at = self.at, target
@@ -297,6 +315,8 @@ class _Reader:
                     raise _Unknown("I, J, K of the tool's axis are zero")
                 self.axis = axis
             return self.axis
+        if self.vector is not None:
+            return self.vector
         unknown = [letter for letter, v in self.rotary.items() if v is None]
         if unknown:
             raise _Unknown(f"{', '.join(unknown)} is not known")

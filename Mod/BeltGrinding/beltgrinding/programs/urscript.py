@@ -23,7 +23,7 @@ MAX_IDLE = 25_000  # units of work since the last motion, in a loop
 MAX_CALLS = 20
 MAX_NESTING = 20
 DEFAULT_SPEED = 0.25  # m/s, without v
-MOVE = re.compile(r"\b(?:move[jlpc]|servo[jc]|speed[jl])\s*\(")
+MOVE = re.compile(r"\b(?:move[jlpc]|optimove[jl]|servo[jc]|speed[jl])\s*\(")
 ASSIGN = re.compile(r"^(?:(global|local)\s+)?([A-Za-z_]\w*)\s*(\[.*?\])?\s*=(?!=)\s*(.+)$")
 DEFINE = re.compile(r"^def\s+([A-Za-z_]\w*)\s*\((.*)\)\s*:?$")
 COMMENT = re.compile(r'("[^"]*")|#.*')
@@ -32,8 +32,11 @@ PARAMETERS = {
     "movel": ("pose", "a", "v", "t", "r"),
     "movep": ("pose", "a", "v", "r"),
     "movec": ("pose_via", "pose_to", "a", "v", "r", "mode"),
+    "optimovej": ("goal", "a", "v", "r"),
+    "optimovel": ("goal", "a", "v", "r"),
 }
 KINDS = {"movej": "PTP", "movel": "LIN", "movep": "LIN", "movec": "CIRC"}
+KINDS |= {"optimovej": "PTP", "optimovel": "LIN"}
 HARMLESS = re.compile(
     r"^(?:(?:set|get|is|write|read|socket|modbus|rtde|rpc|popup|textmsg|zero|request|enter|exit|"
     r"tool|reset|str|to|encoder)_\w+|textmsg|popup|sleep|sync|stopj|stopl|unlock|"
@@ -320,9 +323,10 @@ class _Interpreter:
                 self.set_tool(line, tree)
             elif name in self.routines:
                 self.invoke(name, tree.args, tree.keywords)
-            elif not HARMLESS.match(name) and name not in self.missing:
-                self.missing.add(name)
-                self.problem(line, f"{name}() is not known here; motions in it are left out")
+            elif not HARMLESS.match(name):
+                if name not in self.missing:
+                    self.missing.add(name)
+                    self.problem(line, f"{name}() is not known here; motions in it are left out")
                 self.gap(line)
         except Unknown as unknown:
             word = re.match(r"\w*", text).group(0) or text[:40]
@@ -355,13 +359,13 @@ class _Interpreter:
                 raise Unknown(f"it has {len(values[0])} joints")
             for joint in values[0]:
                 number(joint)
-            if name != "movej":
+            if KINDS[name] != "PTP":
                 raise Unknown("its target is a joint position")
             self.here = None
             self.program.motions.append(Motion("PTP", None, line, self.file, tool=self.tool))
             return
         frames = [self.in_base(a_pose(value)) for value in values]
-        speed = None if name == "movej" else self.speed(line, given, frames)
+        speed = None if KINDS[name] == "PTP" else self.speed(line, name, given, frames)
         for frame in frames:
             motion = Motion(KINDS[name], frame, line, self.file, speed)
             motion.tool, motion.base, motion.aux = self.tool, self.base, frame is not frames[-1]
@@ -380,9 +384,11 @@ class _Interpreter:
         frame[:3, 3] *= 1000.0
         return frame
 
-    def speed(self, line, given, frames):
+    def speed(self, line, name, given, frames):
         """mm/s by t (before v) or v; None: not known."""
         try:
+            if name == "optimovel":
+                raise Unknown("optimovel takes a part of what the robot can")
             time = number(self.node(given["t"])) if "t" in given else 0.0
             if time > 0 and self.here is None:
                 raise Unknown("t is given, and the position before is not known")

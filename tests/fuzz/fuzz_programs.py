@@ -12,6 +12,7 @@ input is known by its seed file and number: --replay FILE:NUMBER writes it out a
 
 import argparse
 import collections
+import gzip
 import math
 import multiprocessing
 import os
@@ -110,6 +111,8 @@ def files_of(seed, number, others):
         files[name], line = _line_cut(files[name], dice) if within else _end_cut(files[name], dice)
         return files, whole, (name, line)
     files[name] = damaged(files[name], others, dice)
+    if name.endswith(".urp") and dice.random() < 0.3:  # PolyScope packs it, and so it may be cut
+        files[name] = _end_cut(gzip.compress(files[name], 1), dice)[0]
     return files, None, None
 
 

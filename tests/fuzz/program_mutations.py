@@ -6,6 +6,7 @@ LARGEST = 200_000  # bytes of a damaged file
 LONG = 80  # lines; of a longer file a few windows are taken, so that many inputs a second are read
 NUMBER = re.compile(rb"[-+]?\d+\.?\d*")
 WORD = re.compile(rb"[$#]?\w+")
+QUOTED = re.compile(rb'"[^"<>\n]*"')
 NUMBERS = (
     *(b"1e999", b"-1e999", b"nan", b"inf", b"1e308", b"1e-320", b"99999999999", b"2147483648"),
     *(b"-0", b"", b"1.2.3", b"1,5", b"--1", b"1_000", b"0x10", b"1e", b".", b"9E9", b"360", b"0"),
@@ -21,9 +22,9 @@ ENCODINGS = ("utf-16", "utf-8-sig", "utf-16-be", "cp037")
 
 
 def excerpt(data, dice):
-    """``data``, or head, some windows and tail of it where it is long."""
+    """``data``, or head, some windows and tail of it where it is long (and no XML)."""
     lines = data.splitlines(keepends=True)
-    if len(lines) <= LONG or dice.random() < 0.01:
+    if len(lines) <= LONG or data.startswith(b"<") or dice.random() < 0.01:
         return data
     head, tail = dice.randint(8, 40), dice.randint(1, 12)
     kept = lines[:head]
@@ -35,8 +36,9 @@ def excerpt(data, dice):
 
 def damaged(data, others, dice):
     """A copy of ``data`` with one to six damages; ``others`` are files to take pieces from."""
+    kinds = VALUES if data.startswith(b"<") and dice.random() < 0.8 else DAMAGES  # XML stays sound
     for _ in range(dice.choice((1, 1, 1, 2, 3, 6))):
-        data = dice.choice(DAMAGES)(data, others, dice)[:LARGEST]
+        data = dice.choice(kinds)(data, others, dice)[:LARGEST]
     return data
 
 
@@ -92,6 +94,15 @@ def _word(data, others, dice):
     return data[: match.start()] + other.group() + data[match.end() :]
 
 
+def _quoted(data, others, dice):
+    """A quoted text of the file in another one's place."""
+    texts = list(QUOTED.finditer(data))
+    if not texts:
+        return data
+    match, other = dice.choice(texts), dice.choice(texts)
+    return data[: match.start()] + other.group() + data[match.end() :]
+
+
 def _line(data, others, dice):
     """A line removed, doubled, moved, cut, joined with the next or repeated many times."""
     lines = data.splitlines(keepends=True) or [b""]
@@ -127,6 +138,7 @@ def _cased(data, others, dice):
     return data[:at] + data[at:end].swapcase() + data[end:]
 
 
+VALUES = (_number, _number, _quoted, _word)
 DAMAGES = (
     *(_changed_byte, _without, _doubled, _spliced, _token, _token, _number, _number, _number),
     *(_word, _word, _line, _line, _line, _encoded, _cased, cut),

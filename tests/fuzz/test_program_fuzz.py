@@ -13,7 +13,7 @@ import fuzz_programs as fuzzing  # noqa: E402
 from beltgrinding.programs import READERS, ProgramError  # noqa: E402
 from beltgrinding.programs.program import Motion, Problem, Program  # noqa: E402
 
-INPUTS = 40  # of each seed: damaged files
+INPUTS = 30  # of each seed: damaged files
 STRIDE = 29  # bytes between the cuts of each seed
 SEEDS = [seed for group in fuzzing.seeds([fuzzing.OWN]).values() for seed in group]
 

@@ -4,6 +4,8 @@ import csv
 import math
 from pathlib import Path
 
+import numpy as np
+
 from .. import frames
 from .program import MAX_COORDINATE, Motion, Problem, Program, ProgramError, name_of
 
@@ -51,7 +53,25 @@ def read(path):
     if not text.endswith(("\n", "\r")):
         message = "the last line has no end; a number in it may be cut off"
         program.problems.append(Problem(name, lines[-1][0], message))
+    if "qw" in columns:
+        _turn(program.motions)
     return program
+
+
+def _turn(motions):
+    """Poses of all motions at once: one by one they would take most of the time."""
+    values = np.array([motion.pose for motion in motions], dtype=float).reshape(-1, 7)
+    try:
+        poses = frames.from_quaternions(values[:, :3], values[:, 3:])
+    except ValueError:
+        for motion, row in zip(motions, values):  # which one it is
+            try:
+                frames.from_quaternion(row[:3], row[3:])
+            except ValueError as error:
+                raise ProgramError(f"{motion.file}:{motion.line}: {error}") from None
+        raise
+    for motion, pose in zip(motions, poses):
+        motion.pose = pose
 
 
 def _check(columns, name, number):
@@ -96,10 +116,7 @@ def _motion(row, name, line):
 
     position = [number(column) for column in POSITION]
     if "qw" in row:
-        try:
-            pose = frames.from_quaternion(position, [number(column) for column in QUATERNION])
-        except ValueError as error:
-            raise ProgramError(f"{name}:{line}: {error}") from None
+        pose = [*position, *(number(column) for column in QUATERNION)]  # _turn makes a pose of it
     else:
         pose = frames.from_abc(position, [number(column) for column in ANGLES])
     kind = row.get("motion", "").strip().upper() or "LIN"

@@ -210,3 +210,12 @@ def test_mutated_programs_never_crash(tmp_path):
             assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
         except ProgramError:
             pass
+
+
+def test_rotation_vectors():
+    axis = np.array([1.0, -2.0, 2.0]) / 3.0
+    angles = np.array([0.0, 1e-14, 0.5, 3.0])
+    half = 0.5 * angles
+    turns = np.hstack([np.cos(half)[:, None], np.sin(half)[:, None] * axis])
+    rotations = frames.from_quaternions(np.zeros((4, 3)), turns)[:, :3, :3]
+    assert np.allclose(frames.rotation_vectors(rotations), angles[:, None] * axis, atol=1e-12)

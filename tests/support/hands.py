@@ -70,6 +70,25 @@ def press(text):
     raise AssertionError(text)
 
 
+def click_at(x, y):
+    """A click into the 3D view, at device pixels from its lower left."""
+    quarter = [
+        w
+        for w in window.findChildren(QtGui.QWidget)
+        if w.metaObject().className().endswith("QuarterWidget") and w.isVisible()
+    ]
+    widget = quarter[0].viewport()
+    ratio = widget.devicePixelRatioF()
+    at = QtCore.QPointF(round(x / ratio), widget.height() - 1 - round(y / ratio))
+    place = QtCore.QPointF(widget.mapToGlobal(at.toPoint()))
+    for kind in (QtCore.QEvent.MouseButtonPress, QtCore.QEvent.MouseButtonRelease):
+        button, none = QtCore.Qt.LeftButton, QtCore.Qt.NoModifier
+        QtGui.QApplication.sendEvent(
+            widget, QtGui.QMouseEvent(kind, at, place, button, button, none)
+        )
+    settle()
+
+
 def choose(path):
     """Makes the next file dialog answer with ``path``."""
     QtGui.QFileDialog.getOpenFileName = staticmethod(lambda *a, **k: (str(path), ""))

@@ -60,6 +60,7 @@ DOCUMENT_FUNCTIONS = (
     "make_belt_machine",
     "make_belt",
     "wear_belt",
+    "follow_path",
     "import_program",
     "simulate",
     "make_deviation",

@@ -69,6 +69,16 @@ def to_quaternions(rotations):
     return np.where(quaternions[:, :1] < 0, -quaternions, quaternions)
 
 
+def rotation_vectors(rotations):
+    """(n, 3) axis times angle in radian, 0 to pi, of rotations (n, 3, 3)."""
+    quaternions = to_quaternions(rotations)
+    sines = np.linalg.norm(quaternions[:, 1:], axis=1)
+    angles = 2.0 * np.arctan2(sines, quaternions[:, 0])
+    # 2 is the limit of angle / sine for a small turn.
+    factors = np.divide(angles, sines, out=np.full(len(sines), 2.0), where=sines > 1e-12)
+    return quaternions[:, 1:] * factors[:, None]
+
+
 def from_abc(position, abc_deg):
     """4 x 4 from a position in mm and KUKA's A, B, C in degrees: Rz(A) Ry(B) Rx(C)."""
     a, b, c = (math.radians(angle) for angle in abc_deg)
@@ -105,3 +115,13 @@ def from_data(data):
     if "abc_deg" in data:
         return from_abc(position, data["abc_deg"])
     return from_quaternion(position, data.get("quaternion_wxyz", [1, 0, 0, 0]))
+
+
+def base_from_tcp(
+    work_from_contact, holding, base_from_work, tcp_from_contact, tcp_from_work, base_from_contact
+):
+    """(n, 4, 4) tool frames at which the contact frame lies at (n, 4, 4) ``work_from_contact``: the
+    cell's equations solved for the robot's pose."""
+    if holding == "tool_in_hand":
+        return base_from_work @ work_from_contact @ np.linalg.inv(tcp_from_contact)
+    return base_from_contact @ np.linalg.inv(work_from_contact) @ np.linalg.inv(tcp_from_work)

@@ -7,7 +7,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from .. import InputError
-from ..objects import api, belt_machine, deviation, robot_path, simulation, stock
+from ..objects import api, belt_machine, deviation, freecad_path, robot_path, simulation, stock
 from ..objects.job_object import BeltGrindingJob, child
 from ..objects.proxy import type_of
 from ..programs import file_pattern
@@ -173,6 +173,23 @@ class BeltMachine(_Child):
         return api.make_belt_machine(job)
 
 
+class Cell(Command):
+    NAME = "BeltGrinding_Cell"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Cell", "Cell")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Cell", "Says who holds what, and where; shows the wheel at every pose"
+    )
+
+    def run(self):
+        from .cell_panel import CellPanel
+
+        job = active_job()
+        with transaction(job.Document, "Cell", panel=True) as step:
+            panel = CellPanel(api.make_belt_machine(job))
+        if not step.failed:
+            Gui.Control.showDialog(panel)
+
+
 class Belt(Command):
     NAME = "BeltGrinding_Belt"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Belt", "Belt")
@@ -191,9 +208,7 @@ class Belt(Command):
 class ImportProgram(Command):
     NAME = "BeltGrinding_ImportProgram"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Import robot program...")
-    TIP = QT_TRANSLATE_NOOP(
-        "BeltGrinding_ImportProgram", "Reads a robot program (KUKA KRL or CSV) into the job"
-    )
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Reads a robot program into the job")
 
     def run(self):
         title = translate("BeltGrinding", "Import robot program")
@@ -208,6 +223,33 @@ def import_program(job, path):
         program = api.import_program(job, path)
     if not step.failed:
         edit(program)
+
+
+class FollowPath(Command):
+    NAME = "BeltGrinding_FollowPath"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_FollowPath", "Follow selected path")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_FollowPath",
+        "Grinds along the selected CAM path or robot trajectory of FreeCAD, and follows its changes",
+    )
+
+    def run(self):
+        job = active_job()
+        sources = [
+            obj
+            for obj in Gui.Selection.getSelection(job.Document.Name)
+            if freecad_path.is_path(obj) and type_of(obj) != robot_path.RobotPath.TYPE
+        ]
+        if len(sources) != 1:
+            raise InputError(
+                translate(
+                    "BeltGrinding", "Select one CAM path or robot trajectory in the tree first."
+                )
+            )
+        with transaction(job.Document, "Follow selected path", panel=True) as step:
+            program = api.follow_path(job, sources[0])
+        if not step.failed:
+            edit(program)
 
 
 class Simulate(Command):
@@ -350,8 +392,18 @@ class ReadAgain(Command):
             job.Document.recompute()
 
 
-WORK = (NewJob, Stock, BeltMachine, ImportProgram, Simulate, Deviation)
-MORE = (Belt, Calibrate, Contact, ReadAgain, OpenJob, ExportJob, ImportResult, ExampleBlade)
+WORK = (NewJob, Stock, BeltMachine, ImportProgram, Cell, Simulate, Deviation)
+MORE = (
+    FollowPath,
+    Belt,
+    Calibrate,
+    Contact,
+    ReadAgain,
+    OpenJob,
+    ExportJob,
+    ImportResult,
+    ExampleBlade,
+)
 
 
 def register():

@@ -8,32 +8,44 @@ from ..programs import file_pattern
 from .compat import QtGui, translate
 from .form import Form
 from .panel import Panel
+from .pose_walk import PoseTable, PoseWalk
 
 SHOWN_PROBLEMS = 200
+TABLE_HEIGHT = 260  # pixels
 
 
 class ProgramPanel(Panel):
-    """Edits a RobotPath: its file, its overrides; shows what could not be resolved."""
+    """Edits a RobotPath: its file, its overrides; shows its poses, their source, what could not be
+    resolved. A pose chosen in the view, the table, the source or by the slider is chosen in all."""
 
     def __init__(self, obj):
         title = translate("BeltGrinding", "Robot program")
         super().__init__(obj, title, "BeltGrinding_ImportProgram")
         form = Form(obj, translate("BeltGrinding", "Program"))
-        form.add("Source", translate("BeltGrinding", "File"), f"Robot programs ({file_pattern()})")
+        if obj.SourceObject is None:
+            pattern = f"Robot programs ({file_pattern()})"
+            form.add("Source", translate("BeltGrinding", "File"), pattern)
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
         self.body.addWidget(form)
         again = QtGui.QPushButton(translate("BeltGrinding", "Read the file again"))
         again.setObjectName("reload")
         again.clicked.connect(self.reload)
+        again.setVisible(obj.SourceObject is None)
         self.body.addWidget(again)
+        self.walk = PoseWalk(obj.Document, obj.Machine, [obj])
+        self.table = PoseTable()
+        self.table.setMinimumHeight(TABLE_HEIGHT)
         self.problems = QtGui.QListWidget()
         self.problems.setObjectName("problems")
-        self.body.addWidget(self.problems)
+        self.walk.moved = self.table.show_pose
+        self.table.chosen = self.walk.go
+        self.body.addWidget(self.walk)
+        self.body.addWidget(self.table, 1)
         self.source = obj.Source
         form.changed = self.changed
         self.finish()
-        self.describe()
+        self.show()
 
     def changed(self):
         if self.obj.Source != self.source:
@@ -51,20 +63,38 @@ class ProgramPanel(Panel):
             self.obj.Source = self.source
             self.tell(str(error), True)
             return
-        self.describe()
+        self.show()
 
-    def describe(self):
-        """Figures of the path and the list of problems."""
+    def show(self):
+        """Poses, source and problems as they are now."""
         obj = self.obj
-        obj.recompute()
-        self.tell(
-            translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
-                obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
-            )
-        )
+        self.table.show_path(obj)
+        self.walk.choose(0)
+        if obj.Poses:
+            self.table.show_pose(0)
         self.problems.clear()
         self.problems.addItems(obj.Problems[:SHOWN_PROBLEMS])
         if len(obj.Problems) > SHOWN_PROBLEMS:
             more = len(obj.Problems) - SHOWN_PROBLEMS
             self.problems.addItem(translate("BeltGrinding", "... and {} more").format(more))
-        self.problems.setVisible(bool(obj.Problems))
+        at = self.table.indexOf(self.problems)
+        if at >= 0:
+            self.table.removeTab(at)
+        if obj.Problems:
+            text = translate("BeltGrinding", "Problems ({})").format(len(obj.Problems))
+            self.table.addTab(self.problems, text)
+        self.describe()
+
+    def describe(self):
+        """Figures of the path."""
+        obj = self.obj
+        if "Touched" in obj.State:
+            obj.recompute()
+        self.tell(
+            translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
+                obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
+            )
+        )
+
+    def close(self):
+        self.walk.release()

@@ -109,18 +109,8 @@ class BeltMachinePanel(Panel):
         belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
         text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
         belt.add("RobotStiffness", text, unit="N/mm")
-        cell = self.cell = Form(obj, translate("BeltGrinding", "Cell"))
-        holding = {
-            "tool_in_hand": translate("BeltGrinding", "Tool in hand"),
-            "part_in_hand": translate("BeltGrinding", "Part in hand"),
-        }
-        cell.add("Holding", translate("BeltGrinding", "Robot holds"), holding)
-        cell.add("BaseFromWork", translate("BeltGrinding", "Part in base"))
-        cell.add("TcpFromContact", translate("BeltGrinding", "Contact in tool"))
-        cell.add("TcpFromWork", translate("BeltGrinding", "Part in tool"))
-        cell.add("BaseFromContact", translate("BeltGrinding", "Contact in base"))
         self.body.addWidget(PresetForm(obj, (wheel, belt), self.hardness))
-        for form in (wheel, belt, cell):
+        for form in (wheel, belt):
             form.changed = self.arrange
             self.body.addWidget(form)
         self.belt, self.wheel = belt, wheel
@@ -128,12 +118,7 @@ class BeltMachinePanel(Panel):
         self.arrange()
 
     def arrange(self):
-        """Shows the frames that the holding uses, and the fields of the control."""
-        frames = {
-            "tool_in_hand": {"BaseFromWork", "TcpFromContact"},
-            "part_in_hand": {"TcpFromWork", "BaseFromContact"},
-        }
-        self.cell.show_rows({"Holding"} | frames[self.obj.Holding])
+        """Shows the fields that the elasticity and the control use."""
         force = {"force": {"Force", "ForceTravel"}, "position": {"RobotStiffness"}}[
             self.obj.Control
         ]

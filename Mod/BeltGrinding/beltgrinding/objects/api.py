@@ -116,6 +116,23 @@ def import_program(job, path, **properties):
     return program
 
 
+def follow_path(job, source, **properties):
+    """Adds a RobotPath that follows a path object of FreeCAD: a ``Path::Feature`` (CAM), whose
+    commands say where the contact runs, or a ``Robot::TrajectoryObject``. It changes when that does.
+    """
+    program = source.Document.addObject("Path::FeaturePython", "RobotPath")
+    with _removed_on_error(program):
+        robot_path.RobotPath(program)
+        program.Machine = child(job, belt_machine.BeltMachine)
+        program.SourceObject = source
+        robot_path.follow(program)
+        set_by_name(program, properties)
+        program.Label = f"{source.Label} ground"
+        job.addObject(program)
+        program.recompute()
+    return program
+
+
 def simulate(job, context=None, write_to=None):
     """Grinds the job here and now; returns its Simulation object. ``write_to``: a folder for the
     files that ``beltgrind run`` writes.

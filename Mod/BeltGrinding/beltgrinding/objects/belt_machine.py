@@ -1,9 +1,7 @@
 """The belt machine in the document: contact wheel, belt, control, and the cell's frames."""
 
-import numpy as np
-
 from .belt import Belt
-from .geometry import placement_to_job
+from .geometry import matrix, placement_to_job
 from .properties import Key, add_keys, to_job
 from .proxy import Proxy, type_of
 
@@ -36,6 +34,13 @@ FRAMES = {
     "TcpFromWork": ("tcp_from_work", "part in hand: the document's origin in the tool frame"),
     "BaseFromContact": ("base_from_contact", "part in hand: the contact frame in the base frame"),
 }
+# property: (frame that its objects' coordinates are taken in, text)
+BODIES = {
+    "BodiesInBase": ("base", "what stands still in the cell, in the base frame"),
+    "BodiesInTool": ("tool", "what the robot carries (gripper, tool), in the tool frame"),
+    "BodiesAtWheel": ("contact", "what goes with the wheel (housing), in the contact frame"),
+    "BodiesAtPart": ("part", "what goes with the part (clamps), in the document's coordinates"),
+}
 
 
 class BeltMachine(Proxy):
@@ -53,6 +58,9 @@ class BeltMachine(Proxy):
         for name, (_, text) in FRAMES.items():
             if name not in obj.PropertiesList:
                 obj.addProperty("App::PropertyPlacement", name, "Cell", text)
+        for name, (_, text) in BODIES.items():
+            if name not in obj.PropertiesList:
+                obj.addProperty("App::PropertyLinkListGlobal", name, "Bodies", text)
 
     def to_job(self, obj):
         """The parts of a job under 'belt_machine' and 'cell'."""
@@ -68,5 +76,5 @@ class BeltMachine(Proxy):
         """The cell's frames as core.ToolPath takes them: 4 x 4 in mm, by name."""
         cell = {"holding": obj.Holding}
         for name, (key, _) in FRAMES.items():
-            cell[key] = np.array(getattr(obj, name).toMatrix().A, dtype=float).reshape(4, 4)
+            cell[key] = matrix(getattr(obj, name))
         return cell

@@ -54,6 +54,11 @@ def _poles(face):
     )
 
 
+def matrix(placement):
+    """(4, 4) array of a FreeCAD.Placement, mm."""
+    return np.array(placement.toMatrix().A, dtype=float).reshape(4, 4)
+
+
 def placement_to_job(placement):
     """A job's frame from a FreeCAD.Placement."""
     x, y, z, w = placement.Rotation.Q

@@ -7,9 +7,10 @@ import FreeCAD
 import numpy as np
 import Path
 
-from .. import InputError, core
+from .. import InputError, core, frames
 from ..poses import DEFAULT_FEED
 from ..programs import ProgramError, read_program
+from . import freecad_path
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
 
@@ -44,6 +45,10 @@ class RobotPath(Proxy):
             return True
 
         add("File", "Source", "Program", "the robot program that the poses come from")
+        text = (
+            "the CAM path or robot trajectory of FreeCAD that the poses follow, in place of a file"
+        )
+        add("LinkGlobal", "SourceObject", "Program", text)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
         if add("Link", "Machine", "Program", "the belt machine, for the cell's frames"):
@@ -82,6 +87,8 @@ class RobotPath(Proxy):
         return hashed.hexdigest()
 
     def execute(self, obj):
+        if obj.SourceObject is not None:
+            follow(obj)
         arrays = self.arrays(obj)
         if len(arrays["frames"]) < 2:
             obj.Path = Path.Path()
@@ -91,26 +98,23 @@ class RobotPath(Proxy):
             feeds = np.full(len(feeds), obj.FeedOverride.Value)
         cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
         path = core.ToolPath(**{**arrays, "feeds": feeds}, **cell)
-        frames = path.work_from_contact()
-        obj.PoseCount = len(frames)
-        steps = np.diff(frames[:, :3, 3], axis=0)
+        contacts = path.work_from_contact()
+        obj.PoseCount = len(contacts)
+        steps = np.diff(contacts[:, :3, 3], axis=0)
         obj.PathLength = float(np.linalg.norm(steps, axis=1).sum())
         obj.Duration = path.duration()
-        obj.Path = Path.Path(_commands(frames, feeds, arrays["rapid"]))
+        obj.Path = Path.Path(_commands(contacts, feeds, arrays["rapid"]))
 
 
-def _commands(frames, feeds, rapid):
+def _commands(contacts, feeds, rapid):
     """X Y Z of the contact in mm, its rotation vector in degrees as U V W (A B C would be drawn as
     angles of a rotary table), F in mm/s."""
-    commands = []
-    for frame, feed, fast in zip(frames, feeds, rapid):
-        rotation = FreeCAD.Rotation(
-            *(FreeCAD.Vector(*frame[:3, k]) for k in range(3)), "XYZ"
-        )  # from the frame's axes
-        vector = rotation.Axis * np.degrees(rotation.Angle)
-        words = dict(zip("XYZUVW", (*frame[:3, 3].tolist(), *vector)), F=float(feed))
-        commands.append(Path.Command("G0" if fast else "G1", words))
-    return commands
+    turns = np.degrees(frames.rotation_vectors(contacts[:, :3, :3]))
+    rows = np.hstack([contacts[:, :3, 3], turns, np.asarray(feeds, dtype=float)[:, None]]).tolist()
+    return [
+        Path.Command("G0" if fast else "G1", dict(zip("XYZUVWF", row)))
+        for row, fast in zip(rows, rapid)
+    ]
 
 
 def make_robot_path(doc, arrays, label="Program"):
@@ -146,10 +150,31 @@ def read_arrays(path):
     return program, arrays
 
 
+def follow(obj):
+    """Takes the poses of a RobotPath from its SourceObject. Raises InputError; then nothing is
+    changed.
+
+    A CAM path says where the contact runs over the part: the tool frames follow by the cell's.
+    """
+    source = obj.SourceObject
+    program = freecad_path.program_of(source)
+    arrays = program.path_arrays(DEFAULT_FEED)
+    count = len(arrays["frames"])
+    if count < 2:
+        raise InputError(f"{obj.Label}: {source.Label} has {count} poses; two at least make a path")
+    if not hasattr(source, "Trajectory") and obj.Machine is not None:
+        cell = obj.Machine.Proxy.cell(obj.Machine)
+        arrays["frames"] = frames.base_from_tcp(arrays["frames"], **cell)
+    set_arrays(obj, arrays)
+    obj.Language = program.language
+    obj.Problems = [str(problem) for problem in program.problems]
+
+
 def load_program(obj, path, **values):
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
     program, arrays = read_arrays(path)
     set_arrays(obj, arrays)
+    obj.SourceObject = None
     obj.Source = os.path.abspath(path)
     obj.Language = program.language
     obj.Problems = [str(problem) for problem in program.problems]

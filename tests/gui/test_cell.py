@@ -1,0 +1,128 @@
+"""The cell and the poses of a program, by hand: slider, table, source, a click in the view, bodies."""
+
+PREPARE = """
+import numpy as np
+from pathlib import Path
+from support.hands import *
+job = prepare()
+doc, part, machine = job.Document, job.Document.Block, job.Document.BeltMachine
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.viewTop()
+view.fitAll()
+settle()
+path = doc.RobotPath
+"""
+
+
+def test_a_pose_is_the_same_in_view_table_source_and_slider(freecad):
+    freecad.run(
+        PREPARE
+        + """
+path.ViewObject.Proxy.doubleClicked(path.ViewObject)
+settle()
+table, source = field("poses"), field("poseTabs").findChild(QtGui.QPlainTextEdit, "source")
+assert table.model().rowCount() == 9
+
+field("poseNumber").setValue(4)
+assert table.currentIndex().row() == 3
+assert source.textCursor().blockNumber() + 1 == path.Lines[3] == 5
+
+table.setCurrentIndex(table.model().index(6, 0))
+assert field("poseNumber").value() == 7
+assert source.textCursor().blockNumber() + 1 == path.Lines[6]
+
+cursor = source.textCursor()
+cursor.setPosition(source.document().findBlockByNumber(path.Lines[1] - 1).position())
+source.setTextCursor(cursor)
+assert field("poseNumber").value() == 2 and table.currentIndex().row() == 1
+
+# The poses lie at x = 10, 15, ... 50; y = 20; seen from above.
+place = view.getPointOnScreen(FreeCAD.Vector(30, 20, 20.2))
+click_at(*place)
+assert field("poseNumber").value() == 5, field("poseNumber").value()
+click_at(3, 3)  # nothing is there
+assert field("poseNumber").value() == 5
+nodes = view.getSceneGraph().getNumChildren()
+press("OK")
+assert view.getSceneGraph().getNumChildren() == nodes - 2  # the wheel is gone
+""",
+        window=True,
+    )
+
+
+def test_the_cell_is_set_up_with_the_wheel_in_view(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.gui import pose_walk
+walks, init = [], pose_walk.PoseWalk.__init__
+def watched(self, *arguments):
+    init(self, *arguments)
+    walks.append(self)
+pose_walk.PoseWalk.__init__ = watched
+
+gripper = doc.addObject("Part::Box", "Gripper")
+gripper.Placement.Base = (0, 0, -50)
+doc.recompute()
+menu("Cell")
+walk = walks[-1].view
+field("poseNumber").setValue(5)
+wheel = walk.frames()["contact"]
+assert np.allclose(wheel[:3, 3], [30, 20, 20.2]) and np.allclose(wheel[:3, 2], [0, 0, -1])
+assert not field("cellMoves").isEnabled()  # tool in hand: the wheel moves anyway
+
+frame = field("BaseFromWork")
+line = [w for w in frame.findChildren(QtGui.QWidget, "X")][0].findChild(QtGui.QLineEdit)
+line.setFocus(); line.selectAll(); line.insert("10 mm"); line.editingFinished.emit()
+settle()
+assert machine.BaseFromWork.Base.x == 10
+assert np.allclose(walk.frames()["contact"][:3, 3], [20, 20, 20.2])
+wait(lambda: abs(path.Path.Commands[0].Placement.Base.x) < 1e-6)  # the drawn path follows
+
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Gripper")
+field("bodyFrame").setCurrentIndex(1)
+press("Add selected")
+assert machine.BodiesInTool == [gripper] and field("bodies").count() == 1
+field("bodyFrame").setCurrentIndex(0)
+press("Add selected")  # a body is in one frame
+assert machine.BodiesInTool == [] and machine.BodiesInBase == [gripper]
+
+field("Holding").setCurrentIndex(1)
+field("cellMoves").setChecked(True)
+field("poseNumber").setValue(1)
+assert np.allclose(walk.carried(walk.frames()), np.eye(4))
+start = walk.carried(walk.frames()) @ walk.frames()["contact"]
+field("poseNumber").setValue(6)
+moved = walk.carried(walk.frames())
+assert np.linalg.norm(moved[:3, 3]) > 20  # the part goes through the cell
+assert np.allclose(moved @ walk.frames()["contact"], start)  # the wheel stands still
+press("Cancel")
+assert machine.Holding == "tool_in_hand" and machine.BodiesInBase == []
+assert machine.BaseFromWork.Base.x == 0
+""",
+        window=True,
+    )
+
+
+def test_a_cam_path_is_followed(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import Path as Cam
+milling = doc.addObject("Path::Feature", "Contour")
+milling.Path = Cam.Path([Cam.Command("G0", {"X": 10, "Y": 10, "Z": 30}),
+                         Cam.Command("G1", {"Z": 20.2, "F": 20}),
+                         Cam.Command("G1", {"X": 50, "F": 40})])
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Contour")
+menu("Follow selected path")
+press("OK")
+made = [o for o in job.Group if o.Label == "Contour ground"][0]
+assert made.PoseCount == 3 and list(made.Feeds)[1:] == [20, 40]
+doc.undo()
+assert not [o for o in doc.Objects if o.Label == "Contour ground"]
+""",
+        window=True,
+    )

@@ -604,6 +604,14 @@ def test_the_data_of_another_program_is_not_overwritten(tmp_path):
         patch_program(file, [{"index": 2, "speed_mm_s": 1}], tmp_path / "q.txt")
 
 
+def test_languages_that_cannot_be_written_back(tmp_path, monkeypatch):
+    from beltgrinding.programs import READERS
+
+    monkeypatch.setitem(READERS, ".urp", READERS[".script"])
+    changes = [{"index": 1, "speed_mm_s": 9}]
+    refused(tmp_path, "p.urp", SCRIPT, changes, r"URScript \(\.urp\) cannot be written back")
+
+
 def test_from_the_command_line(tmp_path, capsys):
     write(tmp_path, "p.dat", DATA)
     file = write(tmp_path, "p.src", KRL)

@@ -25,8 +25,10 @@ MAX_FORCE = 10_000.0  # N
 UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
 
 
-def _language(name):
-    """The module that edits a language: ``edit(source, work)``."""
+def _language(name, suffix):
+    """The module that edits a language: ``edit(source, work)``; ``suffix`` in lower case."""
+    if name == "URScript" and suffix != ".script":  # script inside of a container
+        name = f"{name} ({suffix})"
     if name == "KUKA KRL":
         from . import patch_krl as module
     elif name == "ABB RAPID":
@@ -107,7 +109,7 @@ def patch(path, changes, output):
     if isinstance(changes, (str, Path)):
         changes = read_changes(changes)
     program = read_program(path)
-    module = _language(program.language)
+    module = _language(program.language, path.suffix.lower())
     data = path.read_bytes()
     source = module.source(data) if hasattr(module, "source") else Source(data)
     work = _work(program, changes, source, module)

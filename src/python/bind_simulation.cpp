@@ -111,9 +111,11 @@ py::array_t<Scalar> column(const std::vector<StepRecord>& steps, Get get) {
     return own(std::move(values));
 }
 
-py::dict to_dict(const SimulationResult& result) {
-    py::list events;
-    for (const Event& e : result.events) {
+}  // namespace
+
+py::list events_to_list(const std::vector<Event>& events) {
+    py::list list;
+    for (const Event& e : events) {
         py::dict d;
         d["kind"] = e.kind;
         d["pose"] = e.pose;
@@ -122,8 +124,15 @@ py::dict to_dict(const SimulationResult& result) {
         d["duration"] = e.duration;
         d["value"] = e.value;
         d["message"] = e.message;
-        events.append(d);
+        list.append(d);
     }
+    return list;
+}
+
+namespace {
+
+py::dict to_dict(const SimulationResult& result) {
+    const py::list events = events_to_list(result.events);
     const auto& s = result.steps;
     py::dict steps;
     steps["time"] = column<double>(s, [](const StepRecord& r) { return r.time; });

@@ -7,6 +7,7 @@
 #include "contact/contact_wheel.h"
 #include "contact/regression.h"
 #include "python/arrays.h"
+#include "toolpath/event_log.h"
 
 namespace beltgrinding::python {
 
@@ -38,6 +39,9 @@ TrainedRegression regression_from(const py::dict& given);
 /// under about `force` N.
 std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
                                               double force);
+
+/// One dict of its members per event.
+py::list events_to_list(const std::vector<Event>& events);
 
 /// (ny, nx) array of one value per cell.
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values);

@@ -68,4 +68,5 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_calibration(m);
     bind_simulation(m);
     bind_inspection(m);
+    bind_robot(m);
 }

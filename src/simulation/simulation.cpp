@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "heightfield/kdop_tree.h"
-#include "simulation/event_log.h"
 #include "simulation/pressing.h"
+#include "toolpath/event_log.h"
 
 namespace beltgrinding {
 namespace {

@@ -11,20 +11,10 @@
 #include "heightfield/height_field.h"
 #include "removal/belt_wear.h"
 #include "removal/removal_law.h"
+#include "toolpath/event_log.h"
 #include "toolpath/tool_path.h"
 
 namespace beltgrinding {
-
-/// Something that the user must know, with its place on the path.
-struct Event {
-    std::string kind;  ///< "no_contact", "not_converged", "force_not_reached", "depth_exceeded"...
-    std::uint32_t pose = 0;  ///< programmed pose, from 0
-    int line = 0;            ///< of the source file; 0: unknown
-    double time = 0.0;       ///< s
-    double duration = 0.0;   ///< s that the condition lasted (consecutive steps are one event)
-    double value = 0.0;      ///< worst value, in the unit that the message names
-    std::string message;     ///< one sentence
-};
 
 /// One row of the time series.
 struct StepRecord {

@@ -39,11 +39,12 @@ void validate(const PathPose& pose, std::size_t index) {
     }
 }
 
+}  // namespace
+
 double angle_between(const Frame& a, const Frame& b) {
     return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-/// Linear in position, slerp in orientation, in the program's frame; t in [0, 1].
 Frame interpolate(const Frame& a, const Frame& b, double t) {
     const Eigen::Quaterniond q =
         Eigen::Quaterniond(a.linear()).slerp(t, Eigen::Quaterniond(b.linear()));
@@ -59,8 +60,6 @@ double motion_duration(const PathPose& from, const PathPose& to) {
     const double angle = angle_between(from.base_from_tcp, to.base_from_tcp);
     return travel > 0.0 ? travel / to.feed : angle / kRotationFeed;
 }
-
-}  // namespace
 
 Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
     if (holding == Holding::kToolInHand) {

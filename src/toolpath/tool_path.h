@@ -52,6 +52,13 @@ struct SteppingOptions {
     double default_force = 50;  ///< N, where a pose has none
 };
 
+/// On the way from `a` to `b`, t in [0, 1]: linear in position, slerp in orientation.
+Frame interpolate(const Frame& a, const Frame& b, double t);
+/// rad, how far `b` is turned against `a`.
+double angle_between(const Frame& a, const Frame& b);
+/// s from one pose to the next at the programmed feed.
+double motion_duration(const PathPose& from, const PathPose& to);
+
 /// A robot path: programmed poses, linear in position and spherical-linear (slerp) in orientation
 /// between them, in the frame that the program names.
 class ToolPath {

@@ -1,12 +1,12 @@
-#include "simulation/event_log.h"
+#include "toolpath/event_log.h"
 
 #include <algorithm>
 
 namespace beltgrinding {
 
 void EventLog::note(const std::string& kind, std::size_t index, const PathStep& step, double value,
-                    const std::string& message, bool larger_is_worse) {
-    const auto found = open_.find(kind);
+                    const std::string& message, bool larger_is_worse, int part) {
+    const auto found = open_.find({kind, part});
     if (found != open_.end() && found->second.last_step + 1 == index) {
         Event& event = events_[found->second.event];
         event.duration += step.duration;
@@ -25,7 +25,7 @@ void EventLog::note(const std::string& kind, std::size_t index, const PathStep& 
     event.duration = step.duration;
     event.value = value;
     event.message = message;
-    open_[kind] = {events_.size(), index};
+    open_[{kind, part}] = {events_.size(), index};
     events_.push_back(event);
 }
 

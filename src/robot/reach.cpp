@@ -1,0 +1,221 @@
+#include "robot/reach.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/error.h"
+#include "robot/configuration.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kSpeedTolerance = 1e-6;  // relative
+constexpr double kLimitTolerance = 1e-9;  // rad
+// rad/s; controllers hold the tool's turning below a speed of its own, whatever the feed. Below
+// their defaults (some 200 deg/s and more), so that a mere turn about the flange's axis is no
+// event.
+constexpr double kTurnSpeed = M_PI;
+constexpr int kWristJoint = 3;      // joints 4 to 6 are the wrist's
+constexpr double kFarAngle = 1e-3;  // rad; less is no matter of orientation
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+    std::array<char, 240> buffer;
+    std::snprintf(buffer.data(), buffer.size(), format, values...);
+    return buffer.data();
+}
+
+class Check {
+  public:
+    Check(const ToolPath& path, const RobotArm& arm, const ReachOptions& options)
+        : path_(path), arm_(arm), options_(options), follower_(path, arm, options), events_(path) {
+        result_.least.setConstant(std::numeric_limits<double>::infinity());
+        result_.greatest = -result_.least;
+    }
+
+    ReachResult run(const RunContext& context) {
+        const std::size_t count = path_.poses().size();
+        const Joints none = Joints::Constant(std::numeric_limits<double>::quiet_NaN());
+        result_.joints.assign(count, none);
+        if (options_.start) at_ = ArmSolution{*options_.start, -1};
+        for (std::size_t i = 0; i < count; ++i) {
+            context.throw_if_cancelled();
+            context.report(static_cast<double>(i) / static_cast<double>(count));
+            here_ = i > 0 && !path_.poses()[i].rapid && known_ ? linear(i) : rapid(i);
+            if (here_) result_.joints[i] = at_->q;
+        }
+        result_.events = events_.take();
+        if (result_.checks == 0 || !result_.least.allFinite()) {
+            result_.least = result_.greatest = none;
+        }
+        return std::move(result_);
+    }
+
+  private:
+    /// By joint interpolation; limits hold on the way if they hold at its ends.
+    bool rapid(std::size_t i) {
+        const double duration =
+            i > 0 ? motion_duration(path_.poses()[i - 1], path_.poses()[i]) : 0.0;
+        step_.pose = static_cast<std::uint32_t>(i);
+        step_.duration = 0.0;
+        time_ += duration;
+        step_.time = time_;
+        ++index_;  // no event lasts over a rapid motion
+        const auto found = follower_.arrive(i, at_, i == 0 && options_.start.has_value());
+        if (found) {
+            at_ = found;
+            known_ = true;
+            note_joints();
+        } else {
+            note_unreached(follower_.target(i, 1.0));
+        }
+        ++index_;
+        return found.has_value();
+    }
+
+    /// In checks; an unreachable stretch is left and entered in the nearest configuration.
+    bool linear(std::size_t i) {
+        const double duration = motion_duration(path_.poses()[i - 1], path_.poses()[i]);
+        const double turn =
+            angle_between(path_.poses()[i - 1].base_from_tcp, path_.poses()[i].base_from_tcp);
+        const int parts = follower_.parts(i, options_.max_travel, options_.max_angle);
+        step_.pose = static_cast<std::uint32_t>(i);
+        step_.duration = duration / parts;
+        const double least_time = std::max(duration, turn / kTurnSpeed) / parts;
+        for (int k = 0; k < parts; ++k) {
+            step_.time = time_ + (k + 0.5) * step_.duration;
+            const double end = (k + 1.0) / parts;
+            const auto next = follower_.follow(i, static_cast<double>(k) / parts, end, *at_);
+            if (next) {
+                // Across a stretch out of reach, nothing is known of speeds and turns.
+                if (here_) note_motion(next->q - at_->q, least_time);
+                at_ = next;
+                note_joints();
+                note_singularity();
+            } else {
+                note_unreached(follower_.target(i, end));
+            }
+            here_ = next.has_value();
+            ++index_;
+        }
+        time_ += duration;
+        return here_;
+    }
+
+    void note(const char* kind, double value, const std::string& message, int part = 0,
+              bool larger_is_worse = true) {
+        events_.note(kind, index_, step_, value, message, larger_is_worse, part);
+    }
+
+    void note_unreached(const Frame& target) {
+        ++result_.checks;
+        if (!astray_) astray_ = at_ ? at_->q : Joints(0.5 * (arm_.lower() + arm_.upper()));
+        const NearestReach end = approach(arm_, target, *astray_);
+        astray_ = end.q;
+        std::string message =
+            text("the robot cannot reach it: %.1f mm are missing", end.position_error);
+        if (end.angle_error > kFarAngle)
+            message += text(" and %.1f deg", kDegrees * end.angle_error);
+        note("out_of_reach", end.position_error, message);
+    }
+
+    void note_joints() {
+        ++result_.checks;
+        astray_.reset();
+        const Joints& q = at_->q;
+        result_.least = result_.least.cwiseMin(q);
+        result_.greatest = result_.greatest.cwiseMax(q);
+        for (int j = 0; j < 6; ++j) {
+            const double low = arm_.lower()[j], high = arm_.upper()[j];
+            const double beyond = std::max(low - q[j], q[j] - high);
+            if (beyond <= kLimitTolerance) continue;
+            std::string message =
+                text("joint %d at %.1f deg, %.1f deg beyond its limit of %.1f deg", j + 1,
+                     kDegrees * q[j], kDegrees * beyond, kDegrees * (q[j] < low ? low : high));
+            const double back = q[j] + (q[j] < low ? 2.0 : -2.0) * M_PI;
+            if (back >= low && back <= high)
+                message += text("; wound up: it would fit at %.1f deg", kDegrees * back);
+            note("joint_limit", kDegrees * beyond, message, j);
+        }
+    }
+
+    void note_motion(const Joints& turned, double time) {
+        for (const int first : {0, kWristJoint}) {
+            int worst = first;
+            for (int j = first; j < first + kWristJoint; ++j)
+                if (std::abs(turned[j]) > std::abs(turned[worst])) worst = j;
+            if (std::abs(turned[worst]) <= options_.flip) continue;
+            std::string message = "between two checks";
+            for (int j = first; j < first + kWristJoint; ++j)
+                message += text(", joint %d turns %.0f deg", j + 1, kDegrees * turned[j]);
+            note(first == 0 ? "arm_flip" : "wrist_flip", kDegrees * std::abs(turned[worst]),
+                 message);
+        }
+        if (time <= 0.0) return;
+        for (int j = 0; j < 6; ++j) {
+            const double limit = arm_.max_speed()[j];
+            const double ratio = limit > 0.0 ? std::abs(turned[j]) / time / limit : 0.0;
+            if (ratio <= 1.0 + kSpeedTolerance) continue;
+            note(
+                "joint_speed", ratio,
+                text(
+                    "joint %d would have to turn at %.0f deg/s, %.1f times its greatest speed; the "
+                    "robot will be slower than programmed or stop",
+                    j + 1, kDegrees * ratio * limit, ratio),
+                j);
+        }
+    }
+
+    void note_singularity() {
+        const SingularDistance d = singular_distance(arm_, at_->q);
+        const struct {
+            double angle;
+            const char* what;
+        } kinds[] = {{d.wrist, "wrist: axes 4 and 6 are %.2f deg off one line"},
+                     {d.elbow, "elbow: the arm is %.2f deg off stretched out"},
+                     {d.shoulder, "shoulder: the wrist is %.2f deg off the plane over axis 1"},
+                     {d.general, "the least singular value of the Jacobian is that of %.2f deg"}};
+        int part = 0;
+        for (const auto& kind : kinds) {
+            if (kind.angle < options_.singularity) {
+                note("singularity", kDegrees * kind.angle, text(kind.what, kDegrees * kind.angle),
+                     part, false);
+            }
+            ++part;
+        }
+    }
+
+    const ToolPath& path_;
+    const RobotArm& arm_;
+    const ReachOptions& options_;
+    Follower follower_;
+    EventLog events_;
+    ReachResult result_;
+    PathStep step_;
+    double time_ = 0.0;
+    std::size_t index_ = 0;
+    std::optional<ArmSolution> at_;  // the last configuration that is known
+    std::optional<Joints> astray_;   // where the arm reaches for what it cannot reach
+    bool known_ = false;             // it is the path's, not only the start
+    bool here_ = false;              // it is the one at the check before
+};
+
+}  // namespace
+
+ReachResult check_reach(const ToolPath& path, const RobotArm& arm, const ReachOptions& options,
+                        const RunContext& context) {
+    if (!(options.max_travel > 0.0) || !(options.max_angle > 0.0) || !(options.flip > 0.0) ||
+        !(options.singularity >= 0.0)) {
+        throw InputError("reach: travel and angle between checks and the flip must be positive");
+    }
+    if (options.start && !options.start->allFinite()) {
+        throw InputError("reach: the joints at the start are not finite");
+    }
+    return Check(path, arm, options).run(context);
+}
+
+}  // namespace beltgrinding

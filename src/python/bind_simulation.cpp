@@ -223,6 +223,15 @@ void bind_simulation(py::module_& m) {
                                    [](const PathPose& pose) { return !pose.rapid; });
             },
             "Whether any motion is no rapid one.")
+        .def(
+            "lines",
+            [](const ToolPath& path) {
+                std::vector<int> lines;
+                lines.reserve(path.poses().size());
+                for (const PathPose& pose : path.poses()) lines.push_back(pose.line);
+                return own(std::move(lines));
+            },
+            "(n,): of the source, 0 where unknown")
         .def("duration", &ToolPath::duration, "s")
         .def(
             "work_from_contact",

@@ -48,7 +48,9 @@ std::vector<ArmSolution> with_turns(const RobotArm& arm, const ArmSolution& solu
 }  // namespace
 
 double limit_margin(const RobotArm& arm, const Joints& q) {
-    return std::min((q - arm.lower()).minCoeff(), (arm.upper() - q).minCoeff());
+    const Joints room = (q - arm.lower()).cwiseMin(arm.upper() - q);
+    const double least = room.minCoeff();
+    return least < 0.0 ? room.cwiseMin(0.0).sum() : least;
 }
 
 Follower::Follower(const ToolPath& path, const RobotArm& arm, const ReachOptions& options)
@@ -128,6 +130,7 @@ Follower::Score Follower::score(std::size_t pose, const ArmSolution& candidate,
     Score score;
     double margin = limit_margin(arm_, candidate.q);
     if (margin >= 0.0) score.lasts = 1 + (close ? 0 : lasting(pose, candidate, margin));
+    score.beyond = std::max(0.0, -limit_margin(arm_, candidate.q));
     score.cost = before ? turned(candidate.q, before->q) : -margin;
     return score;
 }
@@ -142,8 +145,7 @@ std::optional<ArmSolution> Follower::arrive(std::size_t pose,
     for (const ArmSolution& s : inverse(arm_, target(pose, 1.0), reference)) {
         for (const ArmSolution& candidate : with_turns(arm_, s)) {
             const Score now = score(pose, candidate, before, close);
-            if (!best || now.lasts > best_score.lasts ||
-                (now.lasts == best_score.lasts && now.cost < best_score.cost)) {
+            if (!best || now.better_than(best_score)) {
                 best = candidate;
                 best_score = now;
             }

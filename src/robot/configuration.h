@@ -32,7 +32,13 @@ class Follower {
   private:
     struct Score {
         std::size_t lasts = 0;  // checks of this and the linear motions that follow, in limits
+        double beyond = 0.0;    // rad past the limits of the joints, together
         double cost = 0.0;      // the less, the better
+
+        bool better_than(const Score& other) const {
+            if (lasts != other.lasts) return lasts > other.lasts;
+            return beyond != other.beyond ? beyond < other.beyond : cost < other.cost;
+        }
     };
     std::optional<ArmSolution> nearest(const Frame& target, const ArmSolution& from) const;
     std::optional<ArmSolution> refine(std::size_t pose, double begin, double end,
@@ -48,7 +54,7 @@ class Follower {
     Frame tcp_from_flange_;
 };
 
-/// Least distance of a joint to its limits, rad; negative beyond them.
+/// Least distance of a joint to its limits, rad; negative beyond them, by the sum of all joints.
 double limit_margin(const RobotArm& arm, const Joints& q);
 
 }  // namespace beltgrinding

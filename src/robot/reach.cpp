@@ -56,15 +56,17 @@ class Check {
     }
 
   private:
-    /// By joint interpolation; limits hold on the way if they hold at its ends.
+    /// By joint interpolation, where limits hold on the way if they hold at its ends; or to the
+    /// first pose of a linear motion that is within reach.
     bool rapid(std::size_t i) {
         const double duration =
             i > 0 ? motion_duration(path_.poses()[i - 1], path_.poses()[i]) : 0.0;
-        step_.pose = static_cast<std::uint32_t>(i);
-        step_.duration = 0.0;
+        const bool by_joints = i == 0 || path_.poses()[i].rapid;
+        if (by_joints) ++index_;  // no event lasts over a rapid motion
         time_ += duration;
-        step_.time = time_;
-        ++index_;  // no event lasts over a rapid motion
+        step_.pose = static_cast<std::uint32_t>(i);
+        step_.duration = by_joints ? 0.0 : duration;
+        step_.time = time_ - 0.5 * step_.duration;
         const auto found = follower_.arrive(i, at_, i == 0 && options_.start.has_value());
         if (found) {
             at_ = found;
@@ -163,7 +165,7 @@ class Check {
             note(
                 "joint_speed", ratio,
                 text(
-                    "joint %d would have to turn at %.0f deg/s, %.1f times its greatest speed; the "
+                    "joint %d would have to turn at %.0f deg/s, %.2f times its greatest speed; the "
                     "robot will be slower than programmed or stop",
                     j + 1, kDegrees * ratio * limit, ratio),
                 j);

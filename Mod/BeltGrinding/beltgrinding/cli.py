@@ -30,6 +30,9 @@ def _parser():
     contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
     contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
     contact.add_argument("--keep", help="folder for CalculiX's deck and results")
+    reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
+    reach.add_argument("job", help="job.json")
+    reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
     learn = commands.add_parser(
         "surrogate", help="train a surrogate of the contact on a database of solved contacts"
     )
@@ -74,7 +77,7 @@ def _parser():
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
     preset = commands.add_parser("presets", help="list the presets, with their sources")
-    preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials"))
+    preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials", "robots"))
     preset.add_argument("--json", action="store_true", help="as JSON")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument("name", nargs="?", choices=("job", "contact", "presets"), default="job")
@@ -144,6 +147,28 @@ def _contact(arguments):
     if arguments.output:
         contact.write_csv(result, arguments.output, truth)
     print(json.dumps(figures))
+
+
+def _reach(arguments):
+    from . import InputError, job, robot
+    from .result import write_whole
+
+    given = job.load(arguments.job)
+    if not robot.given(given["robot"]):
+        raise InputError(f"{arguments.job}: the job names no robot; give it the key 'robot'")
+    warnings = []
+    paths = [job.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
+    found = robot.job_reach(given, paths)
+    if arguments.output:
+        text = robot.joints_csv(found, [path.lines() for path in paths])
+        try:
+            write_whole(Path(arguments.output), text.encode())
+        except OSError as error:
+            raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+    for warning in warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    events = [{"program": i, **event} for i, one in enumerate(found) for event in one["events"]]
+    print(json.dumps({**robot.summary(given["robot"], found), "events": events}, indent=2))
 
 
 def _surrogate(arguments):
@@ -272,6 +297,8 @@ def main(argv=None):
             presets.print_list(arguments.kind, arguments.json)
         elif arguments.command == "contact":
             _contact(arguments)
+        elif arguments.command == "reach":
+            _reach(arguments)
         elif arguments.command == "surrogate":
             _surrogate(arguments)
         elif arguments.command == "calibrate":

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, law as laws, schemas
+from . import InputError, core, frames, law as laws, robot as robots, schemas
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -54,6 +54,7 @@ def validate(job, folder="."):
         raise InputError("stock: a mesh stock needs the key 'file'")
     if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
         raise InputError("stock: a solid stock needs exactly one of 'file' or 'brep'")
+    robots.validate(job["robot"])
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
         raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
@@ -91,6 +92,8 @@ def _run(job, context, warnings):
     phases = _Phases()
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     phases.end("programs")
+    reached = robots.job_reach(job, paths)
+    phases.end("reach")
     shape = read_design(job["design"])
     warnings += shape.warnings()
     phases.end("read")
@@ -109,7 +112,8 @@ def _run(job, context, warnings):
             result = core.simulate(field, path, wheel, compliance, law, options, context=part)
         except InputError as error:
             raise InputError(f"{program_name(job, i)}: {error}") from None
-        for event in result["events"]:
+        found = [*(reached[i]["events"] if reached else []), *result["events"]]
+        for event in sorted(found, key=lambda event: event["time"]):
             events.append({"program": i, **event, "time": event["time"] + process_time})
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
@@ -136,6 +140,7 @@ def _run(job, context, warnings):
             **laws.job_belt(options["belt"]),
             "remaining_cut": remaining_cut(job, options["belt"]),
         },
+        robot=robots.summary(job["robot"], reached),
     )
     return Result(job, field, summary, events, steps)
 

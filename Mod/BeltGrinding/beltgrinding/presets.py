@@ -1,5 +1,5 @@
-"""Presets of contact wheels, belts and workpiece materials: plain data, every number with its unit
-and its source (Resources/presets, and the user's own files; presets.schema.json).
+"""Presets of contact wheels, belts, materials and robots: plain data, every number with its unit and
+its source (Resources/presets, and the user's own files; presets.schema.json).
 """
 
 import copy
@@ -10,12 +10,21 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from . import InputError, resources, schemas
+from . import InputError, resources, robot, schemas
 from .rubber import cite, modulus, shore_to_modulus, spread_text
 
-__all__ = ["apply", "belts", "materials", "problems", "settings", "shore_to_modulus", "wheels"]
+__all__ = [
+    "apply",
+    "belts",
+    "materials",
+    "problems",
+    "robots",
+    "settings",
+    "shore_to_modulus",
+    "wheels",
+]
 
-KINDS = ("wheels", "belts", "materials")
+KINDS = ("wheels", "belts", "materials", "robots")
 LABELS = {
     "shore_a": "hardness",
     "youngs_modulus": "Young's modulus",
@@ -46,6 +55,7 @@ class Library(NamedTuple):
     wheels: list
     belts: list
     materials: list
+    robots: list
     problems: list
 
 
@@ -62,7 +72,7 @@ def user_folder():
 
 def library():
     """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
-    found = Library([], [], [], [])
+    found = Library([], [], [], [], [])
     rules = schemas.schema("presets")
     files = [
         *sorted((resources() / "presets").glob("*.json")),
@@ -103,6 +113,12 @@ def _read(path, rules, found):
 def _with_sources(record, sources):
     """A copy of the preset with the sources themselves in place of their keys."""
     record = copy.deepcopy(record)
+    if "model" in record:
+        if record["source"] not in sources:
+            raise InputError(f"source: '{record['source']}' is not among the file's sources")
+        record["source"] = sources[record["source"]]
+        record["model"] = robot.checked_model(record["model"])
+        return record
     for key, number in numbers(record).items():
         if number["source"] not in sources:
             raise InputError(f"{key}.source: '{number['source']}' is not among the file's sources")
@@ -135,6 +151,11 @@ def materials():
     belt_speed_polishing, belt_speed_offhand, heat_limit.
     """
     return library().materials
+
+
+def robots():
+    """Presets of robots: dict(id, name, source, model as a job's robot.model; where, text)."""
+    return library().robots
 
 
 def problems():
@@ -223,6 +244,8 @@ def source_text(number):
 def describe(preset):
     """One line for each thing that the preset says, with its source."""
     lines = [preset["text"]] if "text" in preset else []
+    if "model" in preset:
+        return [cite(preset["source"], preset.get("where")), *lines]
     for name, number in numbers(preset).items():
         lines.append(f"{label(name)} {number_text(number)}: {source_text(number)}")
     return lines
@@ -233,6 +256,11 @@ def table(kind, presets):
     rows = [("id", "preset", "number", "value", "source")]
     for preset in presets:
         start = (preset["id"], preset["name"])
+        if "model" in preset:
+            length = robot.arm(preset["model"]).length
+            source = cite(preset["source"], preset.get("where"))
+            rows.append((*start, "upper arm and forearm", f"{length:.0f} mm", source))
+            continue
         for name, number in numbers(preset).items():
             rows.append((*start, label(name), number_text(number), source_text(number)))
             start = ("", "")

@@ -250,6 +250,8 @@ def _open_job(doc, data, path, made):
     from_job(machine, belt_machine.KEYS, data)
     for name, (key, _) in belt_machine.FRAMES.items():
         setattr(machine, name, placement_from_job(data["cell"].get(key)))
+    for name, (key, _) in belt_machine.ROBOT_FRAMES.items():
+        setattr(machine, name, placement_from_job(data["robot"].get(key)))
     if any(data["belt_machine"]["belt"].values()):
         made.append(make_belt(job))
         from_job(machine.Belt, belts.KEYS, data)

@@ -1,4 +1,4 @@
-"""The belt machine in the document: contact wheel, belt, control, and the cell's frames."""
+"""The belt machine in the document: contact wheel, belt, control, the cell's frames, the robot."""
 
 from .belt import Belt
 from .geometry import matrix, placement_to_job
@@ -27,6 +27,11 @@ KEYS = (
     Key("ContactSpacing", "Length", "Contact", "belt_machine.contact_spacing_mm"),
     Key("ContactTolerance", "Float", "Contact", "belt_machine.contact_tolerance"),
     Key("Holding", "Enumeration", "Cell", "cell.holding"),
+    Key("Robot", "String", "Robot", "robot.preset"),
+    Key("RobotModel", "JSON", "Robot", "robot.model"),
+    Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
+    Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),
+    Key("FlipAngle", "Angle", "Robot", "robot.flip_deg"),
 )
 FRAMES = {
     "BaseFromWork": ("base_from_work", "tool in hand: the document's origin in the base frame"),
@@ -40,6 +45,10 @@ BODIES = {
     "BodiesInTool": ("tool", "what the robot carries (gripper, tool), in the tool frame"),
     "BodiesAtWheel": ("contact", "what goes with the wheel (housing), in the contact frame"),
     "BodiesAtPart": ("part", "what goes with the part (clamps), in the document's coordinates"),
+}
+ROBOT_FRAMES = {
+    "BaseFromRobot": ("base_from_robot", "the robot's own base in the base frame of the programs"),
+    "FlangeFromTcp": ("flange_from_tcp", "the tool frame of the programs in the robot's flange"),
 }
 
 
@@ -61,15 +70,20 @@ class BeltMachine(Proxy):
         for name, (_, text) in BODIES.items():
             if name not in obj.PropertiesList:
                 obj.addProperty("App::PropertyLinkListGlobal", name, "Bodies", text)
+        for name, (_, text) in ROBOT_FRAMES.items():
+            if name not in obj.PropertiesList:
+                obj.addProperty("App::PropertyPlacement", name, "Robot", text)
 
     def to_job(self, obj):
-        """The parts of a job under 'belt_machine' and 'cell'."""
+        """The parts of a job under 'belt_machine', 'cell' and 'robot'."""
         job = {}
         to_job(obj, KEYS, job)
         if type_of(obj.Belt) == Belt.TYPE:
             job["belt_machine"]["belt"] = obj.Belt.Proxy.state(obj.Belt)
         for name, (key, _) in FRAMES.items():
             job["cell"][key] = placement_to_job(getattr(obj, name))
+        for name, (key, _) in ROBOT_FRAMES.items():
+            job["robot"][key] = placement_to_job(getattr(obj, name))
         return job
 
     def cell(self, obj):

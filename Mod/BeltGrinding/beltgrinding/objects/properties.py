@@ -1,5 +1,6 @@
 """Properties that mirror keys of a job: name, unit type, default and text come from the schema."""
 
+import copy
 import difflib
 import json
 from functools import lru_cache
@@ -98,7 +99,7 @@ def get_value(obj, key):
     if key.kind in AS_IS:
         return value
     if key.kind == "JSON":
-        return json.loads(value or "{}")
+        return json.loads(value) if value else copy.deepcopy(rule(key.key)[1])
     if key.kind == "VectorList":  # pairs
         return [[float(f"{point.x:.15g}"), float(f"{point.y:.15g}")] for point in value]
     value = float(getattr(value, "Value", value)) / key.scale

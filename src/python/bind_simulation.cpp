@@ -232,7 +232,7 @@ void bind_simulation(py::module_& m) {
                 return own(std::move(lines));
             },
             "(n,): of the source, 0 where unknown")
-        .def("duration", &ToolPath::duration, "s")
+        .def("duration", py::overload_cast<>(&ToolPath::duration, py::const_), "s")
         .def(
             "work_from_contact",
             [](const ToolPath& path) {

@@ -61,9 +61,7 @@ Follower::Follower(const ToolPath& path, const RobotArm& arm, const ReachOptions
       tcp_from_flange_(options.flange_from_tcp.inverse()) {}
 
 Frame Follower::target(std::size_t pose, double t) const {
-    const Frame& end = path_.poses()[pose].base_from_tcp;
-    const Frame at = t >= 1.0 ? end : interpolate(path_.poses()[pose - 1].base_from_tcp, end, t);
-    return robot_from_base_ * at * tcp_from_flange_;
+    return robot_from_base_ * path_.base_from_tcp(pose, t) * tcp_from_flange_;
 }
 
 int Follower::parts(std::size_t pose, double max_travel, double max_angle) const {

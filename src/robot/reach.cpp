@@ -59,8 +59,7 @@ class Check {
     /// By joint interpolation, where limits hold on the way if they hold at its ends; or to the
     /// first pose of a linear motion that is within reach.
     bool rapid(std::size_t i) {
-        const double duration =
-            i > 0 ? motion_duration(path_.poses()[i - 1], path_.poses()[i]) : 0.0;
+        const double duration = path_.duration(i);
         const bool by_joints = i == 0 || path_.poses()[i].rapid;
         if (by_joints) ++index_;  // no event lasts over a rapid motion
         time_ += duration;
@@ -81,20 +80,21 @@ class Check {
 
     /// In checks; an unreachable stretch is left and entered in the nearest configuration.
     bool linear(std::size_t i) {
-        const double duration = motion_duration(path_.poses()[i - 1], path_.poses()[i]);
         const double turn =
             angle_between(path_.poses()[i - 1].base_from_tcp, path_.poses()[i].base_from_tcp);
         const int parts = follower_.parts(i, options_.max_travel, options_.max_angle);
         step_.pose = static_cast<std::uint32_t>(i);
-        step_.duration = duration / parts;
-        const double least_time = std::max(duration, turn / kTurnSpeed) / parts;
+        double begin = 0.0;
         for (int k = 0; k < parts; ++k) {
-            step_.time = time_ + (k + 0.5) * step_.duration;
             const double end = (k + 1.0) / parts;
+            const double finish = path_.elapsed(i, end);
+            step_.duration = finish - begin;
+            step_.time = time_ + 0.5 * (begin + finish);
+            begin = finish;
             const auto next = follower_.follow(i, static_cast<double>(k) / parts, end, *at_);
             if (next) {
                 // Across a stretch out of reach, nothing is known of speeds and turns.
-                if (here_) note_motion(next->q - at_->q, least_time);
+                if (here_) note_motion(next->q - at_->q, turn / parts);
                 at_ = next;
                 note_joints();
                 note_singularity();
@@ -104,7 +104,7 @@ class Check {
             here_ = next.has_value();
             ++index_;
         }
-        time_ += duration;
+        time_ += path_.duration(i);
         return here_;
     }
 
@@ -145,7 +145,7 @@ class Check {
         }
     }
 
-    void note_motion(const Joints& turned, double time) {
+    void note_motion(const Joints& turned, double turn) {
         for (const int first : {0, kWristJoint}) {
             int worst = first;
             for (int j = first; j < first + kWristJoint; ++j)
@@ -157,6 +157,7 @@ class Check {
             note(first == 0 ? "arm_flip" : "wrist_flip", kDegrees * std::abs(turned[worst]),
                  message);
         }
+        const double time = std::max(step_.duration, turn / kTurnSpeed);
         if (time <= 0.0) return;
         for (int j = 0; j < 6; ++j) {
             const double limit = arm_.max_speed()[j];

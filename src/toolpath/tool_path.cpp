@@ -39,6 +39,13 @@ void validate(const PathPose& pose, std::size_t index) {
     }
 }
 
+double motion_duration(const PathPose& from, const PathPose& to) {
+    const double travel =
+        (to.base_from_tcp.translation() - from.base_from_tcp.translation()).norm();
+    const double angle = angle_between(from.base_from_tcp, to.base_from_tcp);
+    return travel > 0.0 ? travel / to.feed : angle / kRotationFeed;
+}
+
 }  // namespace
 
 double angle_between(const Frame& a, const Frame& b) {
@@ -52,13 +59,6 @@ Frame interpolate(const Frame& a, const Frame& b, double t) {
     f.linear() = q.normalized().toRotationMatrix();
     f.translation() = (1.0 - t) * a.translation() + t * b.translation();
     return f;
-}
-
-double motion_duration(const PathPose& from, const PathPose& to) {
-    const double travel =
-        (to.base_from_tcp.translation() - from.base_from_tcp.translation()).norm();
-    const double angle = angle_between(from.base_from_tcp, to.base_from_tcp);
-    return travel > 0.0 ? travel / to.feed : angle / kRotationFeed;
 }
 
 Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
@@ -87,6 +87,19 @@ double ToolPath::duration() const {
     for (std::size_t i = 1; i < poses_.size(); ++i)
         time += motion_duration(poses_[i - 1], poses_[i]);
     return time;
+}
+
+double ToolPath::duration(std::size_t i) const {
+    return i == 0 ? 0.0 : motion_duration(poses_[i - 1], poses_[i]);
+}
+
+double ToolPath::elapsed(std::size_t i, double t) const {
+    return t * duration(i);
+}
+
+Frame ToolPath::base_from_tcp(std::size_t i, double t) const {
+    if (i == 0 || t >= 1.0) return poses_[i].base_from_tcp;
+    return interpolate(poses_[i - 1].base_from_tcp, poses_[i].base_from_tcp, t);
 }
 
 std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {

@@ -56,8 +56,6 @@ struct SteppingOptions {
 Frame interpolate(const Frame& a, const Frame& b, double t);
 /// rad, how far `b` is turned against `a`.
 double angle_between(const Frame& a, const Frame& b);
-/// s from one pose to the next at the programmed feed.
-double motion_duration(const PathPose& from, const PathPose& to);
 
 /// A robot path: programmed poses, linear in position and spherical-linear (slerp) in orientation
 /// between them, in the frame that the program names.
@@ -72,6 +70,12 @@ class ToolPath {
     /// s that the program takes at the programmed feeds (a pure rotation takes no time at a linear
     /// feed: `kRotationFeed` rad/s is used).
     double duration() const;
+    /// s that the motion to pose `i` takes; 0 for the first.
+    double duration(std::size_t i) const;
+    /// s since that motion began, t in [0, 1] of its way.
+    double elapsed(std::size_t i, double t) const;
+    /// Where the tool is then, in the frame that the program names; the first pose for i = 0.
+    Frame base_from_tcp(std::size_t i, double t) const;
     /// Steps at the middles of equal parts of each motion, in program order; rapid motions give
     /// none.
     std::vector<PathStep> steps(const SteppingOptions& options) const;

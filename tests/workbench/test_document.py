@@ -122,6 +122,45 @@ assert abs(beltgrinding.simulate(copy).RemovedVolume.Value - result.summary["rem
     )
 
 
+def test_a_robot_goes_through_the_document(freecad):
+    freecad.run(
+        BLOCK
+        + """
+doc = FreeCAD.newDocument("reach")
+job = make(block(doc))
+machine = doc.BeltMachine
+machine.Robot = "kuka_kr16_2"
+machine.BaseFromRobot = FreeCAD.Placement(FreeCAD.Vector(-900, 0, -500), FreeCAD.Rotation())
+machine.FlangeFromTcp = FreeCAD.Placement(FreeCAD.Vector(0, 0, 150), FreeCAD.Rotation())
+near = beltgrinding.simulate(job)
+assert not any("reach" in text for text in near.Events), near.Events
+machine.BaseFromRobot = FreeCAD.Placement(FreeCAD.Vector(-4000, 0, 0), FreeCAD.Rotation())
+doc.recompute()
+assert near.OutOfDate
+far = beltgrinding.simulate(job)
+assert any("out_of_reach" in text and "mm are missing" in text for text in far.Events), far.Events
+machine.StartJoints = "[0, -90, 90, 0, 0, 0]"
+machine.SingularityAngle = "7 deg"
+beltgrinding.export_job(job, "job.json")
+data = json.loads(Path("job.json").read_text())["robot"]
+assert data["preset"] == "kuka_kr16_2" and data["singularity_deg"] == 7
+assert data["start_joints_deg"] == [0, -90, 90, 0, 0, 0]
+assert data["base_from_robot"]["position_mm"] == [-4000, 0, 0]
+other = FreeCAD.newDocument("other")
+beltgrinding.export_job(beltgrinding.open_job(other, "job.json"), "copy.json")
+assert json.loads(Path("copy.json").read_text())["robot"] == data
+
+# A model of one's own.
+from beltgrinding import presets, robot
+whole = json.loads(Path("job.json").read_text())
+whole["robot"].update(preset="", model=robot.load_preset("ur5e"))
+Path("own.json").write_text(json.dumps(whole))
+beltgrinding.export_job(beltgrinding.open_job(FreeCAD.newDocument("own"), "own.json"), "back.json")
+assert json.loads(Path("back.json").read_text())["robot"]["model"] == whole["robot"]["model"]
+"""
+    )
+
+
 def test_stock_from_objects_where_they_lie(freecad):
     freecad.run(
         BLOCK

@@ -103,6 +103,30 @@ def test_the_file_is_right_and_names_its_sources():
         assert all(joint["max_speed_deg_s"] > 0 for joint in one["model"]["joints"])
 
 
+def test_the_users_own_robots_are_read_and_wrong_ones_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    folder = tmp_path / "beltgrinding" / "presets"
+    folder.mkdir(parents=True)
+    model = ROBOTS[0]["model"]
+    own = {"id": "ours", "name": "Ours", "source": "book", "model": model}
+    short = {**own, "id": "short", "model": {"joints": model["joints"][:5]}}
+    rumour = {**own, "id": "rumour", "source": "rumour"}
+    typo = {**own, "id": "typo", "model": {"joint": []}}
+    none = {**own, "id": "none", "model": {}}
+    data = {
+        "schema": 1,
+        "sources": {"book": {"author": "A", "title": "B"}},
+        "robots": [own, short, rumour, typo, none],
+    }
+    (folder / "ours.json").write_text(json.dumps(data))
+    assert presets.robots()[-1]["id"] == "ours"
+    assert robot.arm(robot.load_preset("ours")).structure == "spherical_wrist"
+    told = [str(problem) for problem in presets.problems()]
+    assert len(told) == 4
+    for text, where in zip(told, ("6 joints, not 5", "'rumour' is not", "'joints'", "six joints")):
+        assert "ours.json: robots." in text and where in text
+
+
 @pytest.mark.parametrize("preset", ROBOTS, ids=IDS)
 def test_a_preset_has_the_dimensions_of_the_data_sheet(preset):
     flange = links(preset, np.zeros(6))[6][:3, 3]

@@ -92,7 +92,7 @@ def _run(job, context, warnings):
     phases = _Phases()
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     phases.end("programs")
-    reached = robots.job_reach(job, paths)
+    reached = robots.job_reach(job, paths, context.part(0.0, 0.0))
     phases.end("reach")
     shape = read_design(job["design"])
     warnings += shape.warnings()

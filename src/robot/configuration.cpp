@@ -101,35 +101,39 @@ std::optional<ArmSolution> Follower::follow(std::size_t pose, double begin, doub
     return refine(pose, begin, end, from, kDepth);
 }
 
-/// How many checks of the linear motions after `pose` go without a limit or a flip; `margin`
-/// becomes the least on the way.
-std::size_t Follower::lasting(std::size_t pose, const ArmSolution& candidate,
-                              double& margin) const {
-    ArmSolution at = candidate;
-    std::size_t lasts = 0;
+/// Along the linear motions after `pose`, joints less those at the start; up to a pose out of reach
+/// or a flip. Whole turns of the start do not change it.
+std::vector<Joints> Follower::ahead(std::size_t pose, const ArmSolution& start) const {
+    std::vector<Joints> found;
+    ArmSolution at = start;
     const auto& poses = path_.poses();
     for (std::size_t i = pose + 1; i < poses.size() && !poses[i].rapid; ++i) {
         const int count = parts(i, kCoarse, kCoarseTurn);
-        for (int k = 0; k < count && lasts < kFarthest; ++k) {
+        for (int k = 0; k < count && found.size() < kFarthest; ++k) {
             const auto next = nearest(target(i, (k + 1.0) / count), at);
-            if (!next || turned(next->q, at.q) > options_.flip) return lasts;
-            const double here = limit_margin(arm_, next->q);
-            if (here < 0.0) return lasts;
-            margin = std::min(margin, here);
+            if (!next || turned(next->q, at.q) > options_.flip) return found;
+            found.push_back(next->q - start.q);
             at = *next;
-            ++lasts;
         }
     }
-    return lasts;
+    return found;
 }
 
-Follower::Score Follower::score(std::size_t pose, const ArmSolution& candidate,
-                                const std::optional<ArmSolution>& before, bool close) const {
+Follower::Score Follower::score(const Joints& candidate, const std::vector<Joints>& ahead,
+                                const std::optional<ArmSolution>& before) const {
     Score score;
-    double margin = limit_margin(arm_, candidate.q);
-    if (margin >= 0.0) score.lasts = 1 + (close ? 0 : lasting(pose, candidate, margin));
-    score.beyond = std::max(0.0, -limit_margin(arm_, candidate.q));
-    score.cost = before ? turned(candidate.q, before->q) : -margin;
+    double margin = limit_margin(arm_, candidate);
+    score.beyond = std::max(0.0, -margin);
+    if (margin >= 0.0) {
+        score.lasts = 1;
+        for (const Joints& way : ahead) {
+            const double here = limit_margin(arm_, candidate + way);
+            if (here < 0.0) break;
+            margin = std::min(margin, here);
+            ++score.lasts;
+        }
+    }
+    score.cost = before ? turned(candidate, before->q) : -margin;
     return score;
 }
 
@@ -141,8 +145,9 @@ std::optional<ArmSolution> Follower::arrive(std::size_t pose,
     std::optional<ArmSolution> best;
     Score best_score;
     for (const ArmSolution& s : inverse(arm_, target(pose, 1.0), reference)) {
+        const std::vector<Joints> way = close ? std::vector<Joints>() : ahead(pose, s);
         for (const ArmSolution& candidate : with_turns(arm_, s)) {
-            const Score now = score(pose, candidate, before, close);
+            const Score now = score(candidate.q, way, before);
             if (!best || now.better_than(best_score)) {
                 best = candidate;
                 best_score = now;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "robot/inverse_kinematics.h"
 #include "robot/reach.h"
@@ -43,9 +44,9 @@ class Follower {
     std::optional<ArmSolution> nearest(const Frame& target, const ArmSolution& from) const;
     std::optional<ArmSolution> refine(std::size_t pose, double begin, double end,
                                       const ArmSolution& from, int depth) const;
-    Score score(std::size_t pose, const ArmSolution& candidate,
-                const std::optional<ArmSolution>& before, bool close) const;
-    std::size_t lasting(std::size_t pose, const ArmSolution& candidate, double& margin) const;
+    std::vector<Joints> ahead(std::size_t pose, const ArmSolution& start) const;
+    Score score(const Joints& candidate, const std::vector<Joints>& ahead,
+                const std::optional<ArmSolution>& before) const;
 
     const ToolPath& path_;
     const RobotArm& arm_;

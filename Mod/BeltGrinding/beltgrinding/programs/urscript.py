@@ -54,7 +54,7 @@ def read(path):
     if b"\0" in raw:
         raise ProgramError(f"{path}: is no URScript text (it holds zero bytes)")
     text = raw.decode("utf-8-sig", errors="replace")
-    interpreter = _Interpreter(name_of(path))
+    interpreter = Interpreter(name_of(path))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Python's own advice on the expressions
@@ -72,7 +72,7 @@ class _Block:
         self.parts = [] if kind == "statement" else [(line, text, [])]
 
 
-class _Interpreter:
+class Interpreter:
     """Follows a program from top to bottom with the values it can know."""
 
     def __init__(self, name):

@@ -3,6 +3,7 @@
 import FreeCAD
 
 FreeCAD.addImportType(
-    "Robot program (*.src *.csv *.mod *.modx *.prg *.script *.apt *.cls *.nc *.ngc *.mpf)",
+    "Robot program (*.src *.csv *.mod *.modx *.prg *.script "
+    "*.apt *.cls *.cl *.pgx *.dtx *.urp *.nc *.ngc *.mpf)",
     "beltgrinding.objects.importer",
 )

@@ -56,6 +56,18 @@ def _inform(path):
     return inform.read(path)
 
 
+def _val3(path):
+    from . import val3
+
+    return val3.read(path)
+
+
+def _urp(path):
+    from . import urp
+
+    return urp.read(path)
+
+
 READERS = {
     ".src": _krl,
     ".csv": _csv,
@@ -68,6 +80,10 @@ READERS = {
     ".jbi": _inform,
     ".apt": _apt,
     ".cls": _apt,
+    ".cl": _apt,
+    ".pgx": _val3,
+    ".dtx": _val3,
+    ".urp": _urp,
     ".nc": _gcode,
     ".ngc": _gcode,
     ".gcode": _gcode,

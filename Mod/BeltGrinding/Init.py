@@ -3,7 +3,7 @@
 import FreeCAD
 
 FreeCAD.addImportType(
-    "Robot program (*.src *.csv *.mod *.modx *.prg *.script "
+    "Robot program (*.src *.csv *.mod *.modx *.prg *.script *.ls *.jbi "
     "*.apt *.cls *.cl *.pgx *.dtx *.urp *.nc *.ngc *.mpf)",
     "beltgrinding.objects.importer",
 )

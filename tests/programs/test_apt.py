@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import ProgramError, apt  # noqa: E402
+from beltgrinding.programs import ProgramError, apt, read_program  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -24,6 +24,11 @@ def cl(tmp_path, source, units="UNITS/MM\n", end="\nFINI\n"):
 
 def positions(program):
     return [np.round(m.pose[:3, 3], 6).tolist() for m in program.motions if m.pose is not None]
+
+
+def test_files_of_cutter_locations_are_known_by_their_suffix(tmp_path):
+    (tmp_path / "p.CL").write_text("UNITS/MM\nGOTO/1,2,3,0,0,1\n")
+    assert positions(read_program(tmp_path / "p.CL")) == [[1, 2, 3]]
 
 
 @needs_shared

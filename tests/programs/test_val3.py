@@ -289,6 +289,7 @@ def test_control_flow(tmp_path):
         ("while io==true\nmovel(p[2],tBelt,m)\nendWhile", "decided at run time"),
         ("switch io\ncase 1\nmovel(p[2],tBelt,m)\nbreak\nendSwitch", "decided at run time"),
         ("for i=0 to getKey()\nmovel(p[2],tBelt,m)\nendFor", "no static bounds"),
+        ("movel(p[3],tBelt,m)", "not taught"),
         ("readPoint(p[0])\nmovel(p[0],tBelt,m)", "readPoint"),
     ],
 )
@@ -305,6 +306,22 @@ def test_what_is_assigned_in_a_branch_left_out_is_not_known_after_it(tmp_path):
     body = "if io==true\n  n[1]=3\n  p[1].trsf.x=5\nendIf\nmovel(p[1],tBelt,m)\np[2].trsf.x=n[1]\n"
     found = read(tmp_path, body + "movel(p[2],tBelt,m)")
     assert not positions(found) and len(found.problems) == 3
+
+
+def test_loops_and_cases_that_are_left_early(tmp_path):
+    body = (
+        "for i=0 to 5\n  p[2].trsf.x=i\n  movel(p[2],tBelt,m)\n  if i==2\n    i=4\n  endIf\nendFor\n"
+        "switch n[1]\n  case 4.5\n    if b\n      break\n    endIf\n    movel(p[1],tBelt,m)\n"
+        "  break\nendSwitch\nmovel(p[1],tBelt,m)\nbreak\nmovel(p[0],tBelt,m)"
+    )
+    found = read(tmp_path, body, data=DATA.replace('x="20" f', 'x="20" z="1" f'))
+    assert [x for x, _, _ in positions(found)] == [0, 1, 2, 5, 10]
+    assert [p.line for p in found.problems][-1] == 21 and len(found.motions) == 6
+    lost = read(
+        tmp_path, "for i=0 to 1\nmovel(p[2],tBelt,m)\ni=getKey()\nendFor\nmovel(p[1],tBelt,m)"
+    )
+    assert "goes on as only" in str(lost.problems[-1])
+    assert [m.pose is None for m in lost.motions] == [False, True, False]
 
 
 def test_joint_targets_are_kept_without_a_pose(tmp_path):
@@ -419,7 +436,6 @@ def test_nothing_hangs_or_overflows(tmp_path, monkeypatch):
         "n=" + "1+" * 20000 + "1",
         "n=" + "-" * 9999,
         "n=power(10,power(10,10))",
-        "for i=0 to 1 step 0.0000000001\nendFor",
         "for i=0 to 1 step 0\nendFor",
     ):
         read(tmp_path, body)

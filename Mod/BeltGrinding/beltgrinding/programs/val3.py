@@ -11,7 +11,7 @@ from pathlib import Path
 
 from . import val3_data as data
 from .program import Motion, ProgramError
-from .val3_control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Control
+from .val3_control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Break, Control
 from .val3_data import Array, Missing, Record, Unknown, number, six
 from .val3_expression import split
 from .val3_project import Project, routines
@@ -57,6 +57,8 @@ def _points(path):
         if data.POSED.get(array.kind) != "point":
             continue
         for key in keys if not isinstance(array.items, Missing) else ():
+            if array.items[key] is None:  # never taught
+                continue
             line = getattr(array.items[key], "line", 1)
             try:
                 point = state.item(array, key if isinstance(key, str) else float(key), name)
@@ -124,6 +126,11 @@ class _Interpreter(Control):
             self.block(routine.body)
         except _Return:
             pass
+        except Break as end:
+            self.problem(
+                end.line, "break leaves no switch; what follows in the program is left out"
+            )
+            self.gap(end.line)
         finally:
             self.file, self.scope = outer
 
@@ -139,6 +146,8 @@ class _Interpreter(Control):
             self.call(node)
         elif word == "return":
             raise _Return
+        elif word == "break":
+            raise Break(node.line)
         elif word == "taskcreate" or word == "taskcreatesync":
             self.problem(node.line, "a task runs beside the program; open the task's own program")
             self.gap(node.line)
@@ -186,6 +195,8 @@ class _Interpreter(Control):
             row = six(point.get("trsf"))
             if isinstance(point.father, Missing):
                 raise Unknown(point.father.why)
+            if point.father is None and not any(row):
+                raise Unknown("the point has no value: it was not taught, or the .dtx is not whole")
             if point.father is not end.father:  # an arc's point in another frame
                 home = data.in_world(end.father) if end.father else (0.0,) * 6
                 row = data.product(data.inverse(home), data.in_world(point))
@@ -245,7 +256,7 @@ class _Interpreter(Control):
     def instruction(self, node):
         match = INSTRUCTION.match(node.text)
         if not match:
-            if node.word not in ("break", "putln", "put", "wait", "title", "popupmsg", "logmsg"):
+            if node.word not in ("putln", "put", "wait", "title", "popupmsg", "logmsg"):
                 self.problem(node.line, f"'{node.text[:40]}' is not understood")
                 if MOVES.search(node.text):
                     self.gap(node.line)

@@ -29,6 +29,14 @@ HARMLESS = frozenset(
 )
 
 
+class Break(Exception):
+    """The rest of a case is left."""
+
+    def __init__(self, line):
+        super().__init__(line)
+        self.line = line
+
+
 class Control(State):
     """Runs blocks of statements; ``statement(node)`` is what the reader adds."""
 
@@ -123,22 +131,27 @@ class Control(State):
             target = match[1]
             first, last = number(self.value(match[2])), number(self.value(match[3]))
             step = number(self.value(match[4])) if match[4] else 1.0
-            if step == 0.0 or abs((last - first) / step) > 1e9:
-                raise Unknown("its step is 0 or far too small")
-            count = int((last - first) / step + 1e-9) + 1 if (last - first) / step > -1e-9 else 0
-            self.assign(target, first)
+            if step == 0.0:
+                raise Unknown("its step is 0")
         except Unknown as unknown:
             message = f"for has no static bounds ({unknown}); its motions are left out"
             self.skip([node, *node.body] if not match else node.body, node.line, message)
             return
-        for k in range(count):
-            self.tick(node.line)
-            try:
-                self.assign(target, first + k * step)
-            except Unknown as unknown:
-                self.skip(node.body, node.line, f"for has lost its variable: {unknown}")
-                return
-            self.block(node.body)
+        k, value, slack = 0, first, 1e-9 * abs(step)
+        try:
+            while value <= last + slack if step > 0 else value >= last - slack:
+                self.tick(node.line)
+                self.assign(target, value)
+                self.block(node.body)
+                k, now = k + 1, number(self.value(target))
+                if now != value:  # the loop has changed its variable
+                    first, k = now, 1
+                value = first + k * step
+                if value == now:
+                    raise Unknown("the step is too small")
+        except Unknown as unknown:
+            message = f"for goes on as only the controller knows ({unknown}); the rest is left out"
+            self.skip(node.body, node.line, message)
 
     def while_(self, node):
         condition = re.sub(r"(?i)\bdo\s*$", "", node.text[5:])
@@ -196,4 +209,7 @@ class Control(State):
             message = f"switch is decided at run time ({unknown}); its motions are left out"
             self.skip(node.body, node.line, message)
             return
-        self.block([n for n in body if n.word != "break"])
+        try:
+            self.block(body)
+        except Break:
+            pass

@@ -191,9 +191,10 @@ class State:
 
     def forget(self, name, why="it is assigned at run time"):
         """Whoever uses the data from here on reports ``why``."""
-        holder = self.scope if name in self.scope else self.globals
-        if name in holder:
-            array = holder[name]
+        for holder in (self.scope, self.globals):  # which one is meant may not be known either
+            array = holder.get(name)
+            if array is None:
+                continue
             if array.kind == "frame" and isinstance(array.items, list):
                 for item in array.items:
                     if isinstance(item, Record):

@@ -316,7 +316,7 @@ def test_files_cut_off_or_hostile_are_refused(tmp_path, monkeypatch):
 
 
 def test_nothing_hangs(tmp_path, monkeypatch):
-    monkeypatch.setattr(urp, "MAX_ROUNDS", 20_000)
+    monkeypatch.setattr(urp, "MAX_UNROLLED", 20_000)
     loop = '<Loop type="Counting" count="999999"><children>{}</children></Loop>'
     with pytest.raises(ProgramError, match="too long"):
         read(tmp_path, loop.format(loop.format("<Comment/>")))
@@ -343,7 +343,7 @@ def test_a_hundred_thousand_waypoints_take_seconds(tmp_path):
 
 
 def test_mutated_programs_never_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr(urp, "MAX_ROUNDS", 2000)
+    monkeypatch.setattr(urp, "MAX_UNROLLED", 2000)
     rng = np.random.default_rng(1)
     variable = '<variable name="i"/>'
     text = document(

@@ -421,8 +421,7 @@ def test_blocks_that_do_not_match(tmp_path, body):
         read(tmp_path, body)
 
 
-def test_nothing_hangs_or_overflows(tmp_path, monkeypatch):
-    monkeypatch.setattr(val3_state, "MAX_IDLE", 5000)
+def test_nothing_hangs_or_overflows(tmp_path):
     for body in (
         "while 1<2\nn=n+1\nendWhile",
         "while b\nendWhile",
@@ -466,7 +465,7 @@ def test_a_hundred_thousand_motions_take_seconds(tmp_path):
 
 
 def test_mutated_programs_never_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr(val3_state, "MAX_ROUNDS", 2000)
+    monkeypatch.setattr(val3_state, "MAX_UNROLLED", 2000)
     rng = np.random.default_rng(1)
     body = (
         "for i=0 to 2\n  p[i].trsf.x=n[1]*i+3\n  movel(appro(p[i],{0,0,-5,0,0,i}),tBelt,m)\nendFor\n"

@@ -10,14 +10,13 @@ kinematics) is a Problem.
 import re
 from pathlib import Path
 
-from .program import Motion, Program, ProgramError, name_of
+from .program import MAX_UNROLLED, Motion, Program, ProgramError, name_of
 from .urp_motion import Waypoints
 from .urp_position import Positions, keep_kinematics
 from .urscript import MOVE
 from .urscript_expression import Pose, Unknown
 from .xml_tree import read_xml
 
-MAX_ROUNDS = 1_000_000  # nodes executed, loops unrolled
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
 MAX_LOOP = 100_000
@@ -60,6 +59,7 @@ class _Reader(Waypoints):
         super().__init__(name, root)
         self.named = False  # whether the script knows the waypoints
         self.rounds = self.calls = 0
+        self.seen = set()
 
     def finish(self):
         for motion in self.positions.finish():
@@ -96,10 +96,13 @@ class _Reader(Waypoints):
     def inside(self, element, move):
         """Runs the nodes below an element; ``move``: the Move they are in, or None."""
         holder = element.find("children")
+        if holder is not None and id(holder) not in self.seen:
+            self.seen.add(id(holder))
+            self.rounds -= len(holder.children)  # what the file has is no work beyond it
         taken = None  # of a chain of If nodes: True, False, or None
         for node in holder.children if holder is not None else ():
             self.rounds, self.line = self.rounds + 1, node.line
-            if self.rounds > MAX_ROUNDS or len(self.program.motions) > MAX_MOTIONS:
+            if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
                 raise ProgramError(f"{self.file}:{node.line}: the program is too long")
             if node.tag == "If":
                 taken = self.branch(node, move, taken)
@@ -233,7 +236,7 @@ class _Reader(Waypoints):
         given += [c.text for c in node.children if c.text is not None]
         if len(given) != 1 or not re.fullmatch(r"\s*[0-9]{1,6}\s*", given[0]):
             raise Unknown("how often the Loop runs is not given by a number")
-        return min(int(given[0]), MAX_ROUNDS)
+        return int(given[0])
 
     def call(self, node):
         holder = node.find("subprogram")

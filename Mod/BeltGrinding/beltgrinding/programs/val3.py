@@ -15,7 +15,7 @@ from .val3_control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NA
 from .val3_data import Array, Missing, Record, Unknown, number, six
 from .val3_expression import split
 from .val3_project import Project, routines
-from .val3_state import State
+from .val3_state import PER_VALUE, State
 
 MAX_CALLS = 20
 KINDS = {"movej": "PTP", "movel": "LIN", "movec": "CIRC"}
@@ -94,6 +94,8 @@ class _Interpreter(Control):
             self.project.routines.update({r.name: r for r in every})
             found = self.project.routines.get(name) or every[0]
         self.globals = self.project.data()
+        given = [a.items for a in self.globals.values() if not isinstance(a.items, Missing)]
+        self.rounds -= PER_VALUE * sum(sum(v is not None for v in values) for values in given)
         self.project.project()
         for file, line, message in self.project.notes:
             self.file = file
@@ -119,7 +121,8 @@ class _Interpreter(Control):
             items = [None] * size if 0 < size <= data.MAX_SIZE else Missing(f"{name} has no size")
             scope[name] = Array(kind, items)
             self.rounds += size // 8
-        self.statements += routine.statements
+        self.rounds -= routine.work
+        routine.work = 0  # a second call is work beyond what the file has
         outer = self.file, self.scope
         self.file, self.scope = routine.file, scope
         try:
@@ -169,7 +172,6 @@ class _Interpreter(Control):
         except Unknown as unknown:
             self.problem(node.line, f"{word} is left out: {unknown}")
             self.gap(node.line)
-        self.idle = 0
         if target:
             self.unknown(target, "it numbers a motion at run time")
 

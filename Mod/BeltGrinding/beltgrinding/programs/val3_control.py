@@ -3,6 +3,7 @@
 import re
 
 from .program import ProgramError
+from .program import work_of
 from .val3_data import Missing, Unknown, number
 from .val3_expression import place, split, truth
 from .val3_state import State
@@ -42,7 +43,7 @@ class Control(State):
 
     def block(self, nodes):
         for node in nodes:
-            self.tick(node.line)
+            self.tick(node.line, work_of(node.text))
             self.statement(node)
 
     def unknown(self, target, why):

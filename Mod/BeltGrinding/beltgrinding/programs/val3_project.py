@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 from . import val3_data
-from .program import ProgramError, name_of
+from .program import ProgramError, name_of, work_of
 from .rapid_text import Node
 from .xml_tree import read_xml
 
@@ -33,7 +33,7 @@ class Routine:
     def __init__(self, name, file, line):
         self.name, self.file, self.line = name, file, line
         self.parameters, self.local_data, self.body = [], [], []
-        self.statements = 0
+        self.work = 0
 
 
 class Project:
@@ -155,7 +155,7 @@ def _tree(routine, code):
         if not statement or (word == "begin" and not begun and statement.lower() == "begin"):
             begun = begun or bool(statement)
             continue
-        routine.statements += 1
+        routine.work += work_of(statement)
         if word == "end" and statement.lower() == "end" and not open_nodes:
             return
         if word in ENDS:

@@ -3,13 +3,12 @@
 import re
 
 from . import val3_data as data
-from .program import Motion, Problem, Program, ProgramError
+from .program import MAX_UNROLLED, Motion, Problem, Program, ProgramError
 from .val3_data import Array, Missing, Record, Unknown
 from .val3_expression import expression, place
 from .xml_tree import Element
 
-MAX_ROUNDS = 1_000_000  # statements executed, loops unrolled, beyond those the file has
-MAX_IDLE = 200_000  # of them since the last motion
+PER_VALUE = 6  # units of work in a loop that a value of the .dtx may take
 MAX_MOTIONS = 1_000_000
 ELEMENT = re.compile(r"([^\W\d]\w*)\[([0-9]{1,6})\]")
 FATHER = re.compile(r"([^\W\d]\w*)\s*(?:\[\s*([0-9]{1,6})\s*\])?")
@@ -24,7 +23,7 @@ class State:
         self.globals = {}
         self.scope = {}  # of the running program
         self.file, self.line = project.path.name, 1
-        self.rounds = self.idle = self.statements = 0
+        self.rounds = 0  # units of work; below 0: as many as the files have
         self.said = set()
         self.rows = []  # (motion, six components), made poses all at once
         self.frame = None  # (the Record of) the frame of the last pose, in a tuple
@@ -37,15 +36,10 @@ class State:
             self.said.add(key)
             self.program.problems.append(Problem(self.file, line, message))
 
-    def tick(self, line):
+    def tick(self, line, work=1):
         self.line = line
-        self.rounds += 1
-        self.idle += 1
-        if (
-            self.rounds > MAX_ROUNDS + self.statements
-            or self.idle > MAX_IDLE + self.statements
-            or len(self.program.motions) > MAX_MOTIONS
-        ):
+        self.rounds += work
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
             raise ProgramError(f"{self.file}:{line}: the program is too long or does not end")
 
     def gap(self, line):

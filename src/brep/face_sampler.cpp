@@ -317,6 +317,36 @@ class FaceSampler {
         delaunay.improve(usable, better, kImprovePasses);
     }
 
+    /// u and v of all samples, in their order before those without area are dropped.
+    std::vector<std::array<double, 2>> parameters() const {
+        std::vector<std::array<double, 2>> result(point_.size());
+        const auto put = [&](std::size_t i, double s, double t) {
+            result[i] = surface_.swap ? std::array{t, s} : std::array{s, t};
+        };
+        for (const auto& node : boundary_.nodes) put(node.sample, node.s, node.t);
+        for (const auto& row : lattice_->rows())
+            for (const auto& run : row.runs)
+                for (int k = run.begin; k < run.end; ++k) {
+                    const std::uint32_t node =
+                        run.first + static_cast<std::uint32_t>(k - run.begin);
+                    put(lattice_sample(node), lattice_->s(node), row.t);
+                }
+        return result;
+    }
+
+    /// How far u and v go until the surface meets itself; 0 where it does not.
+    std::array<double, 2> period() const {
+        const auto& surface = surface_.surface;
+        double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+        surface->Bounds(u0, u1, v0, v1);
+        return {surface->IsUPeriodic() ? surface->UPeriod()
+                : surface->IsUClosed() ? u1 - u0
+                                       : 0.0,
+                surface->IsVPeriodic() ? surface->VPeriod()
+                : surface->IsVClosed() ? v1 - v0
+                                       : 0.0};
+    }
+
     /// Keeps the samples that carry area, scales to the exact area.
     FaceSamples finish() {
         FaceSamples out;
@@ -348,6 +378,13 @@ class FaceSampler {
             out.normal[k] = normal_[i];
             out.area[k] = static_cast<float>(area_[i] * scale);
             out.flags[k] = flags_[i];
+        }
+        if (request_.parameters) {
+            const auto all = parameters();
+            out.parameters.resize(count);
+            for (std::uint32_t i = 0; i < point_.size(); ++i)
+                if (index[i] != FaceLattice::kNone) out.parameters[index[i]] = all[i];
+            out.period = period();
         }
         for (Triangle& t : triangles_)
             for (std::uint32_t& v : t) v = index[v];

@@ -3,6 +3,7 @@
 // Private to this room: one face.
 
 #include <TopoDS_Face.hxx>
+#include <array>
 
 #include "base/run_context.h"
 #include "heightfield/height_field.h"
@@ -11,9 +12,10 @@ namespace beltgrinding {
 
 struct FaceRequest {
     TopoDS_Face face;
-    double spacing = 0;    ///< mm
-    double area = 0;       ///< mm2, exact; the samples' areas are scaled to it
-    bool reverse = false;  ///< the normal points against the surface's own
+    double spacing = 0;       ///< mm
+    double area = 0;          ///< mm2, exact; the samples' areas are scaled to it
+    bool reverse = false;     ///< the normal points against the surface's own
+    bool parameters = false;  ///< fill FaceSamples::parameters
 };
 
 /// Samples and triangles of one face; the indices count from 0.
@@ -23,7 +25,9 @@ struct FaceSamples {
     std::vector<float> area;
     std::vector<std::uint8_t> flags;
     std::vector<Triangle> triangles;
-    double sampled_area = 0;  ///< mm2, before scaling
+    std::vector<std::array<double, 2>> parameters;  ///< u, v of each sample, if asked for
+    std::array<double, 2> period{};                 ///< in u and v; 0: not closed
+    double sampled_area = 0;                        ///< mm2, before scaling
 };
 
 /// Throws std::runtime_error with the rest of a sentence that begins with the face's name, or

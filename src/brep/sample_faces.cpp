@@ -164,6 +164,7 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                 request.face = impl.face(job.face);
                 request.spacing = options.spacing;
                 request.area = job.area;
+                request.parameters = options.parameters && report != nullptr;
                 const bool loose = !shape.bounds_solid(job.face);
                 request.reverse = (request.face.Orientation() == TopAbs_REVERSED) !=
                                   (loose ? options.flip_normals : impl.inside_out(job.face));
@@ -186,6 +187,13 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
         }
     });
 
+    if (report && options.parameters) {
+        for (const Job& job : jobs) {
+            const auto& found = job.samples.parameters;
+            report->parameters.insert(report->parameters.end(), found.begin(), found.end());
+            report->period.push_back(job.samples.period);
+        }
+    }
     HeightField field;
     field.spacing = options.spacing;
     field.depth = options.depth;

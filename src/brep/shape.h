@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -52,12 +53,18 @@ struct SamplingOptions {
     bool flip_normals = false;  ///< for loose faces: reverse their normals
     double depth = 1.0;         ///< mm, HeightField::depth
     std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of the machine's memory
+    bool parameters = false;    ///< fill SamplingReport::parameters
 };
 
 /// What sampling found besides the field.
 struct SamplingReport {
     std::vector<double> face_area;      ///< mm2, exact area of each sampled face, in `faces` order
     std::vector<std::string> warnings;  ///< one sentence each, naming the face (from 1)
+    /// u, v of every sample on its face's surface, if asked for. A sample on a seam has those of
+    /// one side, a pole (SampleFlag kDegenerate) those of one of its nodes.
+    std::vector<std::array<double, 2>> parameters;
+    /// Period in u and v of each sampled face's surface; 0 where it is not closed.
+    std::vector<std::array<double, 2>> period;
 };
 
 /// Samples `faces` (from 0; all faces if empty) of `shape` as a height field of zero heights, in

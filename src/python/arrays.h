@@ -53,5 +53,6 @@ void bind_calibration(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
 void bind_robot(py::module_& m);
+void bind_toolpath(py::module_& m);
 
 }  // namespace beltgrinding::python

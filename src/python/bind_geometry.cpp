@@ -74,12 +74,14 @@ void bind_geometry(py::module_& m) {
     m.def(
         "sample_faces",
         [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing,
-           bool flip_normals, double depth, std::size_t max_bytes, const RunContext* context) {
+           bool flip_normals, double depth, std::size_t max_bytes, const RunContext* context,
+           bool parameters) {
             SamplingOptions options;
             options.spacing = spacing;
             options.flip_normals = flip_normals;
             options.depth = depth;
             options.max_bytes = max_bytes;
+            options.parameters = parameters;
             SamplingReport report;
             HeightField field;
             {
@@ -90,11 +92,20 @@ void bind_geometry(py::module_& m) {
             py::dict found;
             found["face_area"] = report.face_area;
             found["warnings"] = report.warnings;
+            if (parameters) {
+                py::array_t<double> uv({report.parameters.size(), std::size_t{2}});
+                std::copy_n(reinterpret_cast<const double*>(report.parameters.data()), uv.size(),
+                            uv.mutable_data());
+                found["parameters"] = uv;
+                found["period"] = report.period;
+            }
             return py::make_tuple(std::move(field), found);
         },
         py::arg("shape"), py::arg("faces"), py::arg("spacing"), py::arg("flip_normals") = false,
         py::arg("depth") = 1.0, py::arg("max_bytes") = 0, py::arg("context") = nullptr,
-        "Samples faces (from 0; all if empty). Returns (HeightField, dict(face_area, warnings)).");
+        py::arg("parameters") = false,
+        "Samples faces (from 0; all if empty). Returns (HeightField, dict(face_area, warnings)); "
+        "with parameters also parameters (n, 2): u, v of every sample, and period of every face.");
 }
 
 }  // namespace beltgrinding::python

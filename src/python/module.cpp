@@ -69,4 +69,5 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_simulation(m);
     bind_inspection(m);
     bind_robot(m);
+    bind_toolpath(m);
 }

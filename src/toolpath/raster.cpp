@@ -105,26 +105,29 @@ class Raster {
         }
     }
 
-    void add_levels(double low, double width, std::size_t part, double length,
-                    const std::vector<double>* at = nullptr) {
+    /// A place in the scalar's range, and the distance to it from the range's beginning, mm.
+    struct Node {
+        double value, length;
+    };
+
+    /// Levels of `part` between the first and the last node, at equal distance.
+    void add_levels(const std::vector<Node>& nodes, std::size_t part) {
+        const double length = nodes.back().length;
         const double wanted = std::ceil(length / options_.step_over - kRounding);
-        const auto count = static_cast<std::size_t>(std::max(1.0, wanted));
-        if (levels_.size() + count > options_.most || !std::isfinite(wanted))
+        if (!(double(levels_.size()) + wanted <= double(options_.most)))
             throw InputError("a step-over of " + std::to_string(options_.step_over) +
                              " mm gives more than " + std::to_string(options_.most) +
                              " passes; enlarge it");
+        const auto count = static_cast<std::size_t>(std::max(1.0, wanted));
         for (std::size_t k = 0; k < count; ++k) {
-            const double share = (double(k) + 0.5) / double(count);
-            double value = low + share * width;
-            if (at) {  // where the cumulative distance reaches the share
-                const double d = share * at->back();
-                const auto upper = std::upper_bound(at->begin() + 1, at->end() - 1, d);
-                const auto i = static_cast<std::size_t>(upper - at->begin()) - 1;
-                const double step = (*at)[i + 1] - (*at)[i];
-                const double w = step > 0 ? (d - (*at)[i]) / step : 0.5;
-                value = low + width * (double(i) + w) / double(at->size() - 1);
-            }
-            levels_.push_back({value, part});
+            const double at = (double(k) + 0.5) / double(count) * length;
+            const auto upper =
+                std::upper_bound(nodes.begin() + 1, nodes.end() - 1, at,
+                                 [](double x, const Node& node) { return x < node.length; });
+            const Node &low = *(upper - 1), &high = *upper;
+            const double step = high.length - low.length;
+            const double w = step > 0 ? (at - low.length) / step : 0.5;
+            levels_.push_back({(1 - w) * low.value + w * high.value, part});
             result_.distance.push_back(length / double(count));
         }
     }
@@ -152,41 +155,42 @@ class Raster {
             return;
         }
         const double bin = (high - low) / double(kBins);
-        std::vector<double> gradient(kBins, 0.0);
+        struct Bin {
+            double gradient = kInfinity, low = kInfinity, high = -kInfinity;  // low, high: covered
+        };
+        std::vector<Bin> bins(kBins);
         const auto index = [&](double c) {
-            return static_cast<long>(
-                std::clamp(std::floor((c - low) / bin), -double(kBins), 2.0 * double(kBins)));
+            const double k = std::floor((c - low) / bin);
+            return static_cast<std::size_t>(std::clamp(k, 0.0, double(kBins - 1)));
         };
         for (std::size_t i = 0; i < facts_.size(); ++i) {
             const double g = facts_[i].gradient;
             if (g < least) result_.uncovered_area += facts_[i].area;
             if (facts_[i].sliver || g < least) continue;
             const auto& c = mesh_.scalar[i];
-            const auto [a, b] = std::minmax({c[0], c[1], c[2]});
-            for (long k = index(a); k <= index(b); ++k) {
-                long j = k;
-                if (surface_.period > 0 && (j < 0 || j >= long(kBins))) {
-                    const double middle = low + (double(k) + 0.5) * bin;
-                    j = index(middle -
-                              surface_.period * std::floor((middle - low) / surface_.period));
+            const auto [first, last] = std::minmax({c[0], c[1], c[2]});
+            for (int turn = surface_.period > 0 ? -1 : 0; turn <= (surface_.period > 0); ++turn) {
+                const double a = std::max(first + turn * surface_.period, low);
+                const double b = std::min(last + turn * surface_.period, high);
+                if (!(a < b)) continue;
+                for (std::size_t k = index(a); k <= index(b); ++k) {
+                    bins[k].gradient = std::min(bins[k].gradient, g);
+                    bins[k].low = std::min(bins[k].low, std::max(a, low + double(k) * bin));
+                    bins[k].high = std::max(bins[k].high, std::min(b, low + double(k + 1) * bin));
                 }
-                if (j < 0 || j >= long(kBins)) continue;
-                double& known = gradient[static_cast<std::size_t>(j)];
-                if (known == 0 || g < known) known = g;
             }
         }
         // What lies between surfaces that do not meet takes no passes.
         for (std::size_t k = 0; k < kBins;) {
-            if (gradient[k] == 0) {
+            if (!(bins[k].high > bins[k].low)) {
                 ++k;
                 continue;
             }
-            const std::size_t first = k;
-            std::vector<double> length{0.0};
-            for (; k < kBins && gradient[k] > 0; ++k)
-                length.push_back(length.back() + bin / gradient[k]);
-            add_levels(low + double(first) * bin, double(k - first) * bin, 0, length.back(),
-                       &length);
+            std::vector<Node> nodes{{bins[k].low, 0.0}};
+            for (; k < kBins && bins[k].high > bins[k].low; ++k)
+                nodes.push_back({bins[k].high, nodes.back().length + (bins[k].high - bins[k].low) /
+                                                                         bins[k].gradient});
+            add_levels(nodes, 0);
         }
     }
 
@@ -269,7 +273,7 @@ class Raster {
             }
             if (!reached) result_.uncovered_area += facts_[part[k]].area;
         }
-        if (high >= low) add_levels(low, high - low, mesh_.part[part.front()], high - low);
+        if (high >= low) add_levels({{low, 0.0}, {high, high - low}}, mesh_.part[part.front()]);
     }
 
     const RasterSurface& surface_;

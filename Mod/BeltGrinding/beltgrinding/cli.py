@@ -76,11 +76,20 @@ def _parser():
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
+    raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
+    raster.add_argument("job", help="job.json; it need not have a program yet")
+    raster.add_argument("-o", "--output", required=True, help="file for the program (.csv)")
+    raster.add_argument("--settings", help="JSON file of the settings")
+    raster.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
+    )
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials", "robots"))
     preset.add_argument("--json", action="store_true", help="as JSON")
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
-    printed.add_argument("name", nargs="?", choices=("job", "contact", "presets"), default="job")
+    printed.add_argument(
+        "name", nargs="?", choices=("job", "contact", "presets", "raster"), default="job"
+    )
     return parser
 
 
@@ -252,6 +261,34 @@ def _program(arguments):
     print(json.dumps(table.summary(program), indent=2))
 
 
+def _raster(arguments):
+    from . import InputError, raster, schemas
+    from .result import write_whole
+
+    settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
+    if not isinstance(settings, dict):
+        raise InputError(f"{arguments.settings}: the settings are no object of keys")
+    for one in arguments.set:
+        key, equals, value = one.partition("=")
+        if not equals:
+            raise InputError(f"--set {one}: write KEY=VALUE")
+        try:
+            settings[key] = json.loads(value)
+        except ValueError:
+            settings[key] = value
+    output = Path(arguments.output)
+    if output.suffix.lower() != ".csv":
+        raise InputError(f"{output}: a raster path is written as .csv; give such a name")
+    found = raster.raster(raster.load_job(arguments.job), settings)
+    try:
+        write_whole(output, raster.program_csv(found).encode())
+    except OSError as error:
+        raise InputError(f"{output}: cannot be written: {error.strerror}") from None
+    for warning in found["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
+    print(json.dumps(raster.summary(found)))
+
+
 def _predict(arguments):
     from . import calibration_law, schemas
 
@@ -307,6 +344,8 @@ def main(argv=None):
             _calibrate_scan(arguments)
         elif arguments.command == "program":
             _program(arguments)
+        elif arguments.command == "raster":
+            _raster(arguments)
         elif arguments.command == "predict":
             _predict(arguments)
         elif arguments.command == "run":

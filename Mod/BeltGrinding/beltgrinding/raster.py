@@ -12,6 +12,7 @@ from . import InputError, core, frames, job as jobs, raster_passes as passes, sc
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
 LEAST_SAMPLES = 400
+MOST_SAMPLES = 400_000
 STEP_SAMPLES = 4  # between neighbouring passes, at least
 POSE_SAMPLES = 3  # between neighbouring poses, at least
 WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
@@ -65,8 +66,9 @@ def raster(job, settings, context=None):
     if step_over == 0:
         width = contact_width(job, settings, surfaces, warnings)
         step_over = settings["step_over_share"] * width
-    if not settings["sampling_mm"] and spacing > step_over / STEP_SAMPLES:
-        spacing = step_over / STEP_SAMPLES
+    finer = _finer(area, step_over)
+    if not settings["sampling_mm"] and spacing > finer:
+        spacing = finer
         surfaces = _surfaces(job, shape, faces, spacing, settings, [], context)
     cell = passes.cell_of(job)
     lever = passes.lever(cell, np.vstack([s["points"] for s in surfaces]))
@@ -97,8 +99,13 @@ def _sampling(area, settings):
     side = math.sqrt(max(area, 1e-6))
     wanted = [settings["max_distance_mm"] / POSE_SAMPLES, side / math.sqrt(LEAST_SAMPLES)]
     if settings["step_over_mm"] > 0:
-        wanted.append(settings["step_over_mm"] / STEP_SAMPLES)
+        wanted.append(_finer(area, settings["step_over_mm"]))
     return min(min(wanted), side / math.sqrt(SAMPLES))
+
+
+def _finer(area, step_over):
+    """mm that ``step_over`` asks for, within bounds: between samples, passes are interpolated."""
+    return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
 def _surfaces(job, shape, faces, spacing, settings, warnings, context):

@@ -254,5 +254,27 @@ TEST(SampleFaces, NamesWrongInput) {
     EXPECT_THROW(sample_faces(box(), {}, {}, context), Cancelled);
 }
 
+TEST(SampleFaces, TellsParametersOnRequest) {
+    const Shape shape = make_shape(BRepPrimAPI_MakeCylinder(10, 40).Shape(), "cylinder");
+    std::size_t round = 0;
+    while (shape.surface_type(round) != "cylinder") ++round;
+    SamplingOptions options;
+    options.spacing = 1.0;
+    SamplingReport report;
+    const HeightField without = sample_faces(shape, {round}, options, {}, &report);
+    EXPECT_TRUE(report.parameters.empty());
+    options.parameters = true;
+    const HeightField field = sample_faces(shape, {round}, options, {}, &report);
+    ASSERT_EQ(report.parameters.size(), field.size());
+    ASSERT_EQ(report.period.size(), 1u);
+    EXPECT_NEAR(report.period[0][0], 2 * pi, 1e-12);
+    EXPECT_EQ(report.period[0][1], 0.0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const auto [u, v] = report.parameters[i];
+        const Vec3 expected(10 * std::cos(u), 10 * std::sin(u), v);
+        EXPECT_LT((field.point[i] - expected).norm(), 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace beltgrinding

@@ -252,6 +252,28 @@ class FollowPath(Command):
             edit(program)
 
 
+class RasterPath(Command):
+    NAME = "BeltGrinding_RasterPath"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_RasterPath", "Raster path...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_RasterPath",
+        "Lays contact passes side by side on the selected faces, or on all faces of the job",
+    )
+
+    def run(self):
+        job = active_job()
+        faces = [
+            (one.Object, [s for s in one.SubElementNames if s.startswith("Face")])
+            for one in Gui.Selection.getSelectionEx(job.Document.Name)
+            if hasattr(one.Object, "Shape")
+            and any(s.startswith("Face") for s in one.SubElementNames)
+        ]
+        with transaction(job.Document, "Raster path", panel=True) as step:
+            path = api.make_raster(job, faces, compute=False)
+        if not step.failed:
+            edit(path)
+
+
 class Simulate(Command):
     NAME = "BeltGrinding_Simulate"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Simulate")
@@ -392,7 +414,7 @@ class ReadAgain(Command):
             job.Document.recompute()
 
 
-WORK = (NewJob, Stock, BeltMachine, ImportProgram, Cell, Simulate, Deviation)
+WORK = (NewJob, Stock, BeltMachine, ImportProgram, RasterPath, Cell, Simulate, Deviation)
 MORE = (
     FollowPath,
     Belt,

@@ -11,6 +11,7 @@ __all__ = [
     "BeltView",
     "DeviationView",
     "JobView",
+    "RasterPathView",
     "RobotPathView",
     "SimulationView",
     "StockView",
@@ -89,6 +90,15 @@ class RobotPathView(View):
         from .program_panel import ProgramPanel
 
         return ProgramPanel(obj)
+
+
+class RasterPathView(RobotPathView):
+    ICON = "BeltGrinding_RasterPath"
+
+    def panel(self, obj):
+        from .raster_panel import RasterPanel
+
+        return RasterPanel(obj)
 
 
 class SimulationView(Undrawn):

@@ -20,6 +20,7 @@ from . import (
     belt_machine,
     deviation as deviations,
     job_object,
+    raster_path,
     robot_path,
     simulation as results,
 )
@@ -131,6 +132,31 @@ def follow_path(job, source, **properties):
         job.addObject(program)
         program.recompute()
     return program
+
+
+def make_raster(job, faces=(), compute=True, **properties):
+    """Adds a raster path to a job: contact passes side by side on ``faces``, given as for
+    ``make_job`` (names of the first design object, or a list of (object, names)); none: the job's
+    design faces. It is laid anew when an input changes. ``compute=False`` leaves it empty until
+    the document is recomputed.
+    """
+    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    links = list(faces) or job.DesignFaces
+    if isinstance(links[0], (str, int)):
+        names = tuple(f"Face{s}" if isinstance(s, int) else s for s in links)
+        links = [(job.DesignFaces[0][0], names)]
+    path = job.Document.addObject("Path::FeaturePython", "RasterPath")
+    with _removed_on_error(path):
+        raster_path.RasterPath(path)
+        path.Label = "Raster"
+        path.Faces = links
+        path.Machine = machine
+        set_by_name(path, properties)
+        job.addObject(path)
+        if compute:
+            raster_path.generate(path)
+            path.recompute()
+    return path
 
 
 def simulate(job, context=None, write_to=None):

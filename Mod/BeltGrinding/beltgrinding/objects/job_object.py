@@ -109,15 +109,22 @@ def design(job):
 
     Several objects become one compound, whose faces are numbered through.
     """
-    if not job.DesignFaces:
-        raise InputError(f"{job.Label}: no faces are chosen; select faces and add them to the job")
+    return shape_of(job.DesignFaces, job.Label)
+
+
+def shape_of(links, label):
+    """(shape, numbers of its faces from 1) of a list of (object, face names), as ``design`` gives
+    them; ``label`` stands for its owner. Raises InputError.
+    """
+    if not links:
+        raise InputError(f"{label}: no faces are chosen; select faces and add them to the job")
     shapes, numbers, offset = [], [], 0
-    for obj, subs in _by_object(job.DesignFaces):
+    for obj, subs in _by_object(links):
         shape = placed_shape(obj)
         count = len(shape.Faces)
         if count == 0:
-            raise InputError(f"{job.Label}: {obj.Label} has no faces")
-        for number in _face_numbers(job, obj, subs, count):
+            raise InputError(f"{label}: {obj.Label} has no faces")
+        for number in _face_numbers(label, obj, subs, count):
             if number + offset not in numbers:
                 numbers.append(number + offset)
         shapes.append(shape)
@@ -132,17 +139,17 @@ def _by_object(links):
     return merged.items()
 
 
-def _face_numbers(job, obj, subs, count):
+def _face_numbers(label, obj, subs, count):
     names = [sub.rpartition(".")[2] for sub in subs]
     if not any(names):
         return range(1, count + 1)
     numbers = []
     for name in names:
         if not (name.startswith("Face") and name[4:].isdigit()):
-            raise InputError(f"{job.Label}: {obj.Label}.{name or '(all)'} is no face; choose faces")
+            raise InputError(f"{label}: {obj.Label}.{name or '(all)'} is no face; choose faces")
         if not 1 <= int(name[4:]) <= count:
             raise InputError(
-                f"{job.Label}: {obj.Label} has no {name}; it has {count} faces. Choose them again"
+                f"{label}: {obj.Label} has no {name}; it has {count} faces. Choose them again"
             )
         numbers.append(int(name[4:]))
     return numbers

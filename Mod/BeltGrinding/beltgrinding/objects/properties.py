@@ -6,7 +6,7 @@ import json
 from functools import lru_cache
 from typing import NamedTuple
 
-from .. import InputError
+from .. import InputError, schemas
 from ..job import schema
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
@@ -41,7 +41,10 @@ class Output(NamedTuple):
 
 @lru_cache(maxsize=None)
 def _schema():
-    return schema()
+    """The job's schema, and under 'raster' that of a raster path's settings."""
+    found = schema()
+    found["properties"]["raster"] = schemas.schema("raster")
+    return found
 
 
 def rule(key):
@@ -100,6 +103,8 @@ def get_value(obj, key):
         return value
     if key.kind == "JSON":
         return json.loads(value) if value else copy.deepcopy(rule(key.key)[1])
+    if key.kind == "Vector":
+        return [float(f"{x:.15g}") for x in value]
     if key.kind == "VectorList":  # pairs
         return [[float(f"{point.x:.15g}"), float(f"{point.y:.15g}")] for point in value]
     value = float(getattr(value, "Value", value)) / key.scale
@@ -110,6 +115,8 @@ def set_value(obj, key, value):
     """Sets the property from a value in the job's unit."""
     if key.kind == "JSON":
         value = json.dumps(value) if value else ""
+    elif key.kind == "Vector":
+        value = tuple(value)
     elif key.kind == "VectorList":
         value = [(x, y, 0.0) for x, y in value]
     elif key.kind not in AS_IS:

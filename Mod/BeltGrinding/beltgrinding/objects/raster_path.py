@@ -1,0 +1,115 @@
+"""A robot path that is computed: passes side by side on faces, laid anew when an input changes."""
+
+import hashlib
+import json
+
+from .. import InputError, job as jobs, raster
+from . import job_object
+from .belt_machine import BeltMachine
+from .geometry import faces_digest
+from .properties import Key, Output, add_keys, add_outputs, to_job
+from .proxy import type_of
+from .robot_path import RobotPath, set_arrays
+
+KEYS = (
+    Key("Along", "Enumeration", "Passes", "raster.along"),
+    Key("Direction", "Vector", "Passes", "raster.direction"),
+    Key("PassSpacing", "Enumeration", "Passes", "raster.spacing"),
+    Key("StepOver", "Length", "Passes", "raster.step_over_mm"),
+    Key("StepOverShare", "Float", "Passes", "raster.step_over_share"),
+    Key("Order", "Enumeration", "Passes", "raster.order"),
+    Key("RunOut", "Distance", "Passes", "raster.run_out_mm"),
+    Key("Bridge", "Length", "Passes", "raster.bridge_mm"),
+    Key("MinLength", "Length", "Passes", "raster.min_length_mm"),
+    Key("BeltAngle", "Angle", "Posing", "raster.belt_angle_deg"),
+    Key("Offset", "Distance", "Posing", "raster.offset_mm"),
+    Key("Smoothing", "Length", "Posing", "raster.smoothing_mm"),
+    Key("EdgeTurn", "Angle", "Posing", "raster.edge_turn_deg"),
+    Key("ChordError", "Length", "Posing", "raster.chord_error_mm"),
+    Key("MaxDistance", "Length", "Posing", "raster.max_distance_mm"),
+    Key("MaxTurn", "Angle", "Posing", "raster.max_turn_deg"),
+    Key("Sampling", "Length", "Posing", "raster.sampling_mm"),
+    Key("FitLimit", "Length", "Posing", "raster.fit_mm"),
+    Key("Feed", "Speed", "Process", "raster.feed_mm_s"),
+    Key("Force", "Force", "Process", "raster.force_N"),
+    Key("Approach", "Enumeration", "Process", "raster.approach"),
+    Key("ApproachLength", "Length", "Process", "raster.approach_mm"),
+    Key("ApproachFeed", "Speed", "Process", "raster.approach_feed_mm_s"),
+    Key("Clearance", "Length", "Process", "raster.clearance_mm"),
+)
+OUTPUTS = (
+    Output("PassCount", "Integer", "Result", "number of passes"),
+    Output("GroundLength", "Length", "Result", "length of all passes"),
+    Output("StepOverUsed", "Length", "Result", "distance of neighbouring passes, at most"),
+    Output("ContactWidth", "Length", "Result", "contact's width across the pass; 0: not asked for"),
+    Output("Warnings", "StringList", "Result", "what the user should know of the passes"),
+    Output("Inputs", "String", "Result", "hash of what the passes were laid from", True),
+)
+
+
+class RasterPath(RobotPath):
+    """Proxy. A RobotPath like any other: the poses are its own, and only how they come differs."""
+
+    VIEW = "RasterPathView"
+
+    def add_properties(self, obj):
+        super().add_properties(obj)
+        if "Faces" not in obj.PropertiesList:
+            obj.addProperty(
+                "App::PropertyLinkSubListGlobal", "Faces", "Passes", "the faces with the passes"
+            )
+        add_keys(obj, KEYS)
+        add_outputs(obj, OUTPUTS)
+        obj.setEditorMode("Source", 2)
+
+    def execute(self, obj):
+        """Lays the passes anew if an input has changed; the last ones stay where that fails."""
+        try:
+            generate(obj)
+        finally:
+            super().execute(obj)
+
+
+def is_raster(obj):
+    """True for a path that is computed."""
+    return isinstance(getattr(obj, "Proxy", None), RasterPath)
+
+
+def generate(obj):
+    """Lays the passes of a raster path if what they come from has changed. Raises InputError."""
+    job, settings, digest = _inputs(obj)
+    if digest == obj.Inputs:
+        return
+    job["design"]["brep"] = job["design"]["brep"].exportBrepToString()
+    found = raster.raster(jobs.validate(job), settings)
+    set_arrays(obj, found)
+    obj.Language = "raster"
+    obj.PassCount = len(found["passes"])
+    obj.GroundLength = sum(one["length_mm"] for one in found["passes"])
+    obj.StepOverUsed = found["step_over_mm"]
+    obj.ContactWidth = found["contact_width_mm"] or 0.0
+    obj.Warnings = found["warnings"]
+    obj.Inputs = digest
+
+
+def _inputs(obj):
+    """(job with the shape for its B-rep, settings, hash of both)."""
+    if type_of(obj.Machine) != BeltMachine.TYPE:
+        raise InputError(f"{obj.Label} has no belt machine; add one to the job")
+    group, data = obj.getParentGroup(), {"schema": 1}
+    if type_of(group) == job_object.BeltGrindingJob.TYPE:
+        to_job(group, job_object.KEYS, data)
+        data = {key: data[key] for key in ("schema", "design", "law")}
+    data.setdefault("design", {})
+    data.update(obj.Machine.Proxy.to_job(obj.Machine))
+    data["belt_machine"].pop("belt", None)  # its wear moves no pass
+    shape, numbers = job_object.shape_of(obj.Faces, obj.Label)
+    data["design"]["faces"] = numbers
+    data["programs"] = [{"poses": []}]
+    settings = {}
+    to_job(obj, KEYS, settings)
+    settings = settings["raster"]
+    digest = faces_digest(shape.Faces[number - 1] for number in numbers)
+    text = json.dumps([data, settings, digest], sort_keys=True)
+    data["design"]["brep"] = shape
+    return data, settings, hashlib.sha256(text.encode()).hexdigest()

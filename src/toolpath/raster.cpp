@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -19,6 +20,12 @@ constexpr double kLeastGradient = 0.1;  // of the usual one: 84 degrees against 
 constexpr double kSliver = 0.02;        // area over longest edge squared: its gradient is noise
 constexpr double kRounding = 1e-9;      // of a step-over
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.4g", value);
+    return buffer;
+}
 
 struct TriangleFacts {
     double area = 0.0;      ///< mm2
@@ -115,7 +122,7 @@ class Raster {
         const double length = nodes.back().length;
         const double wanted = std::ceil(length / options_.step_over - kRounding);
         if (!(double(levels_.size()) + wanted <= double(options_.most)))
-            throw InputError("a step-over of " + std::to_string(options_.step_over) +
+            throw InputError("the step-over of " + text(options_.step_over) +
                              " mm gives more than " + std::to_string(options_.most) +
                              " passes; enlarge it");
         const auto count = static_cast<std::size_t>(std::max(1.0, wanted));

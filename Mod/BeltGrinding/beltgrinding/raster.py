@@ -99,8 +99,8 @@ def _sampling(area, settings):
     side = math.sqrt(max(area, 1e-6))
     wanted = [settings["max_distance_mm"] / POSE_SAMPLES, side / math.sqrt(LEAST_SAMPLES)]
     if settings["step_over_mm"] > 0:
-        wanted.append(_finer(area, settings["step_over_mm"]))
-    return min(min(wanted), side / math.sqrt(SAMPLES))
+        wanted.append(settings["step_over_mm"] / STEP_SAMPLES)
+    return max(min(*wanted, side / math.sqrt(SAMPLES)), side / math.sqrt(MOST_SAMPLES))
 
 
 def _finer(area, step_over):
@@ -131,6 +131,7 @@ def _surfaces(job, shape, faces, spacing, settings, warnings, context):
     for k, face in enumerate(faces):
         mine = triangles[owner == face]
         if len(mine) == 0:
+            warnings.append(f"Face{face + 1} is too small for samples of {spacing:.3g} mm: no pass")
             continue
         used, local = np.unique(mine, return_inverse=True)
         local = local.reshape(-1, 3)

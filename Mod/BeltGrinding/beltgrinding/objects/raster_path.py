@@ -70,11 +70,6 @@ class RasterPath(RobotPath):
             super().execute(obj)
 
 
-def is_raster(obj):
-    """True for a path that is computed."""
-    return isinstance(getattr(obj, "Proxy", None), RasterPath)
-
-
 def generate(obj):
     """Lays the passes of a raster path if what they come from has changed. Raises InputError."""
     job, settings, digest = _inputs(obj)

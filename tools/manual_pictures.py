@@ -49,6 +49,19 @@ def main():
     hands.field("poseNumber").setValue(60)
     take("workbench-cell")
     hands.press("OK")
+    shown = [obj.ViewObject for obj in doc.Objects if hasattr(obj, "Poses")]
+    for program in shown:
+        program.Visibility = False
+    doc.Design.ViewObject.Deviation = 0.01  # or coarse triangles hide parts of the passes
+    hands.menu("Raster path...")
+    hands.type_in("ApproachLength", "20 mm")
+    hands.type_in("Clearance", "20 mm")
+    hands.wait(lambda: doc.RasterPath.Clearance.Value == 20)
+    Gui.SendMsgToActiveView("ViewFit")
+    take("workbench-raster")
+    hands.press("Cancel")
+    for program in shown:
+        program.Visibility = True
     hands.menu("Simulate")
     hands.wait(lambda: doc.getObject("Simulation") is not None)
     take("workbench-simulation")

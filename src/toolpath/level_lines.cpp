@@ -10,6 +10,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kSamePoint = 1e-7;   // mm
+constexpr double kOnePlace = 1e-4;    // mm; the two sides of an edge lie so near
 constexpr double kSameNormal = 1e-3;  // rad; more is an edge between faces
 constexpr std::size_t kCancelEvery = 1 << 14;
 
@@ -135,12 +136,15 @@ std::vector<RasterLine> chains(const std::vector<Segment>& all) {
     return lines;
 }
 
-/// Cuts a line where the normal jumps.
+/// Cuts a line where the normal jumps in one place: at an edge between faces, not at a tight bend
+/// of one face.
 void split(RasterLine&& line, double turn, std::vector<RasterLine>& out) {
     const std::size_t n = line.point.size();
     std::vector<std::size_t> cuts{0};
     for (std::size_t i = 1; i < n; ++i)
-        if (between(line.normal[i - 1], line.normal[i]) > turn) cuts.push_back(i);
+        if ((line.point[i] - line.point[i - 1]).norm() < kOnePlace &&
+            between(line.normal[i - 1], line.normal[i]) > turn)
+            cuts.push_back(i);
     if (cuts.size() == 1) {
         out.push_back(std::move(line));
         return;

@@ -66,7 +66,9 @@ def test_passes_lie_at_the_step_over_and_look_into_the_work():
         for k, one in enumerate(found["passes"]):
             contacts = found["contacts"][on_pass(found, k)]
             assert one["length_mm"] == pytest.approx(LENGTH, abs=1e-3)
-            assert contacts[:, 1, 3] == pytest.approx(np.full(len(contacts), 5.0 + 10 * k), abs=0.05)
+            assert contacts[:, 1, 3] == pytest.approx(
+                np.full(len(contacts), 5.0 + 10 * k), abs=0.05
+            )
             assert contacts[:, :3, 2] == pytest.approx(np.tile([0, 0, -1], (len(contacts), 1)))
             # The belt keeps its travel, whichever way the pass goes.
             assert contacts[:, :3, 0] == pytest.approx(np.tile([1, 0, 0], (len(contacts), 1)))
@@ -145,6 +147,11 @@ def test_both_holdings_bring_the_contact_to_the_same_places():
         job["programs"] = [{"poses": poses.list_poses(found)}]
         path = jobs.tool_path(job, 0, [])
         assert path.work_from_contact() == pytest.approx(found["contacts"], abs=1e-9)
+        # The contact keeps its feed over the work, whatever the tool centre point does for it.
+        grinding = np.flatnonzero(found["contact"][1:] & found["contact"][:-1]) + 1
+        way = np.linalg.norm(np.diff(found["contacts"][:, :3, 3], axis=0), axis=1)[grinding - 1]
+        tcp = np.linalg.norm(np.diff(found["frames"][:, :3, 3], axis=0), axis=1)[grinding - 1]
+        assert way / (tcp / found["feeds"][grinding]) == pytest.approx(50.0)
         # Halfway between poses, which the robot joins by straight lines and slerp, too: the lever
         # of the part in the hand asks for more of them.
         for one in found["passes"]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import frames
 
+STILL = 1e-6  # mm; less is no way
 CELL = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
@@ -61,9 +62,26 @@ def assemble(levels, settings, cell):
     if not parts:
         return joined
     joined["frames"] = base_from_tcp(cell, joined["contacts"])
+    joined["feeds"] = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
     joined["forces"] = np.full(count, settings["force_N"] or -1.0)
     joined["lines"] = np.zeros(count, dtype=int)
     return joined
+
+
+def tcp_feeds(path, most):
+    """mm/s of the tool centre point (n,) with which the contact has ``path["feeds"]`` over the work;
+    at most ``most``. A controller that is told the feed of the contact itself (a KUKA with the tool
+    outside, $IPO_MODE=#TCP) takes those.
+    """
+    tcp, contact = (
+        np.linalg.norm(np.diff(path[name][:, :3, 3], axis=0), axis=1)
+        for name in ("frames", "contacts")
+    )
+    feeds = path["feeds"].copy()
+    # A turn on the spot has no feed of the contact, a turn about the tool centre point none of it.
+    moves = np.flatnonzero((tcp > STILL) & (contact > STILL) & ~path["rapid"][1:])
+    feeds[moves + 1] *= tcp[moves] / contact[moves]
+    return np.minimum(feeds, most)
 
 
 def _strokes(pieces, backwards, end, settings):

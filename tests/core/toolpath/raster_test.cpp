@@ -123,7 +123,9 @@ TEST(Raster, LiesEvenlyOnAPlateWithAHole) {
                 EXPECT_LT(line.point.front().x(), line.point.back().x());
             }
         }
-        const auto off_the_hole = [](const Vec3& p) { return std::hypot(p.x() - 50, p.y() - 30) > 17; };
+        const auto off_the_hole = [](const Vec3& p) {
+            return std::hypot(p.x() - 50, p.y() - 30) > 17;
+        };
         EXPECT_LT(farthest(plate, found.lines, off_the_hole), 5.1);
     }
 }
@@ -226,7 +228,8 @@ TEST(Raster, RunsOverAnEdgeBetweenFacesOrEndsThere) {
         for (const RasterLine& line : smooth.lines)
             for (std::size_t i = 1; i < line.point.size(); ++i) {
                 const double way = (line.point[i] - line.point[i - 1]).norm();
-                const double turn = std::acos(std::min(1.0, line.normal[i].dot(line.normal[i - 1])));
+                const double turn =
+                    std::acos(std::min(1.0, line.normal[i].dot(line.normal[i - 1])));
                 EXPECT_LT(turn, 1.1 * 0.3 * way / 20.0 + 1e-6);
             }
     }

@@ -31,6 +31,7 @@ KEYS = (
     Key("Sampling", "Length", "Posing", "raster.sampling_mm"),
     Key("FitLimit", "Length", "Posing", "raster.fit_mm"),
     Key("Feed", "Speed", "Process", "raster.feed_mm_s"),
+    Key("MaxTcpFeed", "Speed", "Process", "raster.max_tcp_feed_mm_s"),
     Key("Force", "Force", "Process", "raster.force_N"),
     Key("Approach", "Enumeration", "Process", "raster.approach"),
     Key("ApproachLength", "Length", "Process", "raster.approach_mm"),

@@ -260,6 +260,12 @@ def test_the_command_line_writes_a_program(tmp_path):
     assert arrays["feeds"] == pytest.approx(expected["feeds"])
     assert arrays["rapid"].tolist() == expected["rapid"].tolist()
     assert (arrays["forces"] == 20).all()
+    done = command("raster", tmp_path / "job.json", "-o", tmp_path / "path.src", "--set", "force_N=20",
+                   "--settings", tmp_path / "raster.json", "--set", "step_over_mm=15")  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    krl = read_program(tmp_path / "path.src").path_arrays(100.0)
+    assert krl["frames"] == pytest.approx(expected["frames"], abs=1e-3)
+    assert krl["rapid"].tolist() == expected["rapid"].tolist()
     for bad in (["--set", "feed_mm_s=-1"], ["--set", "along"], ["-o", tmp_path / "path.xyz"]):
         done = command("raster", tmp_path / "job.json", "-o", tmp_path / "no.csv", *bad)
         assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr

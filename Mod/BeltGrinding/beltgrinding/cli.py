@@ -78,7 +78,9 @@ def _parser():
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
     raster.add_argument("job", help="job.json; it need not have a program yet")
-    raster.add_argument("-o", "--output", required=True, help="file for the program (.csv)")
+    raster.add_argument(
+        "-o", "--output", required=True, help="program: .csv, .src, .mod or .script"
+    )
     raster.add_argument("--settings", help="JSON file of the settings")
     raster.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
@@ -263,7 +265,7 @@ def _program(arguments):
 
 def _raster(arguments):
     from . import InputError, raster, schemas
-    from .result import write_whole
+    from .programs import ProgramError, write_program
 
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
     if not isinstance(settings, dict):
@@ -276,14 +278,13 @@ def _raster(arguments):
             settings[key] = json.loads(value)
         except ValueError:
             settings[key] = value
-    output = Path(arguments.output)
-    if output.suffix.lower() != ".csv":
-        raise InputError(f"{output}: a raster path is written as .csv; give such a name")
     found = raster.raster(raster.load_job(arguments.job), settings)
     try:
-        write_whole(output, raster.program_csv(found).encode())
+        write_program(arguments.output, None, raster.program(found))
+    except ProgramError as error:
+        raise InputError(str(error)) from None
     except OSError as error:
-        raise InputError(f"{output}: cannot be written: {error.strerror}") from None
+        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
     for warning in found["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
     print(json.dumps(raster.summary(found)))

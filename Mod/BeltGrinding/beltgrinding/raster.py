@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, job as jobs, raster_passes as passes, schemas
+from . import InputError, core, job as jobs, raster_passes as passes, schemas
+from .programs import Motion, Program
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
 LEAST_SAMPLES = 400
@@ -286,17 +287,15 @@ def _fit(job, settings, surfaces, result, warnings, context):
     return fit
 
 
-def program_csv(result):
-    """The path as a program in our CSV (docs/programs.md)."""
-    turns = frames.to_quaternions(result["frames"][:, :3, :3])
-    rows = np.column_stack([result["frames"][:, :3, 3], turns, result["feeds"]])
-    lines = ["x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s,force_N,motion"]
-    for row, force, rapid in zip(rows.tolist(), result["forces"].tolist(), result["rapid"]):
-        numbers = ",".join(f"{value:.9g}" for value in row)
-        lines.append(
-            f"{numbers},{f'{force:.9g}' if force >= 0 else ''},{'PTP' if rapid else 'LIN'}"
-        )
-    return "\n".join([*lines, ""])
+def program(result):
+    """The path as a ``programs.Program``, for ``programs.write_program``."""
+    rows = zip(result["frames"], result["feeds"].tolist(), result["forces"].tolist())
+    made = Program("raster", "raster")
+    for (pose, feed, force), rapid in zip(rows, result["rapid"].tolist()):
+        kind = "PTP" if rapid else "LIN"
+        given = None if force < 0 else force
+        made.motions.append(Motion(kind, pose, 0, "", feed, given))
+    return made
 
 
 def summary(result):

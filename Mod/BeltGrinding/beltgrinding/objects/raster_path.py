@@ -61,7 +61,8 @@ class RasterPath(RobotPath):
             )
         add_keys(obj, KEYS)
         add_outputs(obj, OUTPUTS)
-        obj.setEditorMode("Source", 2)
+        for name in ("Source", "SourceObject"):
+            obj.setEditorMode(name, 2)
 
     def execute(self, obj):
         """Lays the passes anew if an input has changed; the last ones stay where that fails."""

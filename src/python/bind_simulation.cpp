@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "python/dict.h"
 #include "simulation/simulation.h"
@@ -173,12 +174,15 @@ using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
 ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& forces,
                    const Bools& rapid, const Ints& lines, const std::string& holding,
                    const Eigen::Matrix4d& base_from_work, const Eigen::Matrix4d& tcp_from_contact,
-                   const Eigen::Matrix4d& tcp_from_work, const Eigen::Matrix4d& base_from_contact) {
+                   const Eigen::Matrix4d& tcp_from_work, const Eigen::Matrix4d& base_from_contact,
+                   const std::optional<Doubles>& joints) {
     const py::ssize_t n = frames.ndim() == 3 ? frames.shape(0) : -1;
     if (n < 0 || frames.shape(1) != 4 || frames.shape(2) != 4 || feeds.size() != n ||
-        forces.size() != n || rapid.size() != n || lines.size() != n) {
+        forces.size() != n || rapid.size() != n || lines.size() != n ||
+        (joints && joints->size() != 6 * n)) {
         throw InputError(
-            "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines");
+            "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines, "
+            "joints");
     }
     CellFrames cell;
     if (holding == "part_in_hand") {
@@ -199,6 +203,10 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
         pose.force = forces.data()[i];
         pose.rapid = rapid.data()[i];
         pose.line = lines.data()[i];
+        if (joints) {
+            const Eigen::Map<const Eigen::Matrix<double, 6, 1>> row(joints->data() + 6 * i);
+            if (row.allFinite()) pose.joints = row * (M_PI / 180.0);
+        }
     }
     return ToolPath(std::move(poses), cell);
 }
@@ -212,8 +220,10 @@ void bind_simulation(py::module_& m) {
              py::arg("rapid"), py::arg("lines"), py::arg("holding") = "tool_in_hand",
              py::arg("base_from_work") = identity, py::arg("tcp_from_contact") = identity,
              py::arg("tcp_from_work") = identity, py::arg("base_from_contact") = identity,
+             py::arg("joints") = py::none(),
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
-             "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source.")
+             "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source; joints "
+             "(n, 6): of a robot, degrees, NaN where unknown.")
         .def("__len__", [](const ToolPath& path) { return path.poses().size(); })
         .def(
             "grinds",

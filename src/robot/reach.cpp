@@ -66,7 +66,9 @@ class Check {
         step_.pose = static_cast<std::uint32_t>(i);
         step_.duration = by_joints ? 0.0 : duration;
         step_.time = time_ - 0.5 * step_.duration;
-        const auto found = follower_.arrive(i, at_, i == 0 && options_.start.has_value());
+        const auto& given = path_.poses()[i].joints;
+        const auto found = given ? follower_.arrive(i, ArmSolution{*given, -1}, true)
+                                 : follower_.arrive(i, at_, i == 0 && options_.start.has_value());
         if (found) {
             at_ = found;
             known_ = true;

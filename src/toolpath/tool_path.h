@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct PathPose {
     double force = -1.0;  ///< N, commanded at and towards this pose; negative: the job's force
     bool rapid = false;   ///< a positioning move (PTP): nothing is ground on the way to this pose
     int line = 0;         ///< line of the source file, from 1; 0: unknown
+    /// rad; the robot's joints there, where the program gives them (a joint target)
+    std::optional<Eigen::Matrix<double, 6, 1>> joints;
 };
 
 /// Who holds what.

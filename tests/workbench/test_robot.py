@@ -232,7 +232,7 @@ def test_joints_lead_back_to_the_poses():
     path = jobs.tool_path(job, 0, [])
     (found,) = robot.job_reach(job, [path])
     assert found["joints"].shape == (2, 6)
-    back = robot.base_from_tcp(job["robot"], found["joints"])
+    back = np.array([robot.pose_function(job["robot"])(q) for q in found["joints"]])
     wanted = poses.program_arrays(job["programs"][0], "", [])["frames"]
     assert back == pytest.approx(wanted, abs=1e-9)
 
@@ -334,6 +334,55 @@ def test_a_wrong_frame_of_the_robot_is_named():
         robot.job_reach(job, [jobs.tool_path(job, 0, [])])
 
 
+PROGRAMS = {
+    "p.src": """DEF p()
+PTP {A1 10, A2 -80, A3 90, A4 20, A5 60, A6 30, E1 0}
+LIN {X 0, Y 0, Z 0, A 0, B 0, C 180}
+LIN {X 20, Y 0, Z 0, A 0, B 0, C 180}
+END
+""",
+    "p.mod": """MODULE m
+CONST jointtarget home := [[10, -80, 90, 20, 60, 30], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]];
+PROC main()
+MoveAbsJ home, v100, fine, tool0;
+MoveL [[0,0,0],[0,1,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]], v100, fine, tool0;
+MoveL [[20,0,0],[0,1,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]], v100, fine, tool0;
+ENDPROC
+ENDMODULE
+""",
+    "p.script": """def p():
+movej([d2r(10), d2r(-80), d2r(90), d2r(20), d2r(60), d2r(30)])
+movel(p[0, 0, 0, 3.141592653589793, 0, 0])
+movel(p[0.02, 0, 0, 3.141592653589793, 0, 0])
+end
+""",
+}
+
+
+@pytest.mark.parametrize("file", PROGRAMS)
+def test_joint_targets_are_poses_once_the_robot_is_known(file, tmp_path):
+    (tmp_path / file).write_text(PROGRAMS[file])
+    home = [10, -80, 90, 20, 60, 30]
+    # The robot stands where its home is near the program's first pose.
+    arm = robot.arm(robot.load_preset("kuka_kr16_2"))
+    wanted = frames.from_abc([0, 0, 50], [0, 0, 180]) @ np.linalg.inv(arm.forward(np.radians(home)))
+    turn = frames.to_quaternions(wanted[None, :3, :3])[0].tolist()
+    base = {"position_mm": wanted[:3, 3].tolist(), "quaternion_wxyz": turn}
+    job = cell(base_from_robot=base)
+    del job["robot"]["flange_from_tcp"]
+    job["programs"] = [{"file": str(tmp_path / file)}]
+    job = jobs.validate(job)
+    warnings = []
+    path = jobs.tool_path(job, 0, warnings)
+    assert len(path) == 3 and warnings == []
+    assert path.work_from_contact()[0][:3, 3] == pytest.approx([0, 0, 50], abs=1e-9)
+    (found,) = robot.job_reach(job, [path])
+    assert found["joints"][0] == pytest.approx(home, abs=1e-6)  # as programmed, not the best
+    assert np.abs(found["joints"][1] - home).max() < 30
+    job["robot"] = jobs.validate({**cell(), "robot": {}})["robot"]
+    assert len(jobs.tool_path(job, 0, warnings)) == 2
+
+
 def run(folder, *arguments):
     return subprocess.run(
         [sys.executable, "-m", "beltgrinding", "reach", *map(str, arguments)],
@@ -357,8 +406,8 @@ def test_the_command_line_writes_the_joints(tmp_path):
     ]
     job = jobs.validate(cell())
     angles = [[float(row[f"j{k}_deg"]) for k in range(1, 7)] for row in rows]
-    found = robot.base_from_tcp(job["robot"], angles)
-    assert found[0][:3, 3] == pytest.approx([10, 30, 0.2], abs=1e-3)
+    found = robot.pose_function(job["robot"])(angles[0])
+    assert found[:3, 3] == pytest.approx([10, 30, 0.2], abs=1e-3)
     bare = cell()
     del bare["robot"]
     (tmp_path / "bare.json").write_text(json.dumps(bare))
@@ -408,7 +457,8 @@ def test_a_real_program_of_423_targets_beside_a_large_robot():
             **job,
         }
     )
-    assert robot.base_from_tcp(job, good["joints"]) == pytest.approx(arrays["frames"], abs=1e-6)
+    back = np.array([robot.pose_function(job)(q) for q in good["joints"]])
+    assert back == pytest.approx(arrays["frames"], abs=1e-6)
     high = found(50)
     kinds = {event["kind"] for event in high["events"]}
     assert {"joint_limit", "singularity", "joint_speed"} <= kinds

@@ -239,7 +239,9 @@ def _frame(data, where):
 def tool_path(job, index, warnings, count=None):
     """core.ToolPath of the job's program number ``index``; of its first ``count`` poses."""
     where = program_name(job, index)
-    arrays = program_arrays(job["programs"][index], where, warnings)
+    arrays = program_arrays(
+        job["programs"][index], where, warnings, robots.pose_function(job["robot"])
+    )
     arrays = {name: values[:count] for name, values in arrays.items()}
     cell = {name: _frame(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
     try:

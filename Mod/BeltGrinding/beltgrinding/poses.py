@@ -53,8 +53,10 @@ def listed_poses(poses, where):
     }
 
 
-def program_arrays(program, where, warnings):
-    """dict(frames, feeds, forces, rapid, lines) of a job's program, overrides applied."""
+def program_arrays(program, where, warnings, pose_of=None):
+    """dict(frames, feeds, forces, rapid, lines) of a job's program, overrides applied.
+    ``pose_of``: of joint angles, as in ``Program.path_arrays``.
+    """
     problems = []
     if "poses" in program:
         arrays = listed_poses(program["poses"], where)
@@ -64,7 +66,7 @@ def program_arrays(program, where, warnings):
         try:
             read = read_program(program["file"])
             problems = [str(problem) for problem in read.problems]
-            arrays = read.path_arrays(DEFAULT_FEED)
+            arrays = read.path_arrays(DEFAULT_FEED, pose_of)
         except ProgramError as error:
             raise InputError(str(error)) from None
     warnings += problems

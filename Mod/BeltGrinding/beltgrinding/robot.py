@@ -126,12 +126,15 @@ def _frame(robot, key):
         raise InputError(f"robot.{key}: {error}") from None
 
 
-def base_from_tcp(robot, joints_deg):
-    """Poses (n, 4, 4) in the frame of the programs at joints (n, 6) in degrees. Raises InputError."""
+def pose_function(robot):
+    """A function that gives the pose (4, 4) in the frame of the programs of six joint angles in
+    degrees; None if the job's robot is none. Raises InputError.
+    """
     of = arm_of(robot)
+    if of is None:
+        return None
     base, tool = _frame(robot, "base_from_robot"), _frame(robot, "flange_from_tcp")
-    rows = np.radians(np.asarray(joints_deg, dtype=float).reshape(-1, JOINTS))
-    return np.array([base @ of.forward(q) @ tool for q in rows]).reshape(-1, 4, 4)
+    return lambda joints_deg: base @ of.forward(np.radians(joints_deg)) @ tool
 
 
 def reach(path, robot, max_travel_mm=1.0, max_angle_deg=1.0, context=None):

@@ -10,7 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from .krl_expression import FRAME, Reader, Unknown, components_of, frame_of, number
-from .program import MAX_COORDINATE, MAX_UNROLLED, Motion, Problem, Program, ProgramError
+from .program import (
+    MAX_COORDINATE,
+    MAX_UNROLLED,
+    Motion,
+    Problem,
+    Program,
+    ProgramError,
+    joint_angles,
+)
 from .program import name_of, work_of
 
 MAX_MOTIONS = 1_000_000
@@ -423,6 +431,7 @@ class _Interpreter:
             if simple != "PTP":
                 raise Unknown("its target is a joint position")
             self.here = None
+            motion.joints_deg = joint_angles([target.get(f"a{k}") for k in range(1, 7)])
             self.program.motions.append(motion)
             return
         given = {name: number(target[name]) for name in FRAME if name in target}

@@ -1,7 +1,7 @@
 """What a robot program says: motions with poses, and what could not be resolved."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import List, Optional
 
@@ -11,6 +11,7 @@ from ..frames import to_quaternions
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 MAX_CHORDS = 10_000
+MAX_ANGLE = 1e6  # of a joint; more is no angle
 MAX_COORDINATE = 1e7  # mm; beyond, a file is damaged
 MAX_UNROLLED = 60_000  # units of work in loops, beyond what the file has: about a second
 
@@ -44,6 +45,7 @@ class Motion:
     tool: str = ""
     base: str = ""
     aux: bool = False  # an arc's auxiliary point: on the way, orientation without meaning
+    joints_deg: Optional[tuple] = None  # of a joint target: six angles as the controller shows them
 
 
 @dataclass
@@ -55,13 +57,21 @@ class Program:
     motions: List[Motion] = field(default_factory=list)
     problems: List[Problem] = field(default_factory=list)
 
-    def path_arrays(self, default_speed_mm_s):
+    def path_arrays(self, default_speed_mm_s, pose_of=None):
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
         forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int. Arcs become chords of
         ``CHORD_ERROR``; after a joint target the robot arrives by a rapid motion.
+        With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees, joint targets are
+        poses too, and there is joints (n, 6) in degrees, NaN where none are given.
         """
+        motions = self.motions
+        if pose_of is not None:
+            motions = [
+                m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg))
+                for m in motions
+            ]
         rows, previous, aux, lost = [], None, None, False
-        for motion in self.motions:
+        for motion in motions:
             if motion.pose is None:
                 lost = True  # where the joint target is, only the robot's geometry tells
                 continue
@@ -74,16 +84,30 @@ class Program:
                 poses = _arc(previous, aux.pose, motion.pose)
             speed = motion.speed_mm_s or default_speed_mm_s
             force = -1.0 if motion.force_N is None else motion.force_N
-            rows += [(pose, speed, force, rapid, motion.line) for pose in poses]
+            joints = motion.joints_deg or (math.nan,) * 6
+            rows += [(pose, speed, force, rapid, motion.line, joints) for pose in poses]
             previous, aux, lost = motion.pose, None, False
-        columns = list(zip(*rows)) if rows else [[], [], [], [], []]
-        return {
+        columns = list(zip(*rows)) if rows else [[] for _ in range(6)]
+        arrays = {
             "frames": np.array(columns[0], dtype=float).reshape(-1, 4, 4),
             "feeds": np.array(columns[1], dtype=float),
             "forces": np.array(columns[2], dtype=float),
             "rapid": np.array(columns[3], dtype=bool),
             "lines": np.array(columns[4], dtype=int),
         }
+        if pose_of is not None:
+            arrays["joints"] = np.array(columns[5], dtype=float).reshape(-1, 6)
+        return arrays
+
+
+def joint_angles(values, scale=1.0):
+    """Six angles times ``scale`` (to degrees) for ``Motion.joints_deg``; None unless all are finite
+    numbers.
+    """
+    numbers = [v for v in values if isinstance(v, (int, float)) and not isinstance(v, bool)]
+    if len(numbers) != 6 or not all(abs(v) < MAX_ANGLE for v in numbers):
+        return None
+    return tuple(scale * float(v) for v in numbers)
 
 
 def work_of(text):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import from_quaternions
 from . import rapid_data as data
-from .program import Motion, Problem, Program, name_of
+from .program import Motion, Problem, Program, joint_angles, name_of
 from .rapid_data import PREDEFINED, Unknown, copied, inverse, number, pose_of, product
 from .rapid_expression import Reader, arguments, tokens
 
@@ -167,7 +167,9 @@ class MotionRunner(State):
                     raise Unknown("its target is no joint target")
                 self.speed(line, kind, row[speed_at], options, None)
                 self.forget_position()
-                self.add(Motion(kind, None, line, self.file), tool, wobj)
+                motion = Motion(kind, None, line, self.file)
+                motion.joints_deg = joint_angles(targets[0][0])
+                self.add(motion, tool, wobj)
                 return
             programmed = [pose_of(target) for target in targets]
             poses = [self.displaced(pose) for pose in programmed]

@@ -15,7 +15,16 @@ import re
 import warnings
 from pathlib import Path
 
-from .program import MAX_UNROLLED, Motion, Problem, Program, ProgramError, name_of, work_of
+from .program import (
+    MAX_UNROLLED,
+    Motion,
+    Problem,
+    Program,
+    ProgramError,
+    joint_angles,
+    name_of,
+    work_of,
+)
 from .urscript_expression import Pose, Unknown, a_pose, evaluate, number, parse, pose_of
 
 MAX_MOTIONS = 1_000_000
@@ -362,7 +371,9 @@ class Interpreter:
             if KINDS[name] != "PTP":
                 raise Unknown("its target is a joint position")
             self.here = None
-            self.program.motions.append(Motion("PTP", None, line, self.file, tool=self.tool))
+            motion = Motion("PTP", None, line, self.file, tool=self.tool)
+            motion.joints_deg = joint_angles(values[0], math.degrees(1.0))
+            self.program.motions.append(motion)
             return
         frames = [self.in_base(a_pose(value)) for value in values]
         speed = None if KINDS[name] == "PTP" else self.speed(line, name, given, frames)

@@ -138,6 +138,8 @@ py::dict to_dict(const SimulationResult& result) {
     py::dict steps;
     steps["time"] = column<double>(s, [](const StepRecord& r) { return r.time; });
     steps["pose"] = column<std::uint32_t>(s, [](const StepRecord& r) { return r.pose; });
+    steps["duration"] = column<float>(s, [](const StepRecord& r) { return r.duration; });
+    steps["feed"] = column<float>(s, [](const StepRecord& r) { return r.feed; });
     steps["force"] = column<float>(s, [](const StepRecord& r) { return r.force; });
     steps["approach"] = column<float>(s, [](const StepRecord& r) { return r.approach; });
     steps["contact_area"] = column<float>(s, [](const StepRecord& r) { return r.contact_area; });
@@ -171,18 +173,37 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
+TimeLaw time_law_from(const py::dict& given) {
+    py::dict d = copy_of(given);
+    TimeLaw law;
+    const auto timing = take<std::string>(d, "timing", "constant_feed");
+    if (timing == "trapezoidal") {
+        law.timing = TimeLaw::Timing::kTrapezoidal;
+    } else if (timing != "constant_feed") {
+        throw InputError("time law: there is no timing '" + timing +
+                         "'; use constant_feed or trapezoidal");
+    }
+    law.acceleration = take(d, "acceleration", law.acceleration);
+    law.angular_acceleration = take(d, "angular_acceleration", law.angular_acceleration);
+    law.rotation_speed = take(d, "rotation_speed", law.rotation_speed);
+    law.default_zone = take(d, "default_zone", law.default_zone);
+    refuse_rest(d, "time_law");
+    return law;
+}
+
 ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& forces,
                    const Bools& rapid, const Ints& lines, const std::string& holding,
                    const Eigen::Matrix4d& base_from_work, const Eigen::Matrix4d& tcp_from_contact,
                    const Eigen::Matrix4d& tcp_from_work, const Eigen::Matrix4d& base_from_contact,
-                   const std::optional<Doubles>& joints) {
+                   const std::optional<Doubles>& joints, const std::optional<Doubles>& zones,
+                   const py::dict& time_law) {
     const py::ssize_t n = frames.ndim() == 3 ? frames.shape(0) : -1;
     if (n < 0 || frames.shape(1) != 4 || frames.shape(2) != 4 || feeds.size() != n ||
         forces.size() != n || rapid.size() != n || lines.size() != n ||
-        (joints && joints->size() != 6 * n)) {
+        (joints && joints->size() != 6 * n) || (zones && zones->size() != n)) {
         throw InputError(
             "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines, "
-            "joints");
+            "joints, zones");
     }
     CellFrames cell;
     if (holding == "part_in_hand") {
@@ -207,8 +228,9 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
             const Eigen::Map<const Eigen::Matrix<double, 6, 1>> row(joints->data() + 6 * i);
             if (row.allFinite()) pose.joints = row * (M_PI / 180.0);
         }
+        if (zones) pose.zone = zones->data()[i];
     }
-    return ToolPath(std::move(poses), cell);
+    return ToolPath(std::move(poses), cell, time_law_from(time_law));
 }
 
 }  // namespace
@@ -220,10 +242,13 @@ void bind_simulation(py::module_& m) {
              py::arg("rapid"), py::arg("lines"), py::arg("holding") = "tool_in_hand",
              py::arg("base_from_work") = identity, py::arg("tcp_from_contact") = identity,
              py::arg("tcp_from_work") = identity, py::arg("base_from_contact") = identity,
-             py::arg("joints") = py::none(),
+             py::arg("joints") = py::none(), py::arg("zones") = py::none(),
+             py::arg("time_law") = py::dict(),
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
              "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source; joints "
-             "(n, 6): of a robot, degrees, NaN where unknown.")
+             "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, negative: the default; "
+             "time_law: timing (constant_feed, trapezoidal), acceleration mm/s2, "
+             "angular_acceleration rad/s2, rotation_speed rad/s, default_zone mm.")
         .def("__len__", [](const ToolPath& path) { return path.poses().size(); })
         .def(
             "grinds",

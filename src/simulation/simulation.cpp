@@ -199,6 +199,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
         StepRecord record;
         record.time = step.time;
         record.pose = step.pose;
+        record.duration = static_cast<float>(step.duration);
+        record.feed = static_cast<float>(step.feed);
 
         const auto state = pressing.press(field, *tree, step.work_from_contact, step.force, result);
         record.segments = static_cast<std::uint32_t>(pressing.localised());

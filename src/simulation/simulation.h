@@ -20,6 +20,8 @@ namespace beltgrinding {
 struct StepRecord {
     double time = 0.0;  ///< s
     std::uint32_t pose = 0;
+    float duration = 0.0f;       ///< s
+    float feed = 0.0f;           ///< mm/s, infeed speed of the contact point over the work
     float force = 0.0f;          ///< N
     float approach = 0.0f;       ///< mm, the wheel's way from the programmed pose along z
     float contact_area = 0.0f;   ///< mm2

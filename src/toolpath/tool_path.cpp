@@ -37,6 +37,9 @@ void validate(const PathPose& pose, std::size_t index) {
     if (!std::isfinite(pose.force)) {
         throw InputError(place(pose, index) + ": force is not finite; give newtons");
     }
+    if (!std::isfinite(pose.zone)) {
+        throw InputError(place(pose, index) + ": the zone is not finite; give millimetres");
+    }
 }
 
 double motion_duration(const PathPose& from, const PathPose& to) {
@@ -48,19 +51,6 @@ double motion_duration(const PathPose& from, const PathPose& to) {
 
 }  // namespace
 
-double angle_between(const Frame& a, const Frame& b) {
-    return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
-}
-
-Frame interpolate(const Frame& a, const Frame& b, double t) {
-    const Eigen::Quaterniond q =
-        Eigen::Quaterniond(a.linear()).slerp(t, Eigen::Quaterniond(b.linear()));
-    Frame f = Frame::Identity();
-    f.linear() = q.normalized().toRotationMatrix();
-    f.translation() = (1.0 - t) * a.translation() + t * b.translation();
-    return f;
-}
-
 Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
     if (holding == Holding::kToolInHand) {
         return base_from_work.inverse() * base_from_tcp * tcp_from_contact;
@@ -68,8 +58,9 @@ Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
     return (base_from_tcp * tcp_from_work).inverse() * base_from_contact;
 }
 
-ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames)
-    : poses_(std::move(poses)), frames_(frames) {
+ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw& law)
+    : poses_(std::move(poses)), frames_(frames), law_(law) {
+    law_.validate();
     if (poses_.empty()) {
         throw InputError("the path has no pose; the program needs at least one Cartesian target");
     }
@@ -80,9 +71,11 @@ ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames)
             throw InputError("a frame of the cell is not finite; check the belt machine's set-up");
         }
     }
+    if (trapezoidal()) plan_ = MotionPlan(poses_, law_);
 }
 
 double ToolPath::duration() const {
+    if (trapezoidal()) return plan_.duration();
     double time = 0.0;
     for (std::size_t i = 1; i < poses_.size(); ++i)
         time += motion_duration(poses_[i - 1], poses_[i]);
@@ -90,14 +83,16 @@ double ToolPath::duration() const {
 }
 
 double ToolPath::duration(std::size_t i) const {
-    return i == 0 ? 0.0 : motion_duration(poses_[i - 1], poses_[i]);
+    if (i == 0) return 0.0;
+    return trapezoidal() ? plan_.duration(i) : motion_duration(poses_[i - 1], poses_[i]);
 }
 
 double ToolPath::elapsed(std::size_t i, double t) const {
-    return t * duration(i);
+    return trapezoidal() && i > 0 ? plan_.elapsed(i, t) : t * duration(i);
 }
 
 Frame ToolPath::base_from_tcp(std::size_t i, double t) const {
+    if (trapezoidal() && i > 0) return plan_.frame(poses_, i, t);
     if (i == 0 || t >= 1.0) return poses_[i].base_from_tcp;
     return interpolate(poses_[i - 1].base_from_tcp, poses_[i].base_from_tcp, t);
 }
@@ -113,10 +108,16 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
     for (std::size_t i = 1; i < poses_.size(); ++i) {
         const PathPose& from = poses_[i - 1];
         const PathPose& to = poses_[i];
-        const double duration = motion_duration(from, to);
+        const double duration = this->duration(i);
         if (!to.rapid && duration > 0.0) {
-            const Frame start = frames_.work_from_contact(from.base_from_tcp);
-            const Frame end = frames_.work_from_contact(to.base_from_tcp);
+            const auto frame_at = [&](double t) {
+                return trapezoidal() ? plan_.frame(poses_, i, t)
+                                     : interpolate(from.base_from_tcp, to.base_from_tcp, t);
+            };
+            const Frame start =
+                frames_.work_from_contact(trapezoidal() ? frame_at(0.0) : from.base_from_tcp);
+            const Frame end =
+                frames_.work_from_contact(trapezoidal() ? frame_at(1.0) : to.base_from_tcp);
             // With the part in hand the contact's way over the work is no straight line: measure it
             // at the robot's own travel as well as at its ends.
             const double travel = std::max(
@@ -132,14 +133,21 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
             const int parts = static_cast<int>(wanted);
             const double force = to.force >= 0.0 ? to.force : options.default_force;
             Frame previous = start;
+            double begin = 0.0;  // of the step, s since the motion's
             for (int k = 0; k < parts; ++k) {
                 PathStep step;
-                step.work_from_contact = frames_.work_from_contact(
-                    interpolate(from.base_from_tcp, to.base_from_tcp, (k + 0.5) / parts));
-                const Frame next = frames_.work_from_contact(
-                    interpolate(from.base_from_tcp, to.base_from_tcp, (k + 1.0) / parts));
-                step.duration = duration / parts;
-                step.time = time + (k + 0.5) * step.duration;
+                step.work_from_contact = frames_.work_from_contact(frame_at((k + 0.5) / parts));
+                const Frame next = frames_.work_from_contact(frame_at((k + 1.0) / parts));
+                if (trapezoidal()) {
+                    const double finish = elapsed(i, (k + 1.0) / parts);
+                    step.duration = finish - begin;
+                    step.time = time + 0.5 * (begin + finish);
+                    begin = finish;
+                    if (!(step.duration > 0.0)) continue;
+                } else {
+                    step.duration = duration / parts;
+                    step.time = time + (k + 0.5) * step.duration;
+                }
                 const Vec3 way = next.translation() - previous.translation();
                 const double along = std::abs(way.dot(step.work_from_contact.linear().col(2)));
                 step.feed = way.norm() / step.duration;

@@ -7,19 +7,10 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "toolpath/motion_plan.h"
+#include "toolpath/path_pose.h"
 
 namespace beltgrinding {
-
-/// One programmed pose of the robot.
-struct PathPose {
-    Frame base_from_tcp = Frame::Identity();  ///< in the frame that the program names
-    double feed = 100.0;  ///< mm/s at which the pose is approached from the one before
-    double force = -1.0;  ///< N, commanded at and towards this pose; negative: the job's force
-    bool rapid = false;   ///< a positioning move (PTP): nothing is ground on the way to this pose
-    int line = 0;         ///< line of the source file, from 1; 0: unknown
-    /// rad; the robot's joints there, where the program gives them (a joint target)
-    std::optional<Eigen::Matrix<double, 6, 1>> joints;
-};
 
 /// Who holds what.
 enum class Holding { kToolInHand, kPartInHand };
@@ -55,37 +46,40 @@ struct SteppingOptions {
     double default_force = 50;  ///< N, where a pose has none
 };
 
-/// On the way from `a` to `b`, t in [0, 1]: linear in position, slerp in orientation.
-Frame interpolate(const Frame& a, const Frame& b, double t);
-/// rad, how far `b` is turned against `a`.
-double angle_between(const Frame& a, const Frame& b);
-
 /// A robot path: programmed poses, linear in position and spherical-linear (slerp) in orientation
-/// between them, in the frame that the program names.
+/// between them, in the frame that the program names; run through by a time law, which may round
+/// the corners.
 class ToolPath {
   public:
     /// Throws InputError naming pose (from 1) and source line: no pose, NaN, a rotation that is not
-    /// one, feed not positive.
-    ToolPath(std::vector<PathPose> poses, CellFrames frames);
+    /// one, feed not positive; or a time law's limit that is not positive.
+    ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw& law = {});
 
     const std::vector<PathPose>& poses() const { return poses_; }
     const CellFrames& frames() const { return frames_; }
-    /// s that the program takes at the programmed feeds (a pure rotation takes no time at a linear
-    /// feed: `kRotationFeed` rad/s is used).
+    const TimeLaw& time_law() const { return law_; }
+    /// s that the program takes. At constant feed a pure rotation, which takes no time at a linear
+    /// feed, is run at `kRotationFeed` rad/s.
     double duration() const;
     /// s that the motion to pose `i` takes; 0 for the first.
     double duration(std::size_t i) const;
     /// s since that motion began, t in [0, 1] of its way.
     double elapsed(std::size_t i, double t) const;
-    /// Where the tool is then, in the frame that the program names; the first pose for i = 0.
+    /// Where the tool is then, in the frame that the program names; the first pose for i = 0. With
+    /// a zone at the pose the motion ends half way round the corner.
     Frame base_from_tcp(std::size_t i, double t) const;
-    /// Steps at the middles of equal parts of each motion, in program order; rapid motions give
-    /// none.
+    /// Steps at the middles of equal parts of each motion's way, in program order; rapid motions
+    /// give none. Their durations are the time that the robot takes from part to part, and with
+    /// the rapid motions' add up to `duration()`.
     std::vector<PathStep> steps(const SteppingOptions& options) const;
 
   private:
+    bool trapezoidal() const { return law_.timing == TimeLaw::Timing::kTrapezoidal; }
+
     std::vector<PathPose> poses_;
     CellFrames frames_;
+    TimeLaw law_;
+    MotionPlan plan_;  // of the trapezoidal law
 };
 
 }  // namespace beltgrinding

@@ -245,9 +245,22 @@ def tool_path(job, index, warnings, count=None):
     arrays = {name: values[:count] for name, values in arrays.items()}
     cell = {name: _frame(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
     try:
-        return core.ToolPath(**arrays, holding=job["cell"]["holding"], **cell)
+        return core.ToolPath(
+            **arrays, holding=job["cell"]["holding"], **cell, time_law=time_law(job["simulation"])
+        )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+
+
+def time_law(simulation):
+    """The dict that core.ToolPath takes for a job's ``simulation``: mm, s, rad."""
+    return {
+        "timing": simulation["timing"],
+        "acceleration": float(simulation["path_acceleration_mm_s2"]),
+        "angular_acceleration": math.radians(simulation["angular_acceleration_deg_s2"]),
+        "rotation_speed": math.radians(simulation["rotation_speed_deg_s"]),
+        "default_zone": float(simulation["default_zone_mm"]),
+    }
 
 
 def compliance_arguments(compliance, wheel):

@@ -23,13 +23,16 @@ def list_poses(arrays):
         arrays["forces"].tolist(),
         arrays["rapid"].tolist(),
         arrays["lines"].tolist(),
+        arrays["zones"].tolist(),
     )
     poses = []
-    for (x, y, z), (qw, qx, qy, qz), feed, force, rapid, line in rows:
+    for (x, y, z), (qw, qx, qy, qz), feed, force, rapid, line, zone in rows:
         pose = {"x_mm": x, "y_mm": y, "z_mm": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz}
         pose.update(feed_mm_s=feed, rapid=rapid, line=line)
         if force >= 0:
             pose["force_N"] = force
+        if zone >= 0:
+            pose["zone_mm"] = zone
         poses.append(pose)
     return poses
 
@@ -50,11 +53,12 @@ def listed_poses(poses, where):
         "forces": np.array([p.get("force_N", -1.0) for p in poses], dtype=float),
         "rapid": np.array([p.get("rapid", False) for p in poses], dtype=bool),
         "lines": np.array([p.get("line", 0) for p in poses], dtype=int),
+        "zones": np.array([p.get("zone_mm", -1.0) for p in poses], dtype=float),
     }
 
 
 def program_arrays(program, where, warnings, pose_of=None):
-    """dict(frames, feeds, forces, rapid, lines) of a job's program, overrides applied.
+    """dict(frames, feeds, forces, rapid, lines, zones) of a job's program, overrides applied.
     ``pose_of``: of joint angles, as in ``Program.path_arrays``.
     """
     problems = []

@@ -64,6 +64,62 @@ TEST(Process, LinearLawIntegratesToTheGlobalLawOnCurvedParts) {
     }
 }
 
+// An L on a plate: where the robot stops in the corner it dwells, and removes K V_b F dt more.
+TEST(Process, DwellInACornerRemovesMore) {
+    const auto corner = [](double zone) {
+        std::vector<PathPose> poses{pressing_down(20, 0.3), pressing_down(60, 0.3),
+                                    pressing_down(60, 0.3)};
+        poses[0].base_from_tcp.translation().y() = poses[1].base_from_tcp.translation().y() = 20;
+        poses[2].base_from_tcp.translation().y() = 60;
+        poses[1].zone = zone;
+        return poses;
+    };
+    const auto run = [](const std::vector<PathPose>& poses, const TimeLaw& law,
+                        HeightField& field) {
+        ElasticFoundation foundation(0.5);
+        return simulate(field, ToolPath(poses, {}, law), foundation, LocalLaw({kCoefficient}),
+                        options());
+    };
+    TimeLaw law;
+    law.timing = TimeLaw::Timing::kTrapezoidal;
+    law.acceleration = 200.0;
+    const double ramp = kFeed / law.acceleration;  // s more at each end of each motion: v / (2 a)
+    HeightField even = testing::plate(80.0, 80.0, 0.5, 0.3), stopped = even, rounded = even;
+    const SimulationResult constant = run(corner(0.0), {}, even);
+    const SimulationResult stop = run(corner(0.0), law, stopped);
+    const SimulationResult round = run(corner(8.0), law, rounded);
+    EXPECT_NEAR(stop.process_time, constant.process_time + 2.0 * ramp, 1e-9);
+    // In the zone at speed v_c <= feed; from rest to the feed and back as before.
+    const double v = std::min(kFeed, std::sqrt(2.0 * 8.0 * law.acceleration / std::sqrt(2.0)));
+    ASSERT_EQ(v, kFeed);
+    EXPECT_NEAR(round.process_time, constant.process_time + ramp, 1e-9);
+
+    const double per_second = kCoefficient * kSpeed * kForce;  // mm3/s: K V_b F
+    for (const SimulationResult* result : {&constant, &stop, &round}) {
+        const double whole = per_second * result->process_time;
+        EXPECT_NEAR(result->integrated_rate, whole, 0.005 * whole);
+        EXPECT_NEAR(result->removed_volume, whole, 0.02 * whole);
+        double duration = 0.0;
+        for (const StepRecord& step : result->steps) {
+            duration += step.duration;
+            EXPECT_GT(step.feed, 0.0f);
+            EXPECT_LE(step.feed, kFeed * 1.001);
+        }
+        EXPECT_NEAR(duration, result->process_time, 1e-5);
+    }
+    // What is removed around the corner, within reach of the slow way v^2 / (2 a) and the contact.
+    const auto removed = [](const HeightField& field) {
+        double volume = 0.0;
+        for (std::size_t s = 0; s < field.size(); ++s) {
+            const Vec3 away = field.point[s].cast<double>() - Vec3(60, 20, 0);
+            if (away.norm() < 18.0) volume += field.area[s] * (0.3 - field.height[s]);
+        }
+        return volume;
+    };
+    EXPECT_NEAR(removed(stopped) - removed(even), per_second * ramp, 0.1 * per_second * ramp);
+    EXPECT_LT(removed(rounded), removed(even));
+}
+
 TEST(Process, TheBeltCarriesItsWorkAndLosesItsCut) {
     HeightField field = plate();
     SimulationOptions o = options();

@@ -50,6 +50,11 @@ KEYS = (
     Key("WearCurve", "VectorList", "Wear", "law.wear.curve"),
     Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
     Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),
+    Key("Timing", "Enumeration", "Timing", "simulation.timing"),
+    Key("PathAcceleration", "Acceleration", "Timing", "simulation.path_acceleration_mm_s2"),
+    Key("AngularAcceleration", "Float", "Timing", "simulation.angular_acceleration_deg_s2"),
+    Key("RotationSpeed", "Float", "Timing", "simulation.rotation_speed_deg_s"),
+    Key("DefaultZone", "Length", "Timing", "simulation.default_zone_mm"),
 )
 
 

@@ -18,7 +18,12 @@ OUTPUTS = (
     Output("Language", "String", "Program", "language of the source"),
     Output("PoseCount", "Integer", "Program", "number of Cartesian poses"),
     Output("PathLength", "Length", "Program", "length of the way of the tool centre point"),
-    Output("Duration", "Float", "Program", "time at the programmed feeds, s"),
+    Output(
+        "Duration",
+        "Float",
+        "Program",
+        "time at the programmed feeds without acceleration, s; the job's own: Simulation.ProcessTime",
+    ),
     Output("Problems", "StringList", "Program", "what could not be resolved, by file and line"),
 )
 # name, type, text; parallel lists, one value per pose
@@ -28,6 +33,11 @@ LISTS = (
     ("Forces", "FloatList", "pressing force towards each pose, N; negative: the belt machine's"),
     ("Rapid", "BoolList", "positioning moves: nothing is ground on the way to these poses"),
     ("Lines", "IntegerList", "lines of the source"),
+    (
+        "Zones",
+        "FloatList",
+        "mm around each pose in which the corner is rounded; negative: not known",
+    ),
 )
 
 
@@ -59,11 +69,11 @@ class RobotPath(Proxy):
         add_outputs(obj, OUTPUTS)
 
     def onChanged(self, obj, name):
-        if name in ("Poses", "Feeds", "Forces", "Rapid", "Lines"):
+        if name in ("Poses", "Feeds", "Forces", "Rapid", "Lines", "Zones"):
             self._arrays = None
 
     def arrays(self, obj):
-        """dict(frames, feeds, forces, rapid, lines) as core.ToolPath takes them, no overrides."""
+        """dict(frames, feeds, forces, rapid, lines, zones) as core.ToolPath takes them, no overrides."""
         if getattr(self, "_arrays", None) is None:
             count = len(obj.Poses)
             rows = [placement.toMatrix().A for placement in obj.Poses]
@@ -73,6 +83,8 @@ class RobotPath(Proxy):
                 "forces": np.array(obj.Forces, dtype=float),
                 "rapid": np.array(obj.Rapid, dtype=bool),
                 "lines": np.array(obj.Lines, dtype=int),
+                # A document of before there were zones has none.
+                "zones": np.array(obj.Zones or [-1.0] * count, dtype=float),
             }
         if any(len(a) != len(self._arrays["frames"]) for a in self._arrays.values()):
             raise InputError(f"{obj.Label}: its lists differ in length; import the program again")
@@ -134,6 +146,8 @@ def set_arrays(obj, arrays):
     obj.Forces = np.asarray(arrays["forces"], dtype=float).tolist()
     obj.Rapid = tuple(bool(value) for value in arrays["rapid"])
     obj.Lines = np.asarray(arrays["lines"], dtype=int).tolist()
+    zones = arrays.get("zones", np.full(len(matrices), -1.0))
+    obj.Zones = np.asarray(zones, dtype=float).tolist()
 
 
 def read_arrays(path):

@@ -258,10 +258,7 @@ class _Reader:
                 raise _Unknown("the arc's start or end is not on its circle")
         full = math.dist(start, end) < 1e-6
         points = [*arc_through(start, centre, end, normal, full), end]
-        for k in range(0, len(points), 2):
-            self.trace.arc(
-                points[k], points[k + 1], axis, line, self.speed, tool=self.tool, base=self.base
-            )
+        self.trace.arcs(points, axis, line, self.speed, tool=self.tool, base=self.base)
 
     def feed(self, line, values):
         unit_name = next((v.upper() for v in values if v.upper() in FEED_UNITS), None)

@@ -12,7 +12,7 @@ from .program import MAX_COORDINATE, Motion, Problem, Program, ProgramError, nam
 POSITION = ("x_mm", "y_mm", "z_mm")
 QUATERNION = ("qw", "qx", "qy", "qz")
 ANGLES = ("a_deg", "b_deg", "c_deg")
-OPTIONAL = ("feed_mm_s", "force_N", "motion")
+OPTIONAL = ("feed_mm_s", "force_N", "zone_mm", "motion")
 MOTIONS = ("LIN", "PTP")
 
 
@@ -122,4 +122,5 @@ def _motion(row, name, line):
     kind = row.get("motion", "").strip().upper() or "LIN"
     if kind not in MOTIONS:
         raise ProgramError(f"{name}:{line}: motion is '{kind}'; use {' or '.join(MOTIONS)}")
-    return Motion(kind, pose, line, name, optional("feed_mm_s", 0.0), optional("force_N", 0.0))
+    feed, force, zone = (optional(c, 0.0) for c in ("feed_mm_s", "force_N", "zone_mm"))
+    return Motion(kind, pose, line, name, feed, force, zone_mm=zone)

@@ -33,6 +33,17 @@ JUMP = re.compile(rf"JMP\s+LBL\s*{INDEX}$")
 FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(.+?)\s+(TO|DOWNTO)\s+(.+)$")
 
 
+def zone_of(rest):
+    """mm by the termination type in a motion's additions: FINE stops; CR is a corner radius in mm
+    (exact where the path turns by 90 degrees); CNT is a share of the speed and no length, so its
+    zone is not known, of CNT0 neither: it comes near to a stop without being one.
+    """
+    match = re.search(r"\b(?:(FINE)|CR\s*(\d{1,4}))(?=\s|$)", rest)
+    if not match:
+        return None
+    return 0.0 if match.group(1) else float(match.group(2))
+
+
 def read(path):
     """The Program of a .ls file. Raises ProgramError when it cannot be read."""
     reader = _Reader(path)
@@ -345,6 +356,8 @@ class _Reader(Registers):
             speed = self.speed(line, kind, rest, before)
             for motion, _ in motions:
                 motion.speed_mm_s = speed
+        for motion, _ in motions:
+            motion.zone_mm = zone_of(rest)
         for motion, _ in motions:
             (self.add_arc_point if kind == "A" else self.add)(motion)
 

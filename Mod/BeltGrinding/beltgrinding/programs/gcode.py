@@ -75,6 +75,7 @@ class _Reader:
         self.vector = None  # the axis by A3, B3, C3, as long as it holds
         self.feed_mode = 94
         self.feed = None  # mm/s
+        self.zone = None  # mm around a corner, modal
         self.base = self.tool = ""
         self.shifted = None  # why coordinates mean something that is not known here
         self.told = set()
@@ -207,6 +208,7 @@ class _Reader:
             once = self.code(line, code) or once
         if "F" in given:
             self.set_feed(line, given["F"])
+        self.set_zone(codes, given)
         if 4 in codes:  # dwell: X and F are times
             return going
         if once == 92:
@@ -263,6 +265,18 @@ class _Reader:
         if code in (93, 94, 95):
             self.feed_mode, self.feed = int(code), None
         return None
+
+    def set_zone(self, codes, given):
+        """G60, G61: exact stop; G9: in this block; G64 P: within P of the corner (LinuxCNC), which a
+        zone of 2 P keeps to at any angle; other modes of continuous path: known to the control."""
+        for code in codes:
+            if code in (60, 61, 61.1):
+                self.zone = 0.0
+            elif code == 64 and given.get("P", 0.0) > 0:
+                self.zone = 2.0 * self.scale * given.pop("P")
+            elif code in (62, 63, 64, 641, 642, 643, 644):
+                self.zone = None
+        self.trace.zone = 0.0 if 9 in codes else self.zone
 
     def set_feed(self, line, value):
         if self.feed_mode != 94:
@@ -361,5 +375,4 @@ class _Reader:
         points = [*arc_through(start, centre, end, normal, length < 1e-9), tuple(end)]
         if abs(end[w] - start[w]) > 1e-9:  # a helix: three points are no arc of it
             raise _Unknown("a helix is not supported")
-        for k in range(0, len(points), 2):
-            self.trace.arc(points[k], points[k + 1], axis, line, self.feed, self.base, self.tool)
+        self.trace.arcs(points, axis, line, self.feed, self.base, self.tool)

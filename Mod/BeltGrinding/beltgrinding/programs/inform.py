@@ -46,6 +46,16 @@ BLOCKS = {
 }
 
 
+def zone_of(rest):
+    """mm by a motion's tags: PL=0 stops; CR is a corner radius in mm (exact where the path turns by
+    90 degrees); the other position levels are parameters of the controller, so not known.
+    """
+    match = re.search(r"(?:^|\s)(?:(PL=0(?:\.0*)?)|CR=(\d{1,5}(?:\.\d{0,6})?))(?=\s|$)", rest)
+    if not match:
+        return None
+    return 0.0 if match.group(1) else float(match.group(2))
+
+
 def read(path):
     """The Program of a .jbi file. Raises ProgramError when it cannot be read."""
     reader = _Reader(path)
@@ -222,6 +232,7 @@ class _Reader(TaughtPath):
         if kind == "IMOV":
             components, base = self.step(components, rest)
         motion = Motion(simple, pose_of(components), line, self.file, tool=tool, base=base)
+        motion.zone_mm = zone_of(rest)
         if kind != "MOVJ":
             motion.speed_mm_s = self.speed(line, OTHER.sub("", rest))
         self.here = (components, base)

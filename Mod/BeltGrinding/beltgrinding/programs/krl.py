@@ -4,6 +4,7 @@ Poses are those of $TOOL in $BASE; A, B, C turn about Z, Y', X'' (Rz(A) Ry(B) Rx
 System Software operating manuals. What only the controller can know is a Problem.
 """
 
+import math
 import re
 from pathlib import Path
 
@@ -36,6 +37,7 @@ FOR = re.compile(r"^FOR\s+(\w+)\s*=\s*(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", r
 CALL = re.compile(r"^([A-Za-z_]\w*)\s*\((.*)\)$")
 SPEED = re.compile(r"(?:\$VEL\.CP\s*=|SVEL_CP\s*\()\s*([^,)\s]+)", re.IGNORECASE)
 SETS_SPEED = re.compile(r"\$VEL(?:\.CP)?\s*=|BAS\s*\(\s*#(?:CP_PARAMS|VEL_CP)\b", re.IGNORECASE)
+APPROXIMATION = re.compile(r"\bC_(?:DIS|SPL|VEL|ORI|PTP)\b", re.IGNORECASE)
 OPENING = {
     "for": "endfor",
     "if": "endif",
@@ -114,6 +116,7 @@ class _Interpreter:
         self.values = {}
         self.here = None  # components of the current pose, None: unknown
         self.speed = self.around = None  # around: before the spline block
+        self.spline = False  # within a SPLINE block
         self.routines = {}
         self.calls = self.depth = 0
         self.rounds = 0  # units of work; below 0: as many as the file has
@@ -341,13 +344,15 @@ class _Interpreter:
             self.motion(line, motion.group(1).upper(), motion.group(2))
             return
         if word == "spline":
-            self.around = self.speed
+            self.around, self.spline = self.speed, True
             found = SPEED.search(text)
             if found:
                 self.speed_text(found.group(1), line)
             return
         if word == "endspline":  # WITH holds within the block
-            self.speed = self.around
+            self.speed, self.spline = self.around, False
+            if self.program.motions:  # its own word rounds the block's last corner
+                self.program.motions[-1].zone_mm = self.zone(text)
             return
         match = ASSIGN.match(text)
         if (
@@ -378,6 +383,9 @@ class _Interpreter:
             what, _, value = arguments.partition(",")
             if what.strip().lower() in ("#cp_params", "#vel_cp"):
                 self.speed_text(value, line)
+                distance = self.values.get(("ldat_act", ()), {}).get("apo_dist")
+                if isinstance(distance, float):  # what BAS makes of an inline form's CONT
+                    self.values["$apo.cdis", ()] = distance
         elif name in self.routines and not arguments.strip():
             if self.calls >= MAX_CALLS:
                 self.problem(line, f"{name} calls itself too deeply; its motions are left out")
@@ -391,12 +399,14 @@ class _Interpreter:
             self.problem(line, f"{name}() is not in this file; motions in it are left out")
             self.here = None
 
-    def motion(self, line, kind, text):
+    def motion(self, line, kind, text, whole=None):
+        """``whole``: the statement with what stands behind WITH."""
+        whole = whole or text
         try:
             text, *options = re.split(r"(?i)\bWITH\b", text, maxsplit=1)
             own = SPEED.search(options[0]) if options else None
             if own:
-                self.own_speed(line, kind, text, own.group(1))
+                self.own_speed(line, kind, text, own.group(1), whole)
                 return
             reader = Reader(text, self.lookup)
             targets = [reader.expression()]
@@ -404,19 +414,21 @@ class _Interpreter:
                 reader.expect(",")
                 targets.append(reader.expression())
             rest = [t for _, t in reader.tokens[reader.at :]]
+            zone = math.inf if self.spline else self.zone(whole)
             for aux, target in [(True, t) for t in targets[:-1]] + [(False, targets[-1])]:
                 self.target(line, kind, target, aux, [t.lower() for t in rest])
+                self.program.motions[-1].zone_mm = zone
         except Unknown as unknown:
             self.problem(line, f"{kind} is left out: {unknown}")
             self.here = None
             # The path beyond must not be joined over the gap as if nothing were missing.
             self.program.motions.append(Motion("PTP", None, line, self.file))
 
-    def own_speed(self, line, kind, text, speed):
+    def own_speed(self, line, kind, text, speed, whole):
         """A motion with a speed of its own."""
         before = self.speed
         self.speed_text(speed, line)
-        self.motion(line, kind, text)
+        self.motion(line, kind, text, whole)
         self.speed = before
 
     def target(self, line, kind, target, aux, rest):
@@ -452,6 +464,21 @@ class _Interpreter:
         if not aux:
             self.here = components
         self.program.motions.append(motion)
+
+    def zone(self, text):
+        """mm by the approximation in a statement: without one the robot stops; C_DIS and C_SPL
+        begin at $APO.CDIS; the others (C_VEL, C_ORI, C_PTP) name no length: not known.
+        """
+        words = {word.lower() for word in APPROXIMATION.findall(text)}
+        if not words:
+            return 0.0
+        if words & {"c_dis", "c_spl"} and "$apo" not in text.lower():  # WITH $APO: not followed
+            distance = self.values.get(("$apo.cdis", ()))
+            if distance is None and isinstance(self.values.get(("$apo", ())), dict):
+                distance = self.values["$apo", ()].get("cdis")
+            known = isinstance(distance, float) and math.isfinite(distance)
+            return max(0.0, distance) if known else None
+        return None
 
     def relative(self, given, rest):
         if self.here is None:

@@ -45,6 +45,9 @@ class Motion:
     tool: str = ""
     base: str = ""
     aux: bool = False  # an arc's auxiliary point: on the way, orientation without meaning
+    # mm from the target within which the corner is rounded; 0: the robot stands still there; inf:
+    # it passes through, the target is no corner; None: not known (the job's default zone)
+    zone_mm: Optional[float] = None
     joints_deg: Optional[tuple] = None  # of a joint target: six angles as the controller shows them
 
 
@@ -59,8 +62,10 @@ class Program:
 
     def path_arrays(self, default_speed_mm_s, pose_of=None):
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
-        forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int. Arcs become chords of
-        ``CHORD_ERROR``; after a joint target the robot arrives by a rapid motion.
+        forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int, zones (n,) in mm (0: exact
+        stop, -1: not known). Arcs become chords of ``CHORD_ERROR``, rounded where they meet; after a
+        joint target the robot arrives by a rapid motion. Between points of a spline there is no
+        stop.
         With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees, joint targets are
         poses too, and there is joints (n, 6) in degrees, NaN where none are given.
         """
@@ -71,9 +76,11 @@ class Program:
                 for m in motions
             ]
         rows, previous, aux, lost = [], None, None, False
-        for motion in motions:
+        for motion, following in zip(motions, [*motions[1:], None]):
             if motion.pose is None:
                 lost = True  # where the joint target is, only the robot's geometry tells
+                if rows:  # nor in which direction a corner before it would be rounded
+                    rows[-1][-1] = 0.0
                 continue
             if motion.aux:
                 aux = motion
@@ -85,15 +92,18 @@ class Program:
             speed = motion.speed_mm_s or default_speed_mm_s
             force = -1.0 if motion.force_N is None else motion.force_N
             joints = motion.joints_deg or (math.nan,) * 6
-            rows += [(pose, speed, force, rapid, motion.line, joints) for pose in poses]
+            rows += [[pose, speed, force, rapid, motion.line, joints, math.inf] for pose in poses]
+            rows[-1][-1] = _zone(motion, following)
             previous, aux, lost = motion.pose, None, False
-        columns = list(zip(*rows)) if rows else [[] for _ in range(6)]
+        columns = list(zip(*rows)) if rows else [[] for _ in range(7)]
+        frames = np.array(columns[0], dtype=float).reshape(-1, 4, 4)
         arrays = {
-            "frames": np.array(columns[0], dtype=float).reshape(-1, 4, 4),
+            "frames": frames,
             "feeds": np.array(columns[1], dtype=float),
             "forces": np.array(columns[2], dtype=float),
             "rapid": np.array(columns[3], dtype=bool),
             "lines": np.array(columns[4], dtype=int),
+            "zones": _finite(np.array(columns[6], dtype=float), frames),
         }
         if pose_of is not None:
             arrays["joints"] = np.array(columns[5], dtype=float).reshape(-1, 6)
@@ -113,6 +123,22 @@ def joint_angles(values, scale=1.0):
 def work_of(text):
     """Units of work that following a statement takes: one, and more for a long one."""
     return 1 + len(text) // 25
+
+
+def _zone(motion, following):
+    """mm; -1: not known; inf: the robot passes through."""
+    if motion.zone_mm is not None:
+        return motion.zone_mm
+    return math.inf if following and motion.kind == following.kind == "SPL" else -1.0
+
+
+def _finite(zones, frames):
+    """Passing through is a zone that reaches as far as the neighbouring poses."""
+    ways = np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1)
+    reach = np.full(len(zones), CHORD_ERROR)
+    reach[1:] = np.maximum(reach[1:], ways)
+    reach[:-1] = np.maximum(reach[:-1], ways)
+    return np.where(np.isinf(zones), reach, zones)
 
 
 def name_of(path):

@@ -61,12 +61,24 @@ SPEEDS = (
     *(5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800),
     *(1000, 1500, 2000, 2500, 3000, 4000, 5000, 6000, 7000),
 )
+# pzone_tcp of the predefined zonedata, mm; the other zones follow from it as in the manual.
+ZONES = (0.3, *map(float, (1, 5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150, 200)))
+
+
+def zone(size):
+    """Predefined zonedata: z1 and below have one size for all, the others 1.5 for orientation."""
+    turn = size if size <= 1.0 else 8.0 if size == 5.0 else 1.5 * size
+    return [False, size, turn, turn, 0.1 * turn, turn, 0.1 * turn]
+
+
 PREDEFINED = {
     "tool0": ("tooldata", [True, IDENTITY, LOAD0]),
     "wobj0": ("wobjdata", [False, True, "", IDENTITY, IDENTITY]),
     "load0": ("loaddata", LOAD0),
     "pi": ("num", math.pi),
     **{f"v{v}": ("speeddata", [float(v), 500.0, 5000.0, 1000.0]) for v in SPEEDS},
+    "fine": ("zonedata", [True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    **{f"z{int(size)}": ("zonedata", zone(size)) for size in ZONES},
     **{f"reg{k}": ("num", 0.0) for k in range(1, 6)},
 }
 

@@ -177,8 +177,10 @@ class MotionRunner(State):
             if kind == "LIN" and self.here is not None and self.here[1:] == (tool, wobj):
                 length = math.dist(self.here[0][0], programmed[0][0])
             speed = self.speed(line, kind, row[speed_at], options, length)
+            zone = 0.0 if search else self.zone(line, row[speed_at + to_tool - 1], options)
             for k, pose in enumerate(poses):
                 motion = Motion(kind, None, line, self.file, speed, aux=k < count - 1)
+                motion.zone_mm = zone
                 self.add(motion, tool, wobj)
                 self.poses.append((motion, *pose))
             self.here = ([*programmed[-1], *targets[-1][2:]], tool, wobj)
@@ -234,6 +236,24 @@ class MotionRunner(State):
             if kind != "PTP":
                 what = f"the speed is not known: {unknown}; the default speed is used"
                 self.problem(line, what, what)
+            return None
+
+    def zone(self, line, row, options):
+        """mm of the zone around the target within which the corner is rounded; 0: stop point (fine,
+        \\Inpos); None: not known here."""
+        try:
+            if "inpos" in options:
+                return 0.0
+            value = self.value(row)
+            if not isinstance(value, list) or len(value) != 7 or not isinstance(value[0], bool):
+                raise Unknown("it is no zonedata")
+            if value[0]:
+                return 0.0
+            size = number(self.value(options["z"])) if options.get("z") else number(value[1])
+            return max(0.0, size)
+        except Unknown as unknown:
+            what = f"the zone is not known: {unknown}"
+            self.problem(line, what, what)
             return None
 
     def frames_of(self, line, tool_row, wobj_row):

@@ -21,6 +21,7 @@ class Tracer:
         self.program = program
         self.position = None  # (x, y, z) in mm of the last pose, None: unknown
         self.x = (1.0, 0.0, 0.0)
+        self.zone = None  # of the motions to come, mm; None: not known
 
     def gap(self, line):
         """What is left out: the path beyond must not be joined over it."""
@@ -42,13 +43,17 @@ class Tracer:
             (0.0, 0.0, 0.0, 1.0),
         )
         motion = Motion(kind, pose, line, self.program.file, speed, tool=tool, base=base, aux=aux)
+        motion.zone_mm = self.zone
         self.program.motions.append(motion)
         self.position, self.x = tuple(position), x
 
-    def arc(self, through, end, axis, line, speed=None, base="", tool=""):
-        """An arc by a point on the way and its end."""
-        self.move("CIRC", through, axis, line, speed, base, tool, aux=True)
-        self.move("CIRC", end, axis, line, speed, base, tool)
+    def arcs(self, points, axis, line, speed=None, base="", tool=""):
+        """Arcs, each by a point on the way and its end; there is no stop between them."""
+        for k in range(0, len(points), 2):
+            self.move("CIRC", points[k], axis, line, speed, base, tool, aux=True)
+            self.move("CIRC", points[k + 1], axis, line, speed, base, tool)
+            if k + 2 < len(points):
+                self.program.motions[-1].zone_mm = math.inf
 
 
 def unit(vector):

@@ -377,8 +377,9 @@ class Interpreter:
             return
         frames = [self.in_base(a_pose(value)) for value in values]
         speed = None if KINDS[name] == "PTP" else self.speed(line, name, given, frames)
+        zone = self.zone(line, given)
         for frame in frames:
-            motion = Motion(KINDS[name], frame, line, self.file, speed)
+            motion = Motion(KINDS[name], frame, line, self.file, speed, zone_mm=zone)
             motion.tool, motion.base, motion.aux = self.tool, self.base, frame is not frames[-1]
             self.program.motions.append(motion)
         self.here = frames[-1][:3, 3]
@@ -394,6 +395,14 @@ class Interpreter:
         frame = pose.frame.copy() if self.inverse is False else self.inverse @ pose.frame
         frame[:3, 3] *= 1000.0
         return frame
+
+    def zone(self, line, given):
+        """mm by the blend radius r, without it 0 (an exact stop); None: not known."""
+        try:
+            return max(0.0, 1000.0 * number(self.node(given["r"]))) if "r" in given else 0.0
+        except Unknown as unknown:
+            self.problem(line, f"the blend radius is not known: {unknown}")
+            return None
 
     def speed(self, line, name, given, frames):
         """mm/s by t (before v) or v; None: not known."""

@@ -261,11 +261,19 @@ def pick(name, text):
 job.ViewObject.Proxy.doubleClicked(job.ViewObject)
 settle()
 pick("Law", "Local with exponents")
+shown = {w.objectName() for w in window.findChildren(QtGui.QWidget) if w.isVisible()}
+assert "Timing" in shown and "PathAcceleration" not in shown
+pick("Timing", "With acceleration and zones")
+assert field("PathAcceleration").isVisible() and field("DefaultZone").isVisible()
+type_in("PathAcceleration", "2000 mm/s^2")
+type_in("AngularAcceleration", "150")
 type_in("PressureExponent", "1.2")
 type_in("FeedExponent", "-0.2")
 pick("WearModel", "Exponential")
 type_in("WearScale", "1000")
 press("OK")
+assert (job.Timing, job.PathAcceleration.Value) == ("trapezoidal", 2000)
+assert job.AngularAcceleration == 150 and not job.Document.HasPendingTransaction
 assert (job.Law, job.PressureExponent, job.FeedExponent) == ("local", 1.2, -0.2)
 job.Calibration = json.dumps({"parameters": [], "covariance": [], "scatter": 0.1})
 menu("Simulate")

@@ -427,3 +427,42 @@ opened = beltgrinding.open_job(FreeCAD.newDocument("opened"), "sure.json")
 assert json.loads(opened.Calibration) == calibration and len(opened.PressureCurve) == 3
 """
     )
+
+
+def test_the_robots_timing_and_a_document_from_before_it(freecad):
+    freecad.run(
+        BLOCK
+        + """
+doc = FreeCAD.newDocument("timing")
+job = make(block(doc))
+simulation = beltgrinding.simulate(job)
+assert near(simulation.ProcessTime, 4 / 3)
+job.Timing, job.PathAcceleration = "trapezoidal", "100 mm/s^2"
+doc.recompute()
+assert simulation.OutOfDate
+beltgrinding.simulate(job)
+assert near(simulation.ProcessTime, 4 / 3 + 0.3, 1e-9)  # v / a; between the poses no stop
+assert near(simulation.RemovedVolume.Value, REMOVED * (1 + 0.3 / (4 / 3)))
+beltgrinding.export_job(job, "job.json")
+exported = json.loads(Path("job.json").read_text())
+assert exported["simulation"]["path_acceleration_mm_s2"] == 100
+assert not any("zone_mm" in pose for pose in exported["programs"][0]["poses"])
+path = doc.RobotPath
+path.Zones = [0.0] * len(path.Poses)
+doc.recompute()
+assert simulation.OutOfDate
+beltgrinding.simulate(job)
+assert near(simulation.ProcessTime, 8 * 2 * (5 / 100) ** 0.5, 1e-9)
+
+path.removeProperty("Zones")
+for name in ("Timing", "PathAcceleration", "AngularAcceleration", "RotationSpeed", "DefaultZone"):
+    job.removeProperty(name)
+doc.saveAs("old.FCStd")
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("old.FCStd")
+job, path = doc.BeltGrindingJob, doc.RobotPath
+assert job.Timing == "constant_feed" and job.DefaultZone.Value == 1.0
+assert job.PathAcceleration.Value == 1200 and len(path.Proxy.arrays(path)["zones"]) == 9
+assert near(beltgrinding.simulate(job).ProcessTime, 4 / 3, 1e-9)
+"""
+    )

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, core  # noqa: E402
+from beltgrinding import InputError, core, poses  # noqa: E402
 from beltgrinding import job as jobs  # noqa: E402
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
@@ -86,8 +86,61 @@ def test_everything_is_written_and_can_be_read(tmp_path):
     field, attributes = core.HeightField.from_hdf5(str(tmp_path / "out" / "heightfield.h5"))
     np.testing.assert_array_equal(field.height, result.field.height)
     assert json.loads(attributes)["belt_machine"]["force_N"] == 30
+    with open(tmp_path / "out" / "steps.csv") as file:
+        names = file.readline().strip().split(",")
+    rows = np.loadtxt(tmp_path / "out" / "steps.csv", delimiter=",", skiprows=1)
+    assert rows.shape == (result.summary["steps"], len(names))
+    for name in ("time_s", "feed_mm_s", "removal_rate_mm3_s"):
+        values = result.steps[name.split("_mm")[0].removesuffix("_s")]
+        np.testing.assert_allclose(rows[:, names.index(name)], values, rtol=1e-6)
     assert (tmp_path / "out" / "deviation.ply").read_bytes().startswith(b"ply\n")
     assert not list((tmp_path / "out").glob("*.part"))
+
+
+def test_a_robot_that_accelerates_takes_longer_and_removes_more():
+    job = plate_job()
+    constant = beltgrinding.run(job)
+    job["simulation"] = {"timing": "trapezoidal", "path_acceleration_mm_s2": 100}
+    result = beltgrinding.run(job)
+    longer = 30.0 / 100.0  # v / a: from rest to rest
+    assert result.summary["process_time_s"] == pytest.approx(40.0 / 30.0 + longer)
+    more = result.summary["removed_volume_mm3"] - constant.summary["removed_volume_mm3"]
+    assert more == pytest.approx(1.25e-4 * 20000.0 * 30.0 * longer, rel=0.02)  # K V_b F t
+    steps = result.steps
+    assert steps["duration"].sum() == pytest.approx(result.summary["process_time_s"], rel=1e-6)
+    np.testing.assert_allclose(steps["feed"] * steps["duration"], 1.0, rtol=1e-5)  # steps of 1 mm
+    assert steps["feed"].max() == pytest.approx(30.0) and steps["feed"][0] < 10.0
+    np.testing.assert_allclose(constant.steps["feed"], 30.0, rtol=1e-5)
+
+
+def corner_job(**corner):
+    job = plate_job()
+    job["programs"][0]["poses"].append(
+        {"x_mm": 50, "y_mm": 35, "z_mm": 0.2, **DOWN, "feed_mm_s": 30}
+    )
+    job["programs"][0]["poses"][1].update(corner)
+    job["simulation"] = {"timing": "trapezoidal", "path_acceleration_mm_s2": 500}
+    return job
+
+
+def test_the_zone_of_a_pose_or_the_default_rounds_the_corner():
+    def times(default, **corner):
+        job = corner_job(**corner)
+        job["simulation"]["default_zone_mm"] = default
+        return beltgrinding.run(job).summary["process_time_s"]
+
+    stop = 55.0 / 30.0 + 4 * 0.5 * 30.0 / 500.0  # half a ramp's time more at each end
+    assert times(0) == pytest.approx(stop)
+    assert times(4, zone_mm=0) == pytest.approx(stop)
+    assert times(0, zone_mm=4) == times(4) == pytest.approx(55.0 / 30.0 + 30.0 / 500.0)
+
+
+def test_zones_come_back_from_a_list_of_poses():
+    arrays = poses.program_arrays(corner_job(zone_mm=2.5)["programs"][0], "p", [])
+    assert arrays["zones"].tolist() == [-1, 2.5, -1]
+    again = poses.listed_poses(poses.list_poses(arrays), "p")
+    for name, values in arrays.items():
+        np.testing.assert_array_equal(again[name], values)
 
 
 def test_a_cancelled_run_raises():

@@ -1,9 +1,12 @@
 """What a job gave, and the files that it is kept in."""
 
+import io
 import json
 import os
 import time
 from pathlib import Path
+
+import numpy as np
 
 from . import InputError, core
 
@@ -21,7 +24,8 @@ class Result:
         self.steps = steps
 
     def write(self, folder):
-        """Writes summary.json, events.json, deviation.ply, heightfield.h5; each whole or not."""
+        """Writes summary.json, events.json, steps.csv, deviation.ply, heightfield.h5; each whole or
+        not."""
         start = time.perf_counter()
         folder = Path(folder)
         try:
@@ -31,6 +35,8 @@ class Result:
             write_whole(folder / "deviation.ply", ply)
             self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
             write_whole(folder / "events.json", _json(self.events))
+            if self.steps is not None:
+                write_whole(folder / "steps.csv", _table(self.steps))
             self.summary["wall_time_s"]["write"] = time.perf_counter() - start
             write_whole(folder / "summary.json", _json(self.summary))
         except OSError as error:
@@ -73,6 +79,29 @@ def write_whole(path, data):
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
+
+
+STEP_COLUMNS = {
+    "program": "program",
+    "pose": "pose",
+    "time": "time_s",
+    "duration": "duration_s",
+    "feed": "feed_mm_s",
+    "force": "force_N",
+    "approach": "approach_mm",
+    "contact_area": "contact_area_mm2",
+    "peak_pressure": "peak_pressure_MPa",
+    "removal_rate": "removal_rate_mm3_s",
+    "segments": "segments",
+}
+
+
+def _table(steps):
+    """One row a step, as CSV; programs and poses count from 0."""
+    rows = np.column_stack([steps[name] for name in STEP_COLUMNS])
+    text = io.StringIO()
+    np.savetxt(text, rows, "%.9g", ",", header=",".join(STEP_COLUMNS.values()), comments="")
+    return text.getvalue().encode()
 
 
 def _json(data):

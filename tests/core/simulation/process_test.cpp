@@ -83,7 +83,7 @@ TEST(Process, DwellInACornerRemovesMore) {
     TimeLaw law;
     law.timing = TimeLaw::Timing::kTrapezoidal;
     law.acceleration = 200.0;
-    const double ramp = kFeed / law.acceleration;  // s more at each end of each motion: v / (2 a)
+    const double ramp = kFeed / law.acceleration;  // s more of each motion from rest to rest: v / a
     HeightField even = testing::plate(80.0, 80.0, 0.5, 0.3), stopped = even, rounded = even;
     const SimulationResult constant = run(corner(0.0), {}, even);
     const SimulationResult stop = run(corner(0.0), law, stopped);

@@ -14,6 +14,7 @@ QUANTITIES = {
     "App::PropertySpeed",
     "App::PropertyForce",
     "App::PropertyPressure",
+    "App::PropertyAcceleration",
 }
 ATTEMPTS = 20
 MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
@@ -22,6 +23,7 @@ NOT_NEGATIVE = {
     "App::PropertySpeed",
     "App::PropertyForce",
     "App::PropertyPressure",
+    "App::PropertyAcceleration",
 }
 
 

@@ -1,4 +1,4 @@
-"""Task panel of the job: the faces, sampling, tolerance, law."""
+"""Task panel of the job: the faces, sampling, tolerance, timing, law."""
 
 import FreeCADGui as Gui
 
@@ -30,13 +30,33 @@ class JobPanel(Panel):
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         sampling.add("FlipNormals", translate("BeltGrinding", "Flip loose normals"))
         self.body.addWidget(sampling)
+        self.timing = Form(obj, translate("BeltGrinding", "Robot's speed"))
+        timings = {
+            "constant_feed": translate("BeltGrinding", "Constant feed"),
+            "trapezoidal": translate("BeltGrinding", "With acceleration and zones"),
+        }
+        self.timing.add("Timing", translate("BeltGrinding", "Timing"), timings)
+        self.timing.add("PathAcceleration", translate("BeltGrinding", "Path acceleration"))
+        self.timing.add("DefaultZone", translate("BeltGrinding", "Default zone"))
+        self.timing.add("RotationSpeed", translate("BeltGrinding", "Rotation speed"), unit="°/s")
+        self.timing.add(
+            "AngularAcceleration", translate("BeltGrinding", "Angular acceleration"), unit="°/s²"
+        )
+        self.body.addWidget(self.timing)
+        self.arrange_timing()
         self.law = LawForms(obj)
         self.body.addWidget(self.law)
-        self.forms = (sampling, self.law)
+        self.forms = (sampling, self.timing, self.law)
         sampling.changed = self.estimate
+        self.timing.changed = self.arrange_timing
         self.finish()
         Gui.Selection.addSelectionGate(FaceGate())
         self.estimate()
+
+    def arrange_timing(self):
+        """Shows the accelerations only where they matter."""
+        trapezoidal = self.obj.Timing == "trapezoidal"
+        self.timing.show_rows(self.timing.rows if trapezoidal else {"Timing"})
 
     def _faces(self):
         box = QtGui.QGroupBox(translate("BeltGrinding", "Faces to be ground"))

@@ -34,11 +34,11 @@ FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(.+?)\s+(TO|DOWNTO)\s+(.+)$")
 
 
 def zone_of(rest):
-    """mm by the termination type in a motion's additions: FINE stops; CR is a corner radius in mm
-    (exact where the path turns by 90 degrees); CNT is a share of the speed and no length, so its
-    zone is not known, of CNT0 neither: it comes near to a stop without being one.
+    """mm by the termination type in a motion's additions: FINE stops; CD is the distance from the
+    corner, CR its radius (the same where the path turns by 90 degrees); CNT is a share of the speed
+    and no length, so its zone is not known, of CNT0 neither: nearly a stop without being one.
     """
-    match = re.search(r"\b(?:(FINE)|CR\s*(\d{1,4}))(?=\s|$)", rest)
+    match = re.search(r"\b(?:(FINE)|C[DR]\s*(\d{1,4}))(?=\s|$)", rest)
     if not match:
         return None
     return 0.0 if match.group(1) else float(match.group(2))

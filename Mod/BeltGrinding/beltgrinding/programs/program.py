@@ -10,6 +10,7 @@ import numpy as np
 from ..frames import to_quaternions
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
+PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points
 MAX_CHORDS = 10_000
 MAX_ANGLE = 1e6  # of a joint; more is no angle
 MAX_COORDINATE = 1e7  # mm; beyond, a file is damaged
@@ -133,12 +134,21 @@ def _zone(motion, following):
 
 
 def _finite(zones, frames):
-    """Passing through is a zone that reaches as far as the neighbouring poses."""
-    ways = np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1)
-    reach = np.full(len(zones), CHORD_ERROR)
+    """Passing through as a length: the neighbouring poses' distance, but no further than the rounded
+    corner, which lies zone |v - u| / 4 inside (u, v: the directions), stays within
+    ``PASSING_ERROR`` of the pose."""
+    passing = np.isinf(zones)
+    if not passing.any():
+        return zones
+    steps = np.diff(frames[:, :3, 3], axis=0)
+    ways = np.linalg.norm(steps, axis=1)
+    steps /= np.maximum(ways, 1e-9)[:, None]
+    reach = np.full(len(zones), CHORD_ERROR)  # where the robot only turns, any length will do
     reach[1:] = np.maximum(reach[1:], ways)
     reach[:-1] = np.maximum(reach[:-1], ways)
-    return np.where(np.isinf(zones), reach, zones)
+    bend = np.linalg.norm(np.diff(steps, axis=0), axis=1)
+    reach[1:-1] = np.minimum(reach[1:-1], 4.0 * PASSING_ERROR / np.maximum(bend, 1e-9))
+    return np.where(passing, reach, zones)
 
 
 def name_of(path):

@@ -333,9 +333,9 @@ def test_absent_file(tmp_path):
 
 def test_a_long_program_is_read_quickly(tmp_path):
     rows = "".join(f"MoveL {point(i / 100, i % 7, 3)},v100,z1,tool0;\n" for i in range(100_000))
-    begin = time.monotonic()
+    begin = time.process_time()  # not the load of the machine
     program = main(tmp_path, rows)
-    assert time.monotonic() - begin < 5.0
+    assert time.process_time() - begin < 5.0
     assert len(positions(program)) == 100_000 and not program.problems
 
 

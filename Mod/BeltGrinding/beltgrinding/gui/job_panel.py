@@ -42,10 +42,10 @@ class JobPanel(Panel):
         self.timing.add(
             "AngularAcceleration", translate("BeltGrinding", "Angular acceleration"), unit="°/s²"
         )
-        self.body.addWidget(self.timing)
         self.arrange_timing()
         self.law = LawForms(obj)
         self.body.addWidget(self.law)
+        self.body.addWidget(self.timing)
         self.forms = (sampling, self.timing, self.law)
         sampling.changed = self.estimate
         self.timing.changed = self.arrange_timing

@@ -244,7 +244,10 @@ class MotionRunner(State):
         try:
             if "inpos" in options:
                 return 0.0
-            value = self.value(row)
+            if len(row) == 1 and row[0][0] == "name":
+                value = self.variable(row[0][1])[0]
+            else:
+                value = self.value(row)
             if not isinstance(value, list) or len(value) != 7 or not isinstance(value[0], bool):
                 raise Unknown("it is no zonedata")
             if value[0]:

@@ -246,7 +246,8 @@ void bind_simulation(py::module_& m) {
              py::arg("time_law") = py::dict(),
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
              "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source; joints "
-             "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, negative: the default; "
+             "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, negative: the "
+             "default; "
              "time_law: timing (constant_feed, trapezoidal), acceleration mm/s2, "
              "angular_acceleration rad/s2, rotation_speed rad/s, default_zone mm.")
         .def("__len__", [](const ToolPath& path) { return path.poses().size(); })

@@ -37,8 +37,8 @@ def base_from_tcp(cell, contacts):
 
 def assemble(levels, settings, cell):
     """The whole path. ``levels``: for each level line its pieces, dict(points, normals, tangents
-    (n, 3), closed). Returns dict(frames, feeds, forces, rapid, lines, contacts, contact (n,) bool:
-    pose of a pass, passes).
+    (n, 3), closed). Returns dict(frames, feeds, forces, rapid, lines, zones, contacts, contact
+    (n,) bool: pose of a pass, passes).
     """
     parts, passes, count, end = [], [], 0, None
     backwards = False
@@ -65,6 +65,7 @@ def assemble(levels, settings, cell):
     joined["feeds"] = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
     joined["forces"] = np.full(count, settings["force_N"] or -1.0)
     joined["lines"] = np.zeros(count, dtype=int)
+    joined["zones"] = np.full(count, -1.0)  # the job's default
     return joined
 
 

@@ -91,6 +91,15 @@ def test_endless_work_is_refused_soon(tmp_path, name):
     assert time.process_time() - begin < 4.0
 
 
+def test_a_loop_over_all_points_of_a_file_is_followed(tmp_path):
+    count = 25_000
+    points = "".join(f"P[{k}]={{X {k},Y 0,Z 0,A 0,B 0,C 0}}\n" for k in range(1, count + 1))
+    (tmp_path / "a.dat").write_text("DEFDAT a\n" + points + "ENDDAT\n")
+    text = f"DEF a()\nFOR I=1 TO {count}\n$VEL.CP=0.1\nLIN P[I] C_DIS\nENDFOR\nEND\n"
+    program = read(tmp_path, "a.src", text)
+    assert len(program.motions) == count and not program.problems
+
+
 def test_a_loop_without_its_end_is_followed_once(tmp_path):
     program = read(tmp_path, "a.script", "while 1 < 2:\n  movel(p[0,0,0,0,0,0])\n")
     assert len(program.motions) == 1

@@ -10,7 +10,7 @@ import numpy as np
 
 from .fanuc_positions import positions_of
 from .fanuc_registers import INDEX, Registers
-from .program import MAX_UNROLLED, Motion, ProgramError, work_of
+from .program import LOOPED, MAX_UNROLLED, Motion, ProgramError, work_of
 from .taught import DIGITS, Unknown, lines_of, pose_of
 
 KINDS = {"J": "PTP", "L": "LIN", "C": "CIRC", "A": "A", "S": "SPL"}
@@ -142,7 +142,8 @@ class _Reader(Registers):
             int(n) for s in self.statements for n in re.findall(r"JMP\s+LBL\[(\d{1,6})\b", s[1])
         }
         targets = {k for n, k in labels.items() if n in jumps}
-        seen, rounds, at = set(), -sum(work_of(text) for _, text, _ in self.statements), 0
+        work = sum(work_of(text) for _, text, _ in self.statements) + 5 * len(self.positions)
+        seen, rounds, at = set(), -LOOPED * work, 0
         while at is not None and at < len(self.statements):
             line, text, _ = self.statements[at]
             rounds += work_of(text)

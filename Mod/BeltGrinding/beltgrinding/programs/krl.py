@@ -12,6 +12,7 @@ import numpy as np
 
 from .krl_expression import FRAME, Reader, Unknown, components_of, frame_of, number
 from .program import (
+    LOOPED,
     MAX_COORDINATE,
     MAX_UNROLLED,
     Motion,
@@ -119,7 +120,7 @@ class _Interpreter:
         self.spline = False  # within a SPLINE block
         self.routines = {}
         self.calls = self.depth = 0
-        self.rounds = 0  # units of work; below 0: as many as the file has
+        self.rounds = 0  # units of work; below 0: what the files allow
         self.missing = set()
 
     def problem(self, line, message):
@@ -181,6 +182,7 @@ class _Interpreter:
     def read_data(self, statements, name):
         own, self.file = self.file, name
         for line, text in statements:
+            self.rounds -= LOOPED * work_of(text)
             match = ASSIGN.match(text)
             if match:
                 self.assign(match, line)
@@ -190,7 +192,7 @@ class _Interpreter:
         body, name = [], None
         order = []
         for line, text in statements:
-            self.rounds -= work_of(text)
+            self.rounds -= LOOPED * work_of(text)
             word = _word(text)
             if word in ("def", "deffct") or text.lower().startswith("global def"):
                 match = re.search(r"(\w+)\s*\(", text)

@@ -14,7 +14,8 @@ PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points
 MAX_CHORDS = 10_000
 MAX_ANGLE = 1e6  # of a joint; more is no angle
 MAX_COORDINATE = 1e7  # mm; beyond, a file is damaged
-MAX_UNROLLED = 60_000  # units of work in loops, beyond what the file has: about a second
+MAX_UNROLLED = 60_000  # units of work in loops, beyond what the files allow: about a second
+LOOPED = 4  # a file allows so many times its own work: loops over its points are as long as it
 
 
 class ProgramError(ValueError):

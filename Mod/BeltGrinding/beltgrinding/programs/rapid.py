@@ -7,7 +7,7 @@ value the module gives. What only the controller can know is a Problem.
 import re
 
 from . import rapid_data as data
-from .program import ProgramError, work_of
+from .program import LOOPED, ProgramError, work_of
 from .rapid_calls import CHANGING, HARMLESS, Exit, Jump, Return
 from .rapid_control import TARGET, Control
 from .rapid_data import Unknown, number
@@ -49,7 +49,7 @@ class _Interpreter(Control):
         while stack:
             node = stack.pop()
             stack += node.body or []
-            self.rounds -= work_of(node.text) + 2 * node.text.count("(")
+            self.rounds -= LOOPED * (work_of(node.text) + 2 * node.text.count("("))
         loose = self.module(nodes)
         for name in list(self.globals):
             try:

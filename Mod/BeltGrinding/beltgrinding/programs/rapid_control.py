@@ -23,7 +23,7 @@ class Control(MotionRunner):
     def __init__(self, path):
         super().__init__(path)
         self.routines = {}  # (node, parameters, body) by name
-        self.rounds = 0  # units of work; below 0: as many as the file has
+        self.rounds = 0  # units of work; below 0: what the file allows
         self.line = 1
 
     def tick(self, line, rounds=1):

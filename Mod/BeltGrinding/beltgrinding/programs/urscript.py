@@ -16,6 +16,7 @@ import warnings
 from pathlib import Path
 
 from .program import (
+    LOOPED,
     MAX_UNROLLED,
     Motion,
     Problem,
@@ -89,7 +90,7 @@ class Interpreter:
         self.file = name
         self.scopes = [{}]  # the global one first; the innermost last
         self.routines = {}
-        self.rounds = self.line = 0  # rounds: units of work; below 0: as many as the file has
+        self.rounds = self.line = 0  # rounds: units of work; below 0: what the file allows
         self.called = False
         self.missing = set()
         self.inverse = None  # of the frame all poses are given in, 4 x 4 in metres
@@ -111,7 +112,7 @@ class Interpreter:
             text = COMMENT.sub(lambda m: m.group(1) or "", text).strip()
             if not text:
                 continue
-            self.rounds -= work_of(text)
+            self.rounds -= LOOPED * work_of(text)
             word = re.match(r"\w*", text).group(0)
             inner = open_blocks[-1].parts[-1][2] if open_blocks else root
             if word in ("def", "while", "if", "thread", "sec"):

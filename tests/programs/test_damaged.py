@@ -160,3 +160,58 @@ def test_krl_leaves_loops_and_routines(tmp_path):
     program = read(tmp_path, "a.src", text)
     assert [motion.pose[0, 3] for motion in program.motions] == [1, 2, 7, 8]
     assert not program.problems
+
+
+VAL3 = (
+    '<Programs xmlns="http://www.staubli.com/robotics/VAL3/Program/2">\n'
+    '<Program name="a"><Code><![CDATA[begin\n{}end]]></Code></Program></Programs>\n'
+)
+VAL3_DATA = (
+    '<Database xmlns="http://www.staubli.com/robotics/VAL3/Data/2"><Datas>\n'
+    '<Data name="t" type="tool" size="1"><Value key="0" fatherId="flange[0]"/></Data>\n'
+    '<Data name="m" type="mdesc" size="1"><Value key="0" tmax="100"/></Data>\n'
+    '<Data name="p" type="pointRx" size="2"><Value key="0" x="1" fatherId="{0}"/>\n'
+    '<Value key="1" x="2" fatherId="{1}"/></Data></Datas></Database>\n'
+)
+
+
+def val3(tmp_path, code, fathers=("world[0]", "world[0]")):
+    (tmp_path / "a.dtx").write_text(VAL3_DATA.format(*fathers))
+    return read(tmp_path, "a.pgx", VAL3.format(code))
+
+
+def test_an_endless_val3_loop_is_refused_soon(tmp_path):
+    begin = time.process_time()
+    with pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
+        val3(tmp_path, "for l_n=1 to 9E9\nmovel(p[0],t[0],m[0])\nendFor\n")
+    (tmp_path / "b.pgx").write_text(VAL3.format("return\n" + "x=1\n" * 1000).replace('"a"', '"b"'))
+    with pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
+        val3(tmp_path, "for l_n=1 to 9E9\ncall b()\nendFor\n")
+    assert time.process_time() - begin < 4.0
+
+
+@pytest.mark.parametrize("fathers", [("nowhere", "f[#1]"), ("p", "t"), ("f[http]", "world[0]")])
+def test_a_val3_point_in_no_frame_is_left_out(tmp_path, fathers):
+    code = "movej(p[0],t[0],m[0])\nmovel(p[1],t[0],m[0])\nmovec(p[1],p[0],t[0],m[0])\n"
+    program = val3(tmp_path, code, fathers)
+    assert program.motions[0].pose is None and program.problems
+
+
+def test_a_val3_call_cut_off_in_a_skipped_block_is_a_gap(tmp_path):
+    code = "if(diIn[0])\ncall b(p[0],\nendIf\nmovel(p[0],t[0],m[0])\n"
+    program = val3(tmp_path, code)
+    assert program.motions[0].pose is None
+    assert "if is decided at run time" in str(program.problems[0])
+
+
+def test_an_endless_polyscope_loop_is_refused_soon(tmp_path):
+    inner = '<Loop type="Counting" count="999999"><children>{}</children></Loop>'
+    text = (
+        "<URProgram><children><MainProgram><children>"
+        + inner.format(inner.format("<Comment/>"))
+        + "</children></MainProgram></children></URProgram>"
+    )
+    begin = time.process_time()
+    with pytest.raises(ProgramError, match="a.urp:1: the program is too long"):
+        read(tmp_path, "a.urp", text)
+    assert time.process_time() - begin < 4.0

@@ -93,6 +93,7 @@ class Control(State):
                     self.lose(node.text)
             moves = moves or bool(MOVES.search(node.text)) or node.word.startswith("taskcreate")
             call = CALL.match(node.text)
+            moves = moves or (node.word == "call" and not call)
             if call and call[1] not in entered:
                 entered.add(call[1])
                 try:

@@ -226,8 +226,9 @@ def frames(rows):
 
 def in_world(record, depth=0):
     """Six components of a point or frame in the world, through the chain of its frames."""
-    if isinstance(record.father, Missing):
-        raise Unknown(record.father.why)
+    for value in (record, getattr(record, "father", None)):
+        if isinstance(value, Missing):
+            raise Unknown(value.why)
     own = six(record.get("trsf"))
     if record.father is None:
         return own

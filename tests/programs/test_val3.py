@@ -290,11 +290,19 @@ def test_control_flow(tmp_path):
         ("switch io\ncase 1\nmovel(p[2],tBelt,m)\nbreak\nendSwitch", "decided at run time"),
         ("for i=0 to getKey()\nmovel(p[2],tBelt,m)\nendFor", "no static bounds"),
         ("movel(p[3],tBelt,m)", "not taught"),
+        ("movec(p[0],appro(p[3],tr),tBelt,m)", "fNone is not declared"),
         ("readPoint(p[0])\nmovel(p[0],tBelt,m)", "readPoint"),
     ],
 )
 def test_what_is_not_known_is_said_with_its_line(tmp_path, text, culprit):
-    found = read(tmp_path, f"movel(p[0],tBelt,m)\n{text}\nmovel(p[1],tBelt,m)")
+    data = DATA
+    if "fNone" in culprit:
+        data = DATA.replace(
+            '    </Data>\n    <Data name="j"',
+            '<Value key="3" x="1" fatherId="fNone[0]"/></Data>\n    <Data name="j"',
+        )
+        assert data != DATA
+    found = read(tmp_path, f"movel(p[0],tBelt,m)\n{text}\nmovel(p[1],tBelt,m)", data=data)
     assert found.problems and all(p.line in (6, 7) for p in found.problems)
     assert re.search(culprit, " ".join(map(str, found.problems)))
     arrays = found.path_arrays(50.0)

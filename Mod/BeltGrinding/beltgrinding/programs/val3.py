@@ -199,6 +199,8 @@ class _Interpreter(Control):
                 raise Unknown(point.father.why)
             if point.father is None and not any(row):
                 raise Unknown("the point has no value: it was not taught, or the .dtx is not whole")
+            if isinstance(getattr(end, "father", None), Missing):
+                raise Unknown(end.father.why)
             if point.father is not end.father:  # an arc's point in another frame
                 home = data.in_world(end.father) if end.father else (0.0,) * 6
                 row = data.product(data.inverse(home), data.in_world(point))

@@ -1,4 +1,8 @@
+#if __has_include(<embree4/rtcore_config.h>)
+#include <embree4/rtcore_config.h>
+#else
 #include <embree3/rtcore_config.h>
+#endif
 
 #include "base/run_context.h"
 #include "heightfield/kdop_tree.h"

@@ -1,4 +1,8 @@
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -61,9 +65,6 @@ class RayScene {
     };
 
     Hit first(const Vec3f& origin, const Vec3f& direction, float near, float far) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         RTCRayHit ray{};
         ray.ray.org_x = origin.x();
         ray.ray.org_y = origin.y();
@@ -75,13 +76,27 @@ class RayScene {
         ray.ray.tfar = far;
         ray.ray.mask = ~0U;
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_.get(), &context, &ray);
+        intersect(ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
         const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
         return {ray.ray.tfar, normal.dot(direction) > 0.0F};
     }
 
   private:
+    void intersect(RTCRayHit& ray) const {
+#if RTC_VERSION_MAJOR >= 4
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        rtcIntersect1(scene_.get(), &ray, &arguments);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        rtcIntersect1(scene_.get(), &context, &ray);
+#endif
+    }
+
     std::unique_ptr<RTCDeviceTy, DeviceDeleter> device_;
     std::unique_ptr<RTCSceneTy, SceneDeleter> scene_;
 };

@@ -72,12 +72,8 @@ def press(text):
 
 def click_at(x, y):
     """A click into the 3D view, at device pixels from its lower left."""
-    quarter = [
-        w
-        for w in window.findChildren(QtGui.QWidget)
-        if w.metaObject().className().endswith("QuarterWidget") and w.isVisible()
-    ]
-    widget = quarter[0].viewport()
+    drawn = [w for w in window.findChildren(QtGui.QWidget) if w.isVisible()]
+    widget = next(w for w in drawn if w.metaObject().className() == "QOpenGLWidget")
     ratio = widget.devicePixelRatioF()
     at = QtCore.QPointF(round(x / ratio), widget.height() - 1 - round(y / ratio))
     place = QtCore.QPointF(widget.mapToGlobal(at.toPoint()))

@@ -3,7 +3,7 @@
 import FreeCAD
 from PySide import QtCore, QtGui  # FreeCAD's shim: PySide2 or 6; 0.20 has the widgets in QtGui
 
-__all__ = ["QtCore", "QtGui", "VERSION", "buttons", "translate"]
+__all__ = ["QtCore", "QtGui", "VERSION", "buttons", "make_matt", "translate"]
 
 VERSION = tuple(int("".join(c for c in part if c.isdigit()) or 0) for part in FreeCAD.Version()[:2])
 translate = FreeCAD.Qt.translate
@@ -16,3 +16,14 @@ def buttons(*names):
     for name in names[1:]:
         both = both | getattr(box, name)
     return int(both) if VERSION < (1, 0) else both
+
+
+def make_matt(view):
+    """Takes the shine from a view provider: 1.0 gives all that is new a highlight, in whose middle
+    every colour is white.
+    """
+    if hasattr(view, "ShapeAppearance"):
+        appearance = view.ShapeAppearance[0]
+        if any(appearance.SpecularColor[:3]):
+            appearance.SpecularColor = (0.0, 0.0, 0.0, 1.0)
+            view.ShapeAppearance = (appearance,)

@@ -4,6 +4,7 @@ from pivy import coin
 
 from ..objects.deviation import UNCERTAINTY
 from . import legend
+from .compat import make_matt
 from .part_context import rest_of_part
 from .view import View
 
@@ -71,6 +72,7 @@ class DeviationView(View):
 
     def colour(self):
         """Draws the colours: 0.20 forgets them on reopening and whenever the mesh is set."""
+        make_matt(self.view)
         if len(self.view.Object.VertexColors) == self.view.Object.Mesh.CountPoints:
             self.view.Coloring = False
             self.view.Coloring = True

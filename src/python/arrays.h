@@ -52,6 +52,7 @@ void bind_surrogate(py::module_& m);
 void bind_calibration(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
+void bind_section(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_toolpath(py::module_& m);
 

@@ -72,6 +72,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_calibration(m);
     bind_simulation(m);
     bind_inspection(m);
+    bind_section(m);
     bind_robot(m);
     bind_toolpath(m);
 }

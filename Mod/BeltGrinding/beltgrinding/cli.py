@@ -85,6 +85,22 @@ def _parser():
     raster.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
+    cut = commands.add_parser(
+        "section",
+        help="cut a result by a plane: design, stock and ground profile",
+        description="A plane by --point and --normal, or the line on the surface --from one point "
+        "--to another; mm, in the part's frame. Write --normal=-1,0,0 where the first is negative.",
+    )
+    cut.add_argument("result", help="folder that run wrote")
+    cut.add_argument("--point", metavar="X,Y,Z", help="of the plane")
+    cut.add_argument("--normal", metavar="X,Y,Z", help="of the plane")
+    cut.add_argument("--from", dest="start", metavar="X,Y,Z", help="where the line begins")
+    cut.add_argument("--to", dest="end", metavar="X,Y,Z", help="where the line ends")
+    cut.add_argument(
+        "-o", "--output", action="append", default=[], help="file: .csv or .svg; may be repeated"
+    )
+    cut.add_argument("--mode", choices=("unrolled", "shape"), default="unrolled", help="of the SVG")
+    cut.add_argument("--exaggeration", type=float, help="of the heights in the shape's SVG")
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials", "robots"))
     preset.add_argument("--json", action="store_true", help="as JSON")
@@ -290,6 +306,28 @@ def _raster(arguments):
     print(json.dumps(raster.summary(found)))
 
 
+def _section(arguments):
+    from . import InputError, section
+
+    by_plane = (arguments.point, arguments.normal)
+    by_line = (arguments.start, arguments.end)
+    for path in arguments.output:
+        if Path(path).suffix.lower() not in (".csv", ".svg"):
+            raise InputError(f"{path}: a section is written as .csv or .svg")
+    if all(by_plane) and not any(by_line):
+        found = section.section(arguments.result, *by_plane)
+    elif all(by_line) and not any(by_plane):
+        found = section.between(arguments.result, *by_line)
+    else:
+        raise InputError("section: give --point and --normal, or --from and --to")
+    for path in arguments.output:
+        if Path(path).suffix.lower() == ".svg":
+            section.write_svg(found, path, arguments.mode, arguments.exaggeration)
+        else:
+            section.write_csv(found, path)
+    print(json.dumps(section.summary(found)))
+
+
 def _predict(arguments):
     from . import calibration_law, schemas
 
@@ -347,6 +385,8 @@ def main(argv=None):
             _program(arguments)
         elif arguments.command == "raster":
             _raster(arguments)
+        elif arguments.command == "section":
+            _section(arguments)
         elif arguments.command == "predict":
             _predict(arguments)
         elif arguments.command == "run":

@@ -120,6 +120,19 @@ void bind_robot(py::module_& m) {
                 return Eigen::Matrix4d(arm.forward(q).matrix());
             },
             py::arg("q"), "robot_from_flange (4, 4) at the joints (6,), rad")
+        .def(
+            "placed",
+            [](const RobotArm& arm, const Joints& q) {
+                const RobotArm::Placed placed = arm.placed(q);
+                Eigen::Matrix<double, 6, 3> axes, points;
+                for (int i = 0; i < 6; ++i) {
+                    axes.row(i) = placed.axis[static_cast<std::size_t>(i)];
+                    points.row(i) = placed.point[static_cast<std::size_t>(i)];
+                }
+                return py::make_tuple(axes, points);
+            },
+            py::arg("q"),
+            "(axes (6, 3), unit; a point on each (6, 3), mm) in the robot's base at q (6,), rad")
         .def("jacobian", &RobotArm::jacobian, py::arg("q"),
              "(6, 6): velocity of the flange (mm) and angular velocity per joint speed")
         .def(

@@ -126,3 +126,75 @@ assert not [o for o in doc.Objects if o.Label == "Contour ground"]
 """,
         window=True,
     )
+
+
+def test_the_robot_is_chosen_drawn_and_followed(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.gui import pose_walk
+walks, init = [], pose_walk.PoseWalk.__init__
+def watched(self, *arguments):
+    init(self, *arguments)
+    walks.append(self)
+pose_walk.PoseWalk.__init__ = watched
+
+machine.BaseFromRobot.Base = (-500, 20, -300)
+menu("Cell")
+robot = walks[-1].view.robot
+assert robot.root.whichChild.getValue() == -1  # none is drawn
+box = field("robot")
+assert box.isEnabled()
+box.setCurrentIndex(box.findText("ABB IRB 1200-5/0.9"))
+settle()
+assert machine.Robot == "abb_irb1200_5_90" and robot.root.whichChild.getValue() == -3
+field("poseNumber").setValue(5)
+assert "Joints:" in field("joints").text()
+# Forward kinematics at the angles that are shown put the tool at the pose.
+flange = robot.arm.forward(robot.joints)
+base = np.array(machine.BaseFromRobot.toMatrix().A).reshape(4, 4)
+assert np.allclose(base @ flange, walks[-1].view.poses[4], atol=1e-6)
+press("Check the whole program")
+wait(lambda: field("checkReach").isEnabled())
+assert "follows the whole program" in field("reachEvents").item(0).text()
+assert len(robot.followed) == 9
+
+line = [w for w in field("BaseFromRobot").findChildren(QtGui.QWidget, "X")][0]
+line = line.findChild(QtGui.QLineEdit)
+line.setFocus(); line.selectAll(); line.insert("-1500 mm"); line.editingFinished.emit()
+settle()
+assert "Out of reach" in field("joints").text() and robot.root.whichChild.getValue() == -1
+press("Check the whole program")
+wait(lambda: field("checkReach").isEnabled())
+assert "out of reach" in field("reachEvents").item(0).text()
+press("OK")
+assert machine.BaseFromRobot.Base.x == -1500
+simulation = __import__("beltgrinding").simulate(job)
+assert any(e["kind"] == "out_of_reach" for e in simulation.Proxy.events(simulation))
+""",
+        window=True,
+    )
+
+
+def test_a_path_is_exported_as_a_robot_program(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.programs import read_program
+path.FeedOverride = "20 mm/s"
+doc.recompute()
+asked = []
+def answer(*arguments, **keywords):
+    asked.append(arguments)
+    return "out", "ABB RAPID (*.mod)"
+QtGui.QFileDialog.getSaveFileName = staticmethod(answer)
+menu("Export robot program...")
+assert asked and Path("out.mod").exists()
+program = read_program("out.mod")
+assert program.language == "ABB RAPID" and not program.problems, program.problems
+poses = np.array([m.pose for m in program.motions])
+assert np.allclose(poses, path.Proxy.arrays(path)["frames"], atol=1e-6)
+assert [m.speed_mm_s for m in program.motions][1:] == [20] * 8
+""",
+        window=True,
+    )

@@ -62,6 +62,7 @@ DOCUMENT_FUNCTIONS = (
     "wear_belt",
     "follow_path",
     "import_program",
+    "export_program",
     "make_raster",
     "simulate",
     "make_deviation",

@@ -1,6 +1,7 @@
 """Task panel of the cell: who holds what, the frames, the bodies; shown live at any pose."""
 
 import FreeCADGui as Gui
+import numpy as np
 
 from ..objects.belt_machine import BODIES
 from ..objects.job_object import children
@@ -10,6 +11,7 @@ from .compat import QtCore, QtGui, translate
 from .form import Form
 from .panel import Panel
 from .pose_walk import PoseWalk
+from .robot_box import RobotBox
 
 WAIT = 200  # ms after the last change of a frame; long paths take a while to draw
 
@@ -41,9 +43,29 @@ class CellPanel(Panel):
         cell.add("BaseFromContact", translate("BeltGrinding", "Contact in base"))
         cell.changed = self.arrange
         self.body.addWidget(cell)
+        if self.walk:
+            self.body.addWidget(self._robot())
         self.body.addWidget(self._bodies())
         self.finish()
         self.arrange()
+
+    def _robot(self):
+        self.robot = RobotBox(self.obj, self.walk.path)
+        self.robot.changed = self.redraw
+        self.robot.go = self.walk.go
+        self.robot.found = self.followed
+        self.walk.moved = lambda _: self.show_joints()
+        return self.robot
+
+    def followed(self, result):
+        """The whole path was followed: the arm is drawn as it goes along it."""
+        self.walk.view.robot.followed = result["joints"]
+        self.walk.view.update()
+        self.show_joints()
+
+    def show_joints(self):
+        joints = self.walk.view.robot.joints
+        self.robot.show_joints(None if joints is None else np.degrees(joints))
 
     def _bodies(self):
         box = QtGui.QGroupBox(translate("BeltGrinding", "Bodies"))
@@ -125,7 +147,10 @@ class CellPanel(Panel):
         }
         self.cell.show_rows({"Holding"} | frames[self.obj.Holding])
         if self.walk:
+            self.robot.forget()
+            self.walk.view.robot.followed = None
             self.walk.arrange()
+            self.show_joints()
             self.drawn.start(WAIT)
             self.tell("")
         else:
@@ -141,8 +166,10 @@ class CellPanel(Panel):
     def redraw(self):
         if self.walk:
             self.walk.view.rebuild()
+            self.show_joints()
 
     def close(self):
         self.drawn.stop()
         if self.walk:
+            self.robot.close()
             self.walk.release()

@@ -1,4 +1,4 @@
-"""The cell at a pose, drawn into a document's 3D views: wheel, tool frame, bodies, moving part.
+"""The cell at a pose, drawn into a document's 3D views: wheel, tool, bodies, robot, moving part.
 
 All nodes are in the part's coordinates, which are the document's. While the cell is shown as it
 moves, a transform before all that is drawn in the view carries the part through the cell.
@@ -9,6 +9,7 @@ import numpy as np
 from pivy import coin
 
 from ..objects.belt_machine import BODIES
+from .robot_view import RobotView
 from .shapes3d import axes, body, separator, set_matrix, unpickable, wheel
 
 CELL = {
@@ -44,6 +45,8 @@ class CellView:
         for name, things in self.things.items():
             nodes = [self.places[name]] if name in self.places else []
             self.root.addChild(separator(*nodes, things))
+        self.robot = RobotView()
+        self.root.addChild(self.robot.root)
         self.scenes = [
             view.getSceneGraph()
             for view in Gui.getDocument(document.Name).mdiViewsOfType("Gui::View3DInventor")
@@ -85,6 +88,7 @@ class CellView:
             for name, (frame, _) in BODIES.items():
                 for obj in getattr(self.machine, name):
                     self.things[frame].addChild(body(obj))
+            self.robot.choose(self.machine.Proxy.robot(self.machine))
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
 
@@ -103,6 +107,7 @@ class CellView:
         for name, node in self.places.items():
             set_matrix(node, frames[name])
         set_matrix(self.carrier, self.carried(frames))
+        self.robot.place(frames["base"], self.poses[self.pose], self.pose)
 
     def carried(self, frames):
         """How the part has moved in the cell since the first pose; it lies as drawn there."""

@@ -382,6 +382,33 @@ class ExportJob(Command):
             api.export_job(active_job(), path)
 
 
+class ExportProgram(Command):
+    NAME = "BeltGrinding_ExportProgram"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExportProgram", "Export robot program...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExportProgram",
+        "Writes the selected robot path as KRL, RAPID, URScript or CSV",
+    )
+
+    def run(self):
+        job = active_job()
+        paths = [o for o in job.Group if type_of(o) == robot_path.RobotPath.TYPE]
+        selected = [o for o in Gui.Selection.getSelection(job.Document.Name) if o in paths] or paths
+        if len(selected) != 1:
+            raise InputError(
+                translate("BeltGrinding", "Select the robot path that is to be written.")
+            )
+        title = translate("BeltGrinding", "Export robot program")
+        kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;CSV (*.csv)"
+        path, kind = QtGui.QFileDialog.getSaveFileName(
+            Gui.getMainWindow(), title, f"{selected[0].Label}.src", kinds
+        )
+        if path:
+            suffix = kind.rpartition("*")[2].rstrip(")")
+            path = path if Path(path).suffix else path + suffix
+            api.export_program(selected[0], path)
+
+
 class ImportResult(Command):
     NAME = "BeltGrinding_ImportResult"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportResult", "Import result...")
@@ -422,6 +449,7 @@ MORE = (
     Contact,
     ReadAgain,
     OpenJob,
+    ExportProgram,
     ExportJob,
     ImportResult,
     ExampleBlade,

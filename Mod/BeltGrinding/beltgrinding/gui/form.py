@@ -195,6 +195,9 @@ class FrameField(QtGui.QWidget):
         for i, (name, value) in enumerate(zip("XYZABC", (*placement.Base, *angles))):
             field = quantity_field(Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
             field.setMinimumWidth(MINIMUM_WIDTH // 2)
+            # Without its buttons a narrow panel shows the number whole, from its sign on.
+            field.setProperty("buttonSymbols", 2)
+            field.findChild(QtGui.QLineEdit).setCursorPosition(0)
             field.setObjectName(name)
             field.setToolTip(name)
             field.connect(field, QtCore.SIGNAL("valueChanged(double)"), self._changed)

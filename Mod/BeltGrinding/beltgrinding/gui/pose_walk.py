@@ -59,8 +59,13 @@ class PoseWalk(QtGui.QWidget):
         self._listen(document)
         self.choose(0)
 
+    def path(self):
+        """The RobotPath that is walked."""
+        return self.paths[max(self.program.currentIndex(), 0)]
+
     def choose(self, index):
         """Walks another program, from its first pose."""
+        self.view.robot.followed = None
         arrays = self.paths[index].Proxy.arrays(self.paths[index])
         self.view.set_path(arrays["frames"])
         count = len(arrays["frames"])

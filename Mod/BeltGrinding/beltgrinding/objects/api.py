@@ -14,6 +14,7 @@ import Part
 from .. import InputError, job as jobs
 from ..examples import blade
 from ..poses import listed_poses
+from ..programs import ProgramError
 from ..result import Result, write_whole
 from . import (
     belt as belts,
@@ -157,6 +158,18 @@ def make_raster(job, faces=(), compute=True, **properties):
             raster_path.generate(path)
             path.recompute()
     return path
+
+
+def export_program(path, file, **options):
+    """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
+
+    Poses are written as they are, arcs as the chords they were cut into; the robot's tool and base
+    come from the belt machine where it has a robot. ``options``: of ``programs.write_program``.
+    """
+    try:
+        return robot_path.write(path, file, **options)
+    except ProgramError as error:
+        raise InputError(str(error)) from None
 
 
 def simulate(job, context=None, write_to=None):

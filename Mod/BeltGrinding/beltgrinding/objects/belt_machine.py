@@ -86,6 +86,10 @@ class BeltMachine(Proxy):
             job["robot"][key] = placement_to_job(getattr(obj, name))
         return job
 
+    def robot(self, obj):
+        """The part of a job under 'robot'."""
+        return self.to_job(obj)["robot"]
+
     def cell(self, obj):
         """The cell's frames as core.ToolPath takes them: 4 x 4 in mm, by name."""
         cell = {"holding": obj.Holding}

@@ -9,8 +9,9 @@ import Path
 
 from .. import InputError, core, frames
 from ..poses import DEFAULT_FEED
-from ..programs import ProgramError, read_program
+from ..programs import Motion, ProgramError, read_program, write_program
 from . import freecad_path
+from .geometry import matrix
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
 
@@ -193,3 +194,31 @@ def load_program(obj, path, **values):
     obj.Language = program.language
     obj.Problems = [str(problem) for problem in program.problems]
     set_by_name(obj, values)
+
+
+def write(obj, file, **options):
+    """Writes a RobotPath as a robot program. Raises ProgramError, InputError."""
+    arrays = obj.Proxy.arrays(obj)
+    feeds, forces = arrays["feeds"], arrays["forces"]
+    if obj.FeedOverride.Value > 0:
+        feeds = np.full(len(feeds), obj.FeedOverride.Value)
+    if obj.ForceOverride.Value > 0:
+        forces = np.full(len(forces), obj.ForceOverride.getValueAs("N").Value)
+    motions = [
+        Motion(
+            "PTP" if fast else "LIN",
+            frame,
+            int(line),
+            obj.Label,
+            None if fast else float(feed),
+            float(force) if force >= 0 else None,
+        )
+        for frame, feed, force, fast, line in zip(
+            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"]
+        )
+    ]
+    if obj.Machine is not None and obj.Machine.Robot:
+        options.setdefault("tools", matrix(obj.Machine.FlangeFromTcp))
+        options.setdefault("bases", np.linalg.inv(matrix(obj.Machine.BaseFromRobot)))
+    options.setdefault("comment", f"{obj.Label}, {len(motions)} poses")
+    return write_program(file, None, motions, **options)

@@ -1,3 +1,6 @@
+#include <span>
+
+#include "inspection/colour_map.h"
 #include "inspection/deviation.h"
 #include "python/arrays.h"
 
@@ -6,6 +9,14 @@ namespace {
 
 ColourScale scale_of(double lower, double upper, double limit) {
     return {{lower, upper}, limit};
+}
+
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::span<const T> values_of(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
 }  // namespace
@@ -55,6 +66,26 @@ void bind_inspection(py::module_& m) {
         },
         py::arg("field"), py::arg("limit"),
         "(n,) uint32, 0xRRGGBBAA of the samples' standard deviation, up to limit mm.");
+    m.def(
+        "height_colours",
+        [](const Array<double>& heights, const Array<std::uint8_t>& flags, double lower,
+           double upper, double limit) {
+            return own(deviation_colours(values_of(heights), values_of(flags),
+                                         scale_of(lower, upper, limit)));
+        },
+        py::arg("heights"), py::arg("flags"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
+        "(n,) uint32, 0xRRGGBBAA of deviations in mm; on all threads.");
+    m.def(
+        "magnitude_colours",
+        [](const Array<double>& values, const Array<std::uint8_t>& flags, double limit) {
+            return own(magnitude_colours(values_of(values), values_of(flags), limit));
+        },
+        py::arg("values"), py::arg("flags"), py::arg("limit"),
+        "(n,) uint32, 0xRRGGBBAA of values without a sign, light at 0, dark at limit.");
+    m.def(
+        "face_colours",
+        [](const Array<std::uint32_t>& faces) { return own(face_colours(values_of(faces))); },
+        py::arg("faces"), "(n,) uint32, 0xRRGGBBAA, another colour for every face.");
     m.def(
         "uncertainty_scale",
         [](double limit, const std::vector<double>& values) {

@@ -1,0 +1,64 @@
+// The binding `beltgrinding_coin`: apart from the core, which must load where there is no Coin or
+// another one.
+#include <Inventor/SoDB.h>
+
+#include <span>
+
+#include "coin/so_height_field.h"
+#include "python/arrays.h"
+
+namespace {
+
+using namespace beltgrinding::python;
+using beltgrinding::InputError;
+using beltgrinding::SoHeightField;
+
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::span<const T> values(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+SoHeightField& node_at(std::uintptr_t address) {
+    SoHeightField* node = SoHeightField::at(address);
+    if (node == nullptr) throw InputError("there is no SoHeightField at this address");
+    return *node;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(beltgrinding_coin, m) {
+    m.doc() =
+        "SoHeightField in Coin's scene. A node is named by its address: int(node.this) of pivy's.";
+    m.def(
+        "register_node",
+        [] {
+            if (!SoDB::isInitialized()) return false;
+            SoHeightField::initClass();
+            return true;
+        },
+        "Tells Coin the type SoHeightField. False if the Coin that this module is linked with was "
+        "not started: the program runs another one.");
+    m.def(
+        "set_samples",
+        [](std::uintptr_t node, const Array<double>& points, const Array<float>& normals,
+           const Array<std::uint32_t>& triangles) {
+            node_at(node).setSamples(values(points), values(normals), values(triangles));
+        },
+        py::arg("node"), py::arg("points"), py::arg("normals"), py::arg("triangles"),
+        "Design points (n, 3) in mm, unit normals (n, 3), triangles (m, 3).");
+    m.def(
+        "set_heights",
+        [](std::uintptr_t node, const Array<double>& heights) {
+            node_at(node).setHeights(values(heights));
+        },
+        py::arg("node"), py::arg("heights"), "(n,) mm along the normals.");
+    m.def(
+        "set_colours",
+        [](std::uintptr_t node, const Array<std::uint32_t>& colours) {
+            node_at(node).setColours(values(colours));
+        },
+        py::arg("node"), py::arg("colours"), "(n,) uint32, 0xRRGGBBAA.");
+}

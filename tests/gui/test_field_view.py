@@ -1,0 +1,234 @@
+"""A height field in the 3D view, by our own Coin node and by Coin's stock nodes."""
+
+import pytest
+
+SCENE = """
+import os
+import FreeCAD
+import FreeCADGui as Gui
+import numpy as np
+import Part
+from PySide import QtCore
+from pivy import coin
+from beltgrinding import core, InputError
+from beltgrinding.gui.field_view import FieldView
+from support.hands import settle
+
+kind = os.environ["KIND"]
+if kind == "environment":
+    os.environ["BELTGRINDING_STOCK_NODES"] = "1"
+
+def plate(x, y, spacing):
+    shape = core.Shape.from_brep(Part.makeBox(x, y, 5).exportBrepToString())
+    return core.sample_faces(shape, [5], spacing)[0]
+
+field = plate(60, 40, 1.0)
+show = FieldView(field, stock_nodes=kind == "stock")
+assert show.own_node == (kind == "own"), "the node is not the one that was asked for"
+
+doc = FreeCAD.newDocument("field")
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+scene = view.getSceneGraph()
+scene.addChild(show.node)
+view.setCameraType("Orthographic")
+view.viewTop()
+view.fitAll()
+settle()
+
+WIDTH, HEIGHT = view.getSize()
+
+def pixel(x, y, z=5.0):
+    return view.getPointOnScreen(FreeCAD.Vector(x, y, z))
+
+def colour_at(x, y):
+    \"\"\"What is drawn at a point of the plate, (3,) from 0 to 255.\"\"\"
+    settle()
+    from PySide import QtGui
+    view.saveImage("seen.png", WIDTH, HEIGHT, "White")
+    image = QtGui.QImage("seen.png")
+    at = pixel(x, y)
+    c = QtGui.QColor(image.pixel(int(at[0]), HEIGHT - 1 - int(at[1])))
+    return np.array([c.red(), c.green(), c.blue()])
+
+def same(seen, packed, slack=6):
+    wanted = [int(packed) >> shift & 255 for shift in (24, 16, 8)]
+    assert np.abs(seen - wanted).max() <= slack, (seen, wanted)
+"""
+
+LOOK = (
+    SCENE
+    + """
+show.set_lit(False)
+left = show.points[:, 0] < 30
+colours = np.where(left, 0xFF2020FF, 0x2040FFFF).astype(np.uint32)
+show.set_colours(colours)
+same(colour_at(15, 20), 0xFF2020FF)
+same(colour_at(45, 20), 0x2040FFFF)
+# Bytes, and only a part of them other than before.
+bytes_ = np.zeros((len(colours), 4), np.uint8)
+bytes_[:, 1] = 200
+bytes_[left, 0] = 255
+bytes_[left, 1] = 32
+bytes_[left, 2] = 32
+show.set_colours(bytes_)
+same(colour_at(15, 20), 0xFF2020FF)
+same(colour_at(45, 20), 0x00C800FF)
+
+heights = np.where(left, 0.4, -0.4)
+show.set_heights(heights.astype(np.float32))
+show.colour_by("deviation", -0.05, 0.05, 0.5)
+above, below = core.colour_scale(-0.05, 0.05, 0.5, [0.4, -0.4])
+same(colour_at(15, 20), above)
+same(colour_at(45, 20), below)
+show.colour_by("removed depth", 1.0)
+removed = core.uncertainty_scale(1.0, [-0.4, 0.4])
+same(colour_at(15, 20), removed[0])
+same(colour_at(45, 20), removed[1])
+show.colour_by("pressure", 2.0, values=np.where(left, 2.0, 0.0))
+same(colour_at(15, 20), core.uncertainty_scale(2.0, [2.0])[0])
+show.colour_by("face")
+same(colour_at(15, 20), core.face_colours(field.faces)[0])
+for wrong in (
+    lambda: show.colour_by("smell"),
+    lambda: show.colour_by("pressure", 1.0),
+    lambda: show.set_heights(heights[1:]),
+    lambda: show.set_colours(colours[1:]),
+):
+    try:
+        wrong()
+    except InputError:
+        continue
+    raise AssertionError("a mistake was not refused")
+
+# Lit: a slanting view is darker than flat colour, yet of the same hue.
+show.set_colours(np.full(len(colours), 0x2040FFFF, np.uint32))
+show.set_lit(True)
+lit = colour_at(45, 20)
+assert lit[2] > lit[1] > lit[0] and lit[2] > 100, lit
+
+# Moved far up in the side view: the picture follows the heights, and so does the box.
+show.set_lit(False)
+view.viewFront()
+view.fitAll()
+show.set_heights(np.full(len(colours), 30.0))
+box = coin.SoGetBoundingBoxAction(coin.SbViewportRegion(WIDTH, HEIGHT))
+box.apply(show.node)
+assert abs(box.getBoundingBox().getMax()[2] - 35.0) < 1e-3
+"""
+)
+
+PICK = (
+    SCENE
+    + """
+for x, y in ((10.2, 10.3), (44.7, 31.1), (59.0, 1.0)):
+    at = pixel(x, y)
+    index = show.pick(view, at)
+    point = show.points[index]
+    nearest = np.linalg.norm(show.points[:, :2] - (x, y), axis=1)
+    # A pixel's width beside the best, for the pick is at whole pixels.
+    assert nearest[index] < nearest.min() + 0.2, (x, y, point)
+assert show.pick(view, pixel(80, 20)) is None
+
+# The heights count: seen at 45 degrees, a raised field is hit elsewhere.
+view.setCameraOrientation(FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 45).Q)
+view.fitAll()
+flat = show.points[show.pick(view, pixel(30, 20))]
+show.set_heights(np.full(len(show.points), 10.0))
+raised = show.points[show.pick(view, pixel(30, 20))]
+assert abs(flat[1] - 20) < 1 and abs(raised[1] - 10) < 1, (flat, raised)
+
+# Where the scene has it elsewhere, it is picked there.
+show.set_heights(np.zeros(len(show.points)))
+scene.removeChild(show.node)
+group, move = coin.SoSeparator(), coin.SoTranslation()
+move.translation = (100, 0, 0)
+group.addChild(move)
+group.addChild(show.node)
+scene.addChild(group)
+view.viewTop()
+view.fitAll()
+settle()
+point = show.points[show.pick(view, pixel(130, 20))]
+assert np.linalg.norm(point[:2] - (30, 20)) < 1, point
+"""
+)
+
+
+@pytest.mark.parametrize("kind", ("own", "stock", "environment"))
+def test_colours_and_heights_are_drawn(freecad, kind):
+    freecad.run(LOOK, window=True, KIND=kind)
+
+
+@pytest.mark.parametrize("kind", ("own", "stock"))
+def test_a_pick_gives_the_sample(freecad, kind):
+    freecad.run(PICK, window=True, KIND=kind)
+
+
+def test_several_views_and_the_end_of_one(freecad):
+    freecad.run(
+        SCENE
+        + """
+show.set_lit(False)
+show.set_colours(np.full(len(show.points), 0x2040FFFF, np.uint32))
+same(colour_at(30, 20), 0x2040FFFF)
+Gui.runCommand("Std_ViewCreate")
+settle()
+views = Gui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")
+assert len(views) == 2
+other = next(v for v in views if v.getSceneGraph() != scene)
+other.getSceneGraph().addChild(show.node)
+settle()
+other.getSceneGraph().removeChild(show.node)
+from PySide import QtGui
+window = Gui.getMainWindow().findChild(QtGui.QMdiArea)
+window.closeActiveSubWindow()
+settle()
+show.set_colours(np.full(len(show.points), 0xFF2020FF, np.uint32))
+view = Gui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")[0]
+view.redraw()
+settle()
+""",
+        window=True,
+        KIND="own",
+    )
+
+
+def test_an_address_that_is_no_node_is_refused(freecad):
+    freecad.run(
+        """
+from pivy import coin
+from beltgrinding import core
+import beltgrinding_coin
+assert beltgrinding_coin.register_node()
+cube = coin.SoCube()
+for address in (0, 12345, int(cube.this)):
+    try:
+        beltgrinding_coin.set_heights(address, [0.0])
+    except core.InputError:
+        continue
+    raise AssertionError("accepted")
+node = coin.SoType.fromName("SoHeightField").createInstance()
+try:
+    beltgrinding_coin.set_samples(int(node.this), [[0, 0, 0]], [[0, 0, 1]], [[0, 0, 1]])
+except core.InputError as error:
+    assert "names sample 1" in str(error)
+else:
+    raise AssertionError("accepted")
+""",
+        window=True,
+    )
+
+
+def test_a_coin_that_was_not_started_is_not_used(freecad):
+    """What a bundle with a Coin of its own does: ours is then another one, never started."""
+    freecad.run(
+        """
+import subprocess, sys
+code = "import beltgrinding_coin as b; assert b.register_node() is False"
+import beltgrinding, os
+path = os.pathsep.join(sys.path)
+subprocess.run(["/usr/bin/python3", "-c", code], check=True, env={**os.environ, "PYTHONPATH": path})
+""",
+        window=False,
+    )

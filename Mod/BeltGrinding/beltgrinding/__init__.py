@@ -66,6 +66,7 @@ DOCUMENT_FUNCTIONS = (
     "make_raster",
     "simulate",
     "make_deviation",
+    "make_section",
     "export_job",
     "import_result",
     "open_job",

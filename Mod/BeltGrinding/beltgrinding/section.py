@@ -56,6 +56,11 @@ def of_field(field, tolerance, point, normal):
     return {**core.section_by_plane(field, point, normal), "tolerance": tuple(tolerance)}
 
 
+def of_field_between(field, tolerance, start, end):
+    """The line on the surface of a core.HeightField between two points, as ``of_field``."""
+    return {**core.section_between(field, start, end), "tolerance": tuple(tolerance)}
+
+
 def _cut(cut, result, a, b):
     if not isinstance(result, Result):
         result = Result.read(result)

@@ -173,8 +173,6 @@ def svg(section, mode=UNROLLED, exaggeration=None):
         f'viewBox="0 0 {WIDTH} {whole:.0f}" font-family="sans-serif" font-size="12">',
         f'<rect width="{WIDTH}" height="{whole:.0f}" fill="white"/>',
         f'<text x="{LEFT}" y="20" font-size="14">{escape(title(section))}</text>',
-        f'<clipPath id="area"><rect x="{LEFT}" y="{TOP}" width="{width}" '
-        f'height="{height:.1f}"/></clipPath>',
     ]
     for value, label in _labels(x0, x1, 9):
         x = LEFT + (value - x0) * scale_x
@@ -184,7 +182,6 @@ def svg(section, mode=UNROLLED, exaggeration=None):
         y = TOP + height - (value - y0) * scale_y
         out.append(_line(LEFT, y, LEFT + width, y))
         out.append(_text(LEFT - 6, y + 4, label, "end"))
-    out.append('<g clip-path="url(#area)">')
     for layer in drawn["layers"]:
         for polygon in layer.get("polygons", ()):
             out.append(
@@ -196,7 +193,6 @@ def svg(section, mode=UNROLLED, exaggeration=None):
                 f'<polyline class="{layer["key"]}" points="{at(line)}" fill="none" {_pen(layer)} '
                 'stroke-linejoin="round"/>'
             )
-    out.append("</g>")
     out.append(
         f'<rect x="{LEFT}" y="{TOP}" width="{width}" height="{height:.1f}" fill="none" '
         'stroke="#6b7078"/>'

@@ -308,6 +308,27 @@ class Deviation(Command):
         edit(found)
 
 
+class Section(Command):
+    NAME = "BeltGrinding_Section"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Section", "Cross-section")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Section",
+        "Cuts the result: design, stock and ground profile along a plane or between two points",
+    )
+
+    def IsActive(self):
+        return super().IsActive() and child(active_job(), simulation.Simulation) is not None
+
+    def run(self):
+        from .section_dock import show_section
+
+        job = active_job()
+        with transaction(job.Document, "Cross-section") as step:
+            section = api.make_section(job)
+        if not step.failed:
+            show_section(section)
+
+
 class Contact(Command):
     NAME = "BeltGrinding_Contact"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Contact", "Contact at a pose...")
@@ -441,7 +462,7 @@ class ReadAgain(Command):
             job.Document.recompute()
 
 
-WORK = (NewJob, Stock, BeltMachine, ImportProgram, RasterPath, Cell, Simulate, Deviation)
+WORK = (NewJob, Stock, BeltMachine, ImportProgram, RasterPath, Cell, Simulate, Deviation, Section)
 MORE = (
     FollowPath,
     Belt,

@@ -4,6 +4,7 @@ from pivy import coin
 
 from .deviation_view import DeviationView
 from .icons import icon
+from .section_view import SectionView
 from .view import View
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "JobView",
     "RasterPathView",
     "RobotPathView",
+    "SectionView",
     "SimulationView",
     "StockView",
 ]

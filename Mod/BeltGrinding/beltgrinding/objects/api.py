@@ -23,6 +23,7 @@ from . import (
     job_object,
     raster_path,
     robot_path,
+    section as sections,
     simulation as results,
 )
 from . import stock as stocks
@@ -211,6 +212,38 @@ def make_deviation(job):
             found.Simulation = simulation
             job.addObject(found)
             found.Proxy.update(found)
+    job.Document.recompute()
+    return found
+
+
+def make_section(job, point=None, normal=None, start=None, end=None, **properties):
+    """Adds a cross-section of the job's simulation: by the plane through ``point`` with ``normal``, or
+    along the surface from ``start`` to ``end`` (mm, the document's frame). Without any of them: across
+    the longest side of the surface, in its middle. Raises InputError where there is nothing to cut.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None or not simulation.Fingerprint:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    field = sections.field_of(simulation)
+    if field is None:
+        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+    if (point is None) != (normal is None) or (start is None) != (end is None):
+        raise InputError("a section needs a point and a normal, or a start and an end")
+    found = job.Document.addObject("App::FeaturePython", "Section")
+    with _removed_on_error(found):
+        sections.Section(found)
+        found.Label = "Cross-section"
+        found.Simulation = simulation
+        found.Point, found.Normal = sections.first_plane(field)
+        if point is not None:
+            found.Point, found.Normal = tuple(point), tuple(normal)
+        if start is not None:
+            found.Start, found.End, found.Cut = tuple(start), tuple(end), sections.LINE
+        set_by_name(found, properties)
+        job.addObject(found)
+        found.Proxy.update(found)
+        if found.Problem:
+            raise InputError(found.Problem)
     job.Document.recompute()
     return found
 

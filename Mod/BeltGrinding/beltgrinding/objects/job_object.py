@@ -14,6 +14,7 @@ from .geometry import faces_digest, placed_shape
 from .properties import Key, add_keys, to_job
 from .proxy import Proxy, type_of
 from .robot_path import RobotPath
+from .section import Section
 from .simulation import Simulation
 from .stock import Stock
 
@@ -82,6 +83,8 @@ class BeltGrindingJob(Proxy):
             simulation.OutOfDate = stale
         for deviation in children(obj, Deviation):
             deviation.Proxy.update(deviation)
+        for section in children(obj, Section):
+            section.Proxy.update(section)
 
 
 def children(job, proxy):

@@ -1,0 +1,135 @@
+"""A cross-section of the result in the document: its plane, its figures, its line on the surface."""
+
+import json
+import os
+
+import numpy as np
+
+from .. import InputError, section as sections
+from .properties import Output, add_outputs
+from .proxy import Proxy
+
+PLANE, LINE = "plane", "line"
+SETTINGS = (
+    ("Cut", "Enumeration", "a plane, or the line on the surface from Start to End"),
+    ("Point", "VectorDistance", "of the plane"),
+    ("Normal", "Vector", "of the plane"),
+    ("Start", "VectorDistance", "where the line begins"),
+    ("End", "VectorDistance", "where the line ends"),
+)
+OUTPUTS = (
+    Output("Length", "Distance", "Figures", "of the section, without gaps"),
+    Output("Pieces", "Integer", "Figures", "uninterrupted lines on one face"),
+    Output("Minimum", "Distance", "Figures", "of the deviation along the section"),
+    Output("Maximum", "Distance", "Figures", "of the deviation along the section"),
+    Output("Mean", "Distance", "Figures", "of the deviation, by length"),
+    Output("RootMeanSquare", "Distance", "Figures", "of the deviation, by length"),
+    Output("RemovedMean", "Distance", "Figures", "depth removed, by length"),
+    Output("InTolerance", "Float", "Figures", "share of the length in tolerance, percent"),
+    Output("OutOfDate", "Bool", "Figures", "an input of the simulation has changed since"),
+    Output("Problem", "String", "Figures", "why there is no section; else empty"),
+    Output("Line", "VectorList", "Section", "the ground profile in space", True),
+    Output("LineCounts", "IntegerList", "Section", "points of each piece of it", True),
+    Output("Shown", "String", "Section", "what was cut, and how", True),
+)
+_fields = {}  # the last field that was read, by the result it is of
+
+
+def field_of(simulation):
+    """core.HeightField of a Simulation, kept for the next call; None if there is none."""
+    path = simulation.HeightField
+    if not path or not os.path.exists(path):
+        return None
+    key = (path, simulation.Fingerprint, simulation.WallTime, os.stat(path).st_mtime_ns)
+    if key not in _fields:
+        _fields.clear()
+        _fields[key] = simulation.Proxy.field(simulation)
+    return _fields[key]
+
+
+def forget_field():
+    """Frees the field that ``field_of`` keeps."""
+    _fields.clear()
+
+
+class Section(Proxy):
+    """Proxy of the App::FeaturePython; cuts what its ``Simulation`` holds."""
+
+    TYPE = "BeltGrinding::Section"
+    VIEW = "SectionView"
+
+    def add_properties(self, obj):
+        if "Simulation" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyLink", "Simulation", "Section", "the result that is cut")
+            obj.setEditorMode("Simulation", 1)
+        for name, kind, text in SETTINGS:
+            if name not in obj.PropertiesList:
+                obj.addProperty(f"App::Property{kind}", name, "Section", text)
+                if name == "Cut":
+                    obj.Cut = [PLANE, LINE]
+        add_outputs(obj, OUTPUTS)
+
+    def execute(self, obj):
+        self.update(obj)
+
+    def cut(self, obj):
+        """The section as plain data (``beltgrinding.section``). Raises InputError."""
+        simulation, job = obj.Simulation, obj.getParentGroup()
+        if simulation is None or job is None:
+            raise InputError(f"{obj.Label}: belongs to no simulation; make a new one")
+        field = field_of(simulation)
+        if field is None:
+            raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+        tolerance = (job.ToleranceLower.Value, job.ToleranceUpper.Value)
+        if obj.Cut == LINE:
+            return sections.of_field_between(field, tolerance, obj.Start, obj.End)
+        return sections.of_field(field, tolerance, obj.Point, obj.Normal)
+
+    def update(self, obj):
+        """Cuts again if the result, the plane or the tolerance is another one. What cannot be cut
+        leaves no line, and its reason in ``Problem``.
+        """
+        simulation, job = obj.Simulation, obj.getParentGroup()
+        if simulation is None or job is None or not simulation.Fingerprint:
+            return
+        if obj.OutOfDate != simulation.OutOfDate:
+            obj.OutOfDate = simulation.OutOfDate
+        place = (obj.Start, obj.End) if obj.Cut == LINE else (obj.Point, obj.Normal)
+        tolerance = [job.ToleranceLower.Value, job.ToleranceUpper.Value]
+        result = [simulation.Fingerprint, simulation.WallTime]
+        shown = json.dumps([result, tolerance, obj.Cut, *map(list, place)])
+        if shown == obj.Shown:
+            return
+        try:
+            show(obj, self.cut(obj))
+        except InputError as error:
+            obj.Line, obj.LineCounts, obj.Problem = [], [], str(error)
+        obj.Shown = shown
+
+
+def show(obj, section):
+    """Puts a section's figures and its line into the object."""
+    figures = sections.summary(section)
+    deviation = figures.get("deviation_mm", {})
+    obj.Length, obj.Pieces = figures["length_mm"], figures["pieces"]
+    obj.Minimum, obj.Maximum = deviation.get("min", 0.0), deviation.get("max", 0.0)
+    obj.Mean, obj.RootMeanSquare = deviation.get("mean", 0.0), deviation.get("rms", 0.0)
+    obj.RemovedMean = figures.get("removed_mean_mm", 0.0)
+    obj.InTolerance = 100.0 * figures.get("in_tolerance_share", 0.0)
+    lines = [
+        piece["point"] + np.nan_to_num(piece["height"])[:, None] * piece["normal"]
+        for piece in section["pieces"]
+    ]
+    obj.LineCounts = [len(line) for line in lines]
+    obj.Line = [tuple(point) for point in np.vstack(lines).tolist()]
+    obj.Problem = ""
+
+
+def first_plane(field):
+    """(point, normal) of a plane across the longest side of the field's box, through a sample in the
+    middle: it always meets the surface.
+    """
+    points = field.points
+    axis = int(np.argmax(np.ptp(points, axis=0)))
+    middle = points[np.argsort(points[:, axis])[len(points) // 2]]
+    return tuple(middle.tolist()), tuple(np.eye(3)[axis].tolist())

@@ -68,6 +68,12 @@ def main():
     hands.press("Deviation")
     take("workbench-deviation")
     hands.press("OK")
+    hands.menu("Cross-section")
+    hands.field("sectionKind").setCurrentIndex(2)
+    Gui.SendMsgToActiveView("ViewFit")
+    take("workbench-section")
+    hands.field("BeltGrinding_SectionDock").close()
+    doc.Section.ViewObject.Visibility = False
     job = doc.BeltGrindingJob
     job.Law, job.WearModel, job.WearScale = "local", "exponential", 40000
     calibration = {

@@ -43,6 +43,13 @@ std::uint32_t ramp(const std::array<Colour, 3>& stops, double t) {
     return pack({a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)});
 }
 
+/// Place on a ramp of the step in which t in [0, 1] lies; the first and the last are its ends.
+double stepped(double t, int bands) {
+    if (bands == 1) return 0.5;
+    const double step = std::floor(std::clamp(t, 0.0, 1.0) * bands);
+    return std::min(step, bands - 1.0) / (bands - 1.0);
+}
+
 void validate(const Tolerance& tolerance) {
     if (!std::isfinite(tolerance.lower) || !std::isfinite(tolerance.upper) ||
         tolerance.lower > tolerance.upper) {
@@ -148,13 +155,14 @@ std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double 
 
 std::uint32_t ColourScale::colour(double deviation) const {
     if (!std::isfinite(deviation)) return missed_colour();
+    const auto step = [this](double t) { return bands > 0 ? stepped(t, bands) : t; };
     if (deviation > tolerance.upper) {
         return ramp(kAbove,
-                    (deviation - tolerance.upper) / std::max(limit - tolerance.upper, 1e-9));
+                    step((deviation - tolerance.upper) / std::max(limit - tolerance.upper, 1e-9)));
     }
     if (deviation < tolerance.lower) {
         return ramp(kBelow,
-                    (tolerance.lower - deviation) / std::max(limit + tolerance.lower, 1e-9));
+                    step((tolerance.lower - deviation) / std::max(limit + tolerance.lower, 1e-9)));
     }
     return pack(kGood);
 }

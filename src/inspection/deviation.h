@@ -39,6 +39,7 @@ DeviationStatistics deviation_statistics(const HeightField& field, const Toleran
 struct ColourScale {
     Tolerance tolerance;
     double limit = 0.5;  ///< mm, deviation at which the ramps end
+    int bands = 0;       ///< equal steps of each ramp; 0: without steps
 
     /// 0xRRGGBBAA (alpha 255: opaque).
     std::uint32_t colour(double deviation) const;

@@ -7,8 +7,8 @@
 namespace beltgrinding::python {
 namespace {
 
-ColourScale scale_of(double lower, double upper, double limit) {
-    return {{lower, upper}, limit};
+ColourScale scale_of(double lower, double upper, double limit, int bands = 0) {
+    return {{lower, upper}, limit, bands};
 }
 
 template <class T>
@@ -54,11 +54,11 @@ void bind_inspection(py::module_& m) {
         "Area-weighted statistics of the deviation, mm, mm2, mm3.");
     m.def(
         "deviation_colours",
-        [](const HeightField& field, double lower, double upper, double limit) {
-            return own(deviation_colours(field, scale_of(lower, upper, limit)));
+        [](const HeightField& field, double lower, double upper, double limit, int bands) {
+            return own(deviation_colours(field, scale_of(lower, upper, limit, bands)));
         },
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
-        "(n,) uint32, 0xRRGGBBAA.");
+        py::arg("bands") = 0, "(n,) uint32, 0xRRGGBBAA. bands: steps of each ramp; 0: none.");
     m.def(
         "uncertainty_colours",
         [](const HeightField& field, double limit) {
@@ -96,14 +96,14 @@ void bind_inspection(py::module_& m) {
         py::arg("limit"), py::arg("values"), "Colours of standard deviations, for a legend.");
     m.def(
         "colour_scale",
-        [](double lower, double upper, double limit, const std::vector<double>& values) {
+        [](double lower, double upper, double limit, const std::vector<double>& values, int bands) {
             std::vector<std::uint32_t> colours;
             for (const double v : values)
-                colours.push_back(scale_of(lower, upper, limit).colour(v));
+                colours.push_back(scale_of(lower, upper, limit, bands).colour(v));
             return own(std::move(colours));
         },
         py::arg("lower"), py::arg("upper"), py::arg("limit"), py::arg("values"),
-        "Colours 0xRRGGBBAA of deviations, for a legend.");
+        py::arg("bands") = 0, "Colours 0xRRGGBBAA of deviations, for a legend.");
     m.def(
         "deviation_ply",
         [](const HeightField& field, double lower, double upper, double limit, bool ground) {

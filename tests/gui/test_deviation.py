@@ -37,3 +37,53 @@ def test_the_colours_survive_reopening(freecad, demo):
     freecad.run(REOPEN, window=True, DOCUMENT=demo / "deviation.FCStd", PICTURE=picture)
     brown, blue = coloured(picture)
     assert brown > 1000 and blue > 400
+
+
+def test_the_colours_end_where_the_panel_says(freecad):
+    freecad.run(
+        """
+import numpy as np
+from support.hands import *
+from beltgrinding.gui.legend import label_values
+
+job = prepare()
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+menu("Deviation")
+deviation, field_ = doc.Deviation, doc.Simulation.Proxy.field(doc.Simulation)
+type_in("ColourLimit", "0.3 mm")
+assert deviation.ColourLimit.Value == 0.3
+limits = window.findChildren(QtGui.QWidget, "ColourLimit")
+field("Bounds").setCurrentIndex(1)  # by tolerance
+settle()
+assert not any(w.isVisible() for w in limits)
+assert abs(deviation.ColourLimit.Value - 0.25) < 1e-9  # 5 x 0.05
+type_in("TimesTolerance", "3")
+assert abs(deviation.ColourLimit.Value - 0.15) < 1e-9
+field("Bounds").setCurrentIndex(2)  # by percentile
+settle()
+type_in("Percentile", "30")
+limit = deviation.ColourLimit.Value
+share = field_.areas[np.abs(field_.height) <= limit + 1e-12].sum() / field_.areas.sum()
+assert 0.05 < limit < 0.2 and abs(share - 0.3) < 0.01, (limit, share)
+type_in("Percentile", "10")
+assert abs(deviation.ColourLimit.Value - 1.01 * 0.05) < 1e-9  # outside of the tolerance
+type_in("Percentile", "99")
+smooth = len(set(deviation.VertexColors))
+field("Bands").setValue(4)
+settle()
+assert smooth > 50 and len(set(deviation.VertexColors)) == 5  # four above and the band
+press("OK")
+doc.undo()
+assert deviation.Bounds == "by hand" and deviation.Bands == 0
+assert abs(deviation.ColourLimit.Value - 0.5) < 1e-9
+
+values = label_values(-0.05, 0.05, 0.25, 4)
+assert {round(v, 9) for v in values} == {-0.25, -0.2, -0.15, -0.1, -0.05, 0.05, 0.1, 0.15, 0.2, 0.25}
+assert len(label_values(-0.001, 0.001, 1.0, 20)) < 32  # not over one another
+""",
+        window=True,
+    )

@@ -99,6 +99,48 @@ TEST(ColourScale, AboveBelowAndGoodAreToldApartByTheColourBlind) {
     }
 }
 
+constexpr std::array<double, 9> kProtan{0.152286, 1.052583,  -0.204868, 0.114503, 0.786281,
+                                        0.099216, -0.003882, -0.048116, 1.051998};
+constexpr std::array<double, 9> kDeutan{0.367322, 0.860646,  -0.227968, 0.280085, 0.672501,
+                                        0.047413, -0.011820, 0.042940,  0.968881};
+constexpr std::array<double, 9> kTritan{1.255528, -0.076749, -0.178779, -0.078411, 0.930809,
+                                        0.147602, 0.004733,  0.691367,  0.303900};
+constexpr std::array<double, 9> kNormal{1, 0, 0, 0, 1, 0, 0, 0, 1};
+constexpr double kToldApart = 5.0;  // CIE76 distance; about twice what is just noticed
+
+TEST(ColourScale, NeighbouringStepsAreToldApartByTheColourBlind) {
+    const auto distance = [](const Rgb& a, const Rgb& b) {
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    for (const auto& eye : {kNormal, kProtan, kDeutan, kTritan}) {
+        for (int bands = 2; bands <= 8; ++bands) {
+            const ColourScale scale{{-0.05, 0.05}, 0.5, bands};
+            const double step = 0.45 / bands;
+            for (const double sign : {1.0, -1.0}) {
+                Rgb last = lab(seen_by(eye, linear(scale.colour(0.0))));
+                for (int k = 0; k < bands; ++k) {
+                    const double d = 0.05 + (k + 0.5) * step;
+                    const Rgb here = lab(seen_by(eye, linear(scale.colour(sign * d))));
+                    const Rgb other = lab(seen_by(eye, linear(scale.colour(-sign * d))));
+                    EXPECT_GT(distance(here, last), kToldApart) << bands << " " << sign * d;
+                    EXPECT_GT(distance(here, other), 2 * kToldApart) << bands << " " << sign * d;
+                    last = here;
+                }
+            }
+        }
+    }
+}
+
+TEST(ColourScale, StepsAreEqualAndReachBothEnds) {
+    const ColourScale scale{{-0.1, 0.1}, 0.5, 4}, smooth{{-0.1, 0.1}, 0.5};
+    EXPECT_EQ(scale.colour(0.11), scale.colour(0.19));
+    EXPECT_NE(scale.colour(0.19), scale.colour(0.21));
+    EXPECT_EQ(scale.colour(-0.41), scale.colour(-7.0));
+    EXPECT_EQ(scale.colour(0.45), smooth.colour(0.5));
+    EXPECT_EQ(scale.colour(0.0), smooth.colour(0.0));
+    EXPECT_EQ(ColourScale({{-0.1, 0.1}, 0.5, 1}).colour(0.11), smooth.colour(0.3));
+}
+
 TEST(ColourScale, OneCalmColourInsideTheBand) {
     const ColourScale scale{{-0.05, 0.1}, 0.5};
     EXPECT_EQ(scale.colour(-0.05), scale.colour(0.1));

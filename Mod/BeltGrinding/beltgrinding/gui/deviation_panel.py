@@ -20,15 +20,25 @@ class DeviationPanel(Panel):
         form.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         form.changed = self.update
         self.body.addWidget(form)
+        colours = Form(obj, translate("BeltGrinding", "Colours"))
+        colours.changed = self.update
+        ends = {
+            "by hand": translate("BeltGrinding", "by hand"),
+            "by tolerance": translate("BeltGrinding", "by tolerance"),
+            "by percentile": translate("BeltGrinding", "by percentile"),
+        }
+        colours.add("Bounds", translate("BeltGrinding", "Colours end"), ends)
+        colours.add("TimesTolerance", translate("BeltGrinding", "Times the limit"))
+        colours.add("Percentile", translate("BeltGrinding", "Percentile"), unit="%")
+        colours.add("Bands", translate("BeltGrinding", "Steps of each ramp"))
+        self.colours, self.tolerance = colours, form
+        self.body.addWidget(colours)
         if obj.ExpectedInTolerance > 0.0:
-            colours = Form(obj, translate("BeltGrinding", "Colours"))
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
                 "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
             }
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
-            colours.changed = self.update
-            self.body.addWidget(colours)
         self.table = QtGui.QTableWidget(0, 2)
         self.table.setObjectName("statistics")
         self.table.horizontalHeader().hide()
@@ -43,6 +53,13 @@ class DeviationPanel(Panel):
     def update(self):
         """Colours and figures anew."""
         obj = self.obj
+        rows = {"by tolerance": ["TimesTolerance"], "by percentile": ["Percentile"]}
+        always = [
+            name for name in self.colours.rows if name not in ("TimesTolerance", "Percentile")
+        ]
+        self.colours.show_rows([*always, *rows.get(obj.Bounds, [])])
+        by_hand = ["ColourLimit"] if obj.Bounds == "by hand" else []
+        self.tolerance.show_rows(["ToleranceLower", "ToleranceUpper", *by_hand])
         try:
             self.check()
         except InputError as error:

@@ -2,7 +2,7 @@
 
 from pivy import coin
 
-from ..objects.deviation import UNCERTAINTY
+from ..objects.deviation import UNCERTAINTY, bands_of
 from . import legend
 from .compat import make_matt
 from .part_context import rest_of_part
@@ -14,6 +14,7 @@ LEGEND = (
     "ToleranceUpper",
     "ColourLimit",
     "UncertaintyLimit",
+    "Bands",
     "VertexColors",
     "OutOfDate",
 )
@@ -79,7 +80,7 @@ class DeviationView(View):
 
     def update_legend(self):
         obj = self.view.Object
-        if not hasattr(obj, "OutOfDate") or obj.ColourLimit.Value <= 0:
+        if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
             return
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         self.legend.removeAllChildren()
@@ -87,7 +88,7 @@ class DeviationView(View):
             limit = obj.UncertaintyLimit.Value
             self.legend.addChild(legend.uncertainty_node(limit, obj.OutOfDate))
         else:
-            self.legend.addChild(legend.node(*scale, obj.OutOfDate))
+            self.legend.addChild(legend.node(*scale, obj.OutOfDate, bands_of(obj)))
         self.legend.whichChild = -3 if self.view.Visibility else -1
 
     def update_rest(self):

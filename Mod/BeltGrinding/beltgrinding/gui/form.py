@@ -83,6 +83,10 @@ class Form(QtGui.QGroupBox):
             widget = QtGui.QCheckBox()
             widget.setChecked(getattr(self.obj, name))
             widget.toggled.connect(lambda on: self._set(name, on))
+        elif kind == "App::PropertyInteger":
+            widget = QtGui.QSpinBox()
+            widget.setValue(getattr(self.obj, name))
+            widget.valueChanged.connect(lambda value: self._set(name, value))
         elif kind == "App::PropertyLinkGlobal":
             widget = self._link(name, choices or [])
         elif kind == "App::PropertyFile":

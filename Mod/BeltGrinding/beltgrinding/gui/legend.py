@@ -8,21 +8,39 @@ from .compat import translate
 BAR_STEPS = 120
 # In the legend's own coordinates: the view is 2 high, its middle 0.
 LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
+LABEL_GAP = 0.07  # of half the bar: a line of text
 
 
 def _rgb(packed):
     return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
 
 
-def node(lower, upper, limit, out_of_date=False):
-    """The legend of the deviation: (mm) tolerance band, and where the ramps end."""
+def node(lower, upper, limit, out_of_date=False, bands=0):
+    """The legend of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
+    each ramp.
+    """
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     labels = {
-        _height(value, limit): f"{value:+.3f}"
-        for value in (-limit, -0.5 * limit, lower, upper, 0.5 * limit, limit)
+        _height(value, limit): f"{value:+.3f}" for value in label_values(lower, upper, limit, bands)
     }
-    colours = core.colour_scale(lower, upper, limit, values)
+    colours = core.colour_scale(lower, upper, limit, values, bands=bands)
     return _legend(colours, labels, translate("BeltGrinding", "deviation, mm"), out_of_date)
+
+
+def label_values(lower, upper, limit, bands=0):
+    """The deviations (mm) that are written: ends, limits, and borders of the bands or halves; none
+    so near to another that they would overlap.
+    """
+    between = (-0.5 * limit, 0.5 * limit)
+    if bands:
+        steps = [k / bands for k in range(1, bands)]
+        between = [upper + t * (limit - upper) for t in steps]
+        between += [lower - t * (limit + lower) for t in steps]
+    values = []
+    for value in (-limit, limit, lower, upper, *between):
+        if all(abs(value - other) > LABEL_GAP * limit for other in values):
+            values.append(value)
+    return values
 
 
 def uncertainty_node(limit, out_of_date=False):

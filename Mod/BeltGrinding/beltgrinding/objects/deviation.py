@@ -5,6 +5,7 @@ import json
 import math
 
 import Mesh
+import numpy as np
 
 from .. import InputError, core
 from ..result import colour_scale
@@ -12,6 +13,19 @@ from .properties import Output, add_outputs
 from .proxy import Proxy
 
 DEVIATION, UNCERTAINTY = "deviation", "uncertainty"
+BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
+SETTINGS = (  # name, kind, first value, text
+    ("Bounds", "Enumeration", [BY_HAND, BY_TOLERANCE, BY_PERCENTILE], "where the ramps end"),
+    (
+        "TimesTolerance",
+        "Float",
+        5.0,
+        "by tolerance: the ramps end at so many times the wider limit",
+    ),
+    ("Percentile", "Float", 99.0, "by percentile: so much of the area lies between the ends, %"),
+    ("Bands", "Integer", 0, "steps of each ramp; 0: without steps"),
+)
+MOST_BANDS = 20
 OUTPUTS = (
     Output("VertexColors", "ColorList", "Deviation", "one colour per sample", True),
     Output(
@@ -72,6 +86,10 @@ class Deviation(Proxy):
             text = "what the colours show; uncertainty: of a calibrated law"
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
             obj.ColourBy = [DEVIATION, UNCERTAINTY]
+        for name, kind, value, text in SETTINGS:
+            if name not in obj.PropertiesList:
+                obj.addProperty(f"App::Property{kind}", name, "Deviation", text)
+                setattr(obj, name, value)
         add_outputs(obj, OUTPUTS)
 
     def execute(self, obj):
@@ -88,14 +106,15 @@ class Deviation(Proxy):
 
         scale = colour_scale({"inspection": inspection(job)})
         result = [simulation.Fingerprint, simulation.WallTime]
+        bounds = [obj.Bounds, obj.TimesTolerance, obj.Percentile, obj.Bands]
         before = json.loads(obj.Shown or "[null, null]")
-        if before == [result, [*scale, obj.ColourBy]]:
+        if before == [result, [*scale, obj.ColourBy, *bounds]]:
             return
         field = simulation.Proxy.field(simulation)
         if field is None:
             raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
         show(obj, field, scale, before[0] != result)
-        obj.Shown = json.dumps([result, [*scale, obj.ColourBy]])
+        obj.Shown = json.dumps([result, [*scale, obj.ColourBy, *bounds]])
 
 
 def _round_up(value):
@@ -106,8 +125,37 @@ def _round_up(value):
     return next(step * power for step in (1, 2, 5, 10) if step * power >= 0.999 * value)
 
 
+def bounded(obj, field, scale):
+    """``scale`` with the end of the ramps as the object's ``Bounds`` say, outside of the tolerance."""
+    lower, upper, limit = scale
+    widest = max(abs(lower), abs(upper))
+    if obj.Bounds == BY_TOLERANCE:
+        limit = obj.TimesTolerance * widest
+    elif obj.Bounds == BY_PERCENTILE:
+        limit = percentile(field, obj.Percentile)
+    return lower, upper, max(limit, 1.01 * widest, 1e-4)
+
+
+def percentile(field, share):
+    """|deviation| in mm that ``share`` percent of the area lie within; missed samples are left out."""
+    found = (field.flags & core.MISSED) == 0
+    height, area = np.abs(field.height[found]), field.areas[found].astype(float)
+    if not len(height):
+        return 0.0
+    order = np.argsort(height)
+    so_far = np.cumsum(area[order])
+    k = np.searchsorted(so_far, np.clip(share, 0.0, 100.0) / 100.0 * so_far[-1])
+    return float(height[order[min(k, len(order) - 1)]])
+
+
+def bands_of(obj):
+    """The steps of each ramp; 0: none."""
+    return min(max(obj.Bands, 0), MOST_BANDS)
+
+
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
+    scale = bounded(obj, field, scale)
     statistics = core.deviation_statistics(field, *scale[:2])
     sd = statistics.get("sd_p95", 0.0)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
@@ -116,7 +164,7 @@ def show(obj, field, scale, new_mesh=True):
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
         colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
     else:
-        colours = core.deviation_colours(field, *scale)
+        colours = core.deviation_colours(field, *scale, bands=bands_of(obj))
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
     for name, key in STATISTICS.items():
         setattr(obj, name, statistics[key])

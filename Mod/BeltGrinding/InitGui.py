@@ -13,17 +13,20 @@ class BeltGrindingWorkbench(FreeCADGui.Workbench):
         from beltgrinding.gui.icons import icon
 
         self.__class__.Icon = icon("BeltGrinding_Workbench")
+        self.work = []
 
     def Initialize(self):
-        from beltgrinding.gui import commands
+        from beltgrinding.gui import start
 
-        work, more = commands.register()
-        self.appendToolbar("Belt grinding", work)
-        self.appendMenu("&Belt grinding", [*work, "Separator", *more])
-        self.work = work
+        self.work, more = start.register()
+        if self.work:
+            self.appendToolbar("Belt grinding", self.work)
+            more = [*self.work, "Separator", *more]
+        self.appendMenu("&Belt grinding", more)
 
     def ContextMenu(self, recipient):
-        self.appendContextMenu("Belt grinding", self.work)
+        if self.work:
+            self.appendContextMenu("Belt grinding", self.work)
 
     def GetClassName(self):
         return "Gui::PythonWorkbench"

@@ -15,13 +15,14 @@ TIME_LIMIT = 240  # s
 
 
 class FreeCad:
-    """A home folder, its FreeCAD with our workbench installed by a link."""
+    """A home folder, its FreeCAD with our workbench installed by a link unless told otherwise."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, link=True):
         self.folder = Path(folder)
         mods = self.folder / ".local" / "share" / "FreeCAD" / "Mod"
         mods.mkdir(parents=True)
-        (mods / "BeltGrinding").symlink_to(MOD)
+        if link:
+            (mods / "BeltGrinding").symlink_to(MOD)
         self.runs = 0
 
     def run(self, body, window=False, **variables):

@@ -4,46 +4,31 @@
 with document objects inside FreeCAD. Units: millimetre, newton, second, megapascal.
 """
 
-import os
-import sys
 from pathlib import Path
 
 
-def _find_core():
-    """Imports ``beltgrinding_core``: installed beside this package, or from a checkout's build."""
-    here = Path(__file__).resolve().parent
-    places = [here.parent, here.parents[2] / "build" / "release" / "python"]
-    if "BELTGRINDING_BUILD" in os.environ:
-        places.insert(0, Path(os.environ["BELTGRINDING_BUILD"]) / "python")
-    for place in places:
-        if any(place.glob("beltgrinding_core*.so")) and str(place) not in sys.path:
-            sys.path.append(str(place))
-    try:
-        import beltgrinding_core
-    except ImportError as error:
-        looked = ", ".join(str(place) for place in places)
-        raise ImportError(
-            f"The simulator's library beltgrinding_core cannot be loaded ({error}). Looked in: "
-            f"{looked}. Build it (tools/test does) or install the workbench for this Python, "
-            f"{sys.version.split()[0]}."
-        ) from error
-    return beltgrinding_core
-
-
-core = _find_core()
-InputError = core.InputError
-Cancelled = core.Cancelled
-RunContext = core.RunContext
-__version__ = core.VERSION
+# Taken from the core when first asked for: without a core that fits, the workbench must still be able
+# to say so.
+CORE_NAMES = {name: name for name in ("InputError", "Cancelled", "RunContext")}
+CORE_NAMES["__version__"] = "VERSION"
 
 
 def resources() -> Path:
     """The folder Resources, installed or of a checkout."""
+    return _folder("Resources")
+
+
+def documentation() -> Path:
+    """The folder docs, installed or of a checkout."""
+    return _folder("docs")
+
+
+def _folder(name):
     here = Path(__file__).resolve()
-    for folder in (here.parents[1] / "Resources", here.parents[3] / "Resources"):
+    for folder in (here.parents[1] / name, here.parents[3] / name):
         if folder.is_dir():
             return folder
-    raise FileNotFoundError("The folder Resources is missing; install the workbench again.")
+    raise FileNotFoundError(f"The folder {name} is missing; install the workbench again.")
 
 
 def run(job, context=None):
@@ -74,6 +59,12 @@ DOCUMENT_FUNCTIONS = (
 
 
 def __getattr__(name):
+    if name == "core" or name in CORE_NAMES:
+        from . import core_library
+
+        core = globals()["core"] = core_library.load()
+        globals().update({ours: getattr(core, theirs) for ours, theirs in CORE_NAMES.items()})
+        return globals()[name]
     if name not in DOCUMENT_FUNCTIONS:
         raise AttributeError(f"module 'beltgrinding' has no attribute '{name}'")
     try:
@@ -87,4 +78,4 @@ def __getattr__(name):
 
 
 def __dir__():
-    return sorted([*globals(), *DOCUMENT_FUNCTIONS])
+    return sorted({*globals(), "core", *CORE_NAMES, *DOCUMENT_FUNCTIONS})

@@ -14,6 +14,7 @@ from ..programs import file_pattern
 from .compat import QtGui, translate
 from .icons import icon
 from .panel import edit
+from .start import tell
 
 PROGRAMS = f"Robot programs ({file_pattern()})"
 EXPAND = 2  # toggleTreeItem's modes: 0 toggle, 1 collapse, 2 expand
@@ -39,14 +40,7 @@ def report(error):
     if not isinstance(error, InputError):
         lines = traceback.format_exception(type(error), error, error.__traceback__)
         FreeCAD.Console.PrintError("".join(lines))
-    FreeCAD.Console.PrintError(f"{error}\n")
-    box = QtGui.QMessageBox(Gui.getMainWindow())
-    box.setObjectName("BeltGrinding_Error")
-    box.setIcon(QtGui.QMessageBox.Warning)
-    box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
-    box.setText(str(error))
-    box.setModal(False)
-    box.show()
+    tell(str(error))
 
 
 def expand(job):

@@ -1,0 +1,87 @@
+"""The manual: the pages of docs/ in a window of FreeCAD, with their links and pictures.
+
+Qt reads Markdown by itself, so that no browser and no network is needed.
+"""
+
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import documentation
+from .compat import QtCore, QtGui, translate
+from .icons import icon
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+SIZE = 960, 800  # of the window at first, pixels
+MARGIN = 40  # beside a picture, pixels: the page's own and the scroll bar
+
+
+class ManualView(QtGui.QTextBrowser):
+    """Shows pages; a picture is never wider than the window."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.setObjectName("BeltGrinding_ManualView")
+        self.setOpenExternalLinks(True)
+
+    def loadResource(self, kind, url):
+        content = super().loadResource(kind, url)
+        if kind != QtGui.QTextDocument.ImageResource:
+            return content
+        picture = QtGui.QImage(self.source().resolved(url).toLocalFile())
+        width = self.width() - MARGIN
+        if picture.width() <= width:
+            return picture
+        return picture.scaledToWidth(width, QtCore.Qt.SmoothTransformation)
+
+
+def show_manual(page="index.md"):
+    """Opens a page of docs/ in a window, the same one each time; returns it."""
+    window = Gui.getMainWindow()
+    dialog = window.findChild(QtGui.QDialog, "BeltGrinding_Manual")
+    if dialog is None:
+        dialog = QtGui.QDialog(window)
+        dialog.setObjectName("BeltGrinding_Manual")
+        dialog.setWindowTitle(translate("BeltGrinding", "Belt grinding: manual"))
+        dialog.resize(*SIZE)
+        view = ManualView(dialog)
+        bar = QtGui.QHBoxLayout()
+        for text, action in (
+            (translate("BeltGrinding", "Back"), view.backward),
+            (translate("BeltGrinding", "Contents"), view.home),
+        ):
+            button = QtGui.QPushButton(text, dialog)
+            button.setAutoDefault(False)
+            button.clicked.connect(action)
+            bar.addWidget(button)
+        bar.addStretch()
+        column = QtGui.QVBoxLayout(dialog)
+        column.addLayout(bar)
+        column.addWidget(view)
+    dialog.show()
+    dialog.raise_()
+    view = dialog.findChild(QtGui.QTextBrowser)
+    view.setSource(QtCore.QUrl.fromLocalFile(str(Path(documentation(), page))))
+    return dialog
+
+
+class Manual:
+    """The command."""
+
+    NAME = "BeltGrinding_Manual"
+
+    def GetResources(self):
+        return {
+            "Pixmap": icon(self.NAME),
+            "MenuText": QT_TRANSLATE_NOOP("BeltGrinding_Manual", "Help"),
+            "ToolTip": QT_TRANSLATE_NOOP(
+                "BeltGrinding_Manual", "Opens the manual: tutorial, every panel, troubleshooting"
+            ),
+        }
+
+    def IsActive(self):
+        return True
+
+    def Activated(self, index=0):
+        show_manual()

@@ -1,0 +1,54 @@
+"""The start of the workbench, also where its compiled core or a Python package is missing."""
+
+import importlib
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import core_library
+from .compat import QtGui, translate
+from .manual import Manual
+
+PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
+
+
+def register():
+    """Tells FreeCAD the commands; returns (names in the order of work, other names).
+
+    Where something that they need cannot be loaded, says so in the report view and in one message,
+    and returns the manual alone. FreeCAD calls this when the workbench is first chosen.
+    """
+    Gui.addCommand(Manual.NAME, Manual())
+    try:
+        for name in PACKAGES:
+            importlib.import_module(name)
+        from . import commands
+    except ImportError as error:
+        tell(reason(error))
+        return [], [Manual.NAME]
+    work, more = commands.register()
+    return work, [*more, Manual.NAME]
+
+
+def reason(error):
+    """An ImportError in the user's words."""
+    if error.name == core_library.NAME:
+        return str(error)
+    return translate(
+        "BeltGrinding",
+        "The belt-grinding workbench needs the Python package {name}, and this FreeCAD does not have "
+        "it ({error}). On Debian: apt install python3-{name}. Elsewhere FreeCAD's Addon Manager can "
+        "install it: Tools, Addon manager, Python packages.",
+    ).format(name=(error.name or "?").split(".")[0], error=error)
+
+
+def tell(text):
+    """An error in the report view and in a message that does not hold FreeCAD up."""
+    FreeCAD.Console.PrintError(f"{text}\n")
+    box = QtGui.QMessageBox(Gui.getMainWindow())
+    box.setObjectName("BeltGrinding_Error")
+    box.setIcon(QtGui.QMessageBox.Warning)
+    box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
+    box.setText(text)
+    box.setModal(False)
+    box.show()

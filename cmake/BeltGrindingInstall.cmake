@@ -1,0 +1,51 @@
+# `cmake --install` puts the workbench where FreeCAD finds it: the Mod folder of whoever configures.
+# Two more layouts are components, installed only by name: `addon`, the root of the release zip, and
+# `deb`, what the Debian package holds (BeltGrindingPackage.cmake).
+if(NOT DEFINED CACHE{BELTGRINDING_MOD_DIR})
+  set(mod_dir "${CMAKE_INSTALL_DATADIR}/freecad/Mod")
+  find_program(FREECADCMD_PROGRAM NAMES freecadcmd FreeCADCmd)
+  if(FREECADCMD_PROGRAM)
+    execute_process(COMMAND ${FREECADCMD_PROGRAM} ${CMAKE_SOURCE_DIR}/cmake/print_mod_folder.py
+                    INPUT_FILE /dev/null OUTPUT_VARIABLE printed ERROR_QUIET TIMEOUT 60)
+    if(printed MATCHES "Mod folder: ([^\n]+)")
+      set(mod_dir "${CMAKE_MATCH_1}")
+    endif()
+  endif()
+  set(BELTGRINDING_MOD_DIR "${mod_dir}/BeltGrinding" CACHE PATH "Where the workbench is installed")
+endif()
+
+# Installed, the workbench lies beside package.xml; in the checkout it does not.
+file(READ package.xml package_xml)
+string(REPLACE "./Mod/BeltGrinding/" "./" package_xml "${package_xml}")
+string(REPLACE "../../Resources" "Resources" package_xml "${package_xml}")
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/package.xml CONTENT "${package_xml}" @ONLY)
+
+set(modules beltgrinding_core)
+if(TARGET beltgrinding_coin)
+  list(APPEND modules beltgrinding_coin)
+endif()
+add_custom_target(beltgrinding_modules DEPENDS ${modules})  # all that an installation needs built
+
+# Beside each core stands what it was built for, so that one that does not fit can say why before it
+# is loaded: beltgrinding/core_library.py.
+cmake_host_system_information(RESULT system QUERY DISTRIB_PRETTY_NAME)
+file(GENERATE OUTPUT $<TARGET_FILE:beltgrinding_core>.json CONTENT
+     "{\"system\": \"${system}\", \"python\": \"${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}\", \
+\"opencascade\": \"${OpenCASCADE_VERSION}\"}\n")
+
+# install_workbench(FOLDER [COMPONENT name EXCLUDE_FROM_ALL]): all but the compiled modules.
+function(install_workbench folder)
+  install(DIRECTORY Mod/BeltGrinding/ DESTINATION ${folder} ${ARGN}
+          PATTERN "__pycache__" EXCLUDE PATTERN "*.so" EXCLUDE)
+  install(DIRECTORY Resources docs DESTINATION ${folder} ${ARGN})
+  install(FILES ${CMAKE_BINARY_DIR}/package.xml README.md CONTRIBUTING.md CHANGELOG.md
+          $<TARGET_FILE:beltgrinding_core>.json DESTINATION ${folder} ${ARGN})
+endfunction()
+
+install_workbench(${BELTGRINDING_MOD_DIR})
+install(FILES LICENSE DESTINATION ${BELTGRINDING_MOD_DIR})
+install(TARGETS ${modules} LIBRARY DESTINATION ${BELTGRINDING_MOD_DIR})
+
+install_workbench(. COMPONENT addon EXCLUDE_FROM_ALL)
+install(FILES LICENSE DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)
+install(TARGETS ${modules} LIBRARY DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)

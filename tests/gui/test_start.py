@@ -1,0 +1,140 @@
+"""The start of the workbench where something is missing, and its manual."""
+
+import shutil
+
+import pytest
+
+from support.freecad import MOD, ROOT, FreeCad
+
+CHOOSE = """
+from support.hands import *
+Gui.activateWorkbench("BeltGrindingWorkbench")
+settle()
+boxes = window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error")
+report = window.findChild(QtGui.QTextEdit, "Report view").toPlainText()
+"""
+
+
+@pytest.fixture
+def release(tmp_path):
+    """A FreeCAD with an unpacked release that has no core yet; (FreeCad, its folder)."""
+    freecad = FreeCad(tmp_path, link=False)
+    folder = tmp_path / ".local" / "share" / "FreeCAD" / "Mod" / "BeltGrinding-0.1.0"
+    shutil.copytree(MOD, folder, ignore=shutil.ignore_patterns("__pycache__", "*.so*"))
+    for name in ("Resources", "docs"):
+        shutil.copytree(ROOT / name, folder / name)
+    return freecad, folder
+
+
+def chosen(release, body, **variables):
+    freecad, folder = release
+    freecad.run(
+        CHOOSE + body, window=True, PYTHONPATH=str(folder), BELTGRINDING_BUILD="", **variables
+    )
+
+
+def test_a_core_for_another_python_is_named_with_the_way_out(release):
+    core = release[1] / "beltgrinding_core.cpython-37m-x86_64-linux-gnu.so"
+    core.write_bytes(b"\x7fELF of another time")
+    core.with_name(core.name + ".json").write_text(
+        '{"system": "Debian GNU/Linux 10 (buster)", "python": "3.7", "opencascade": "7.3.0"}'
+    )
+    chosen(
+        release,
+        """
+import sys
+here = f"Python {sys.version_info[0]}.{sys.version_info[1]}"
+assert len(boxes) == 1 and boxes[0].isVisible()
+for text in (boxes[0].text(), report):
+    assert f"There is none for {here}" in text, text
+    assert "Debian GNU/Linux 10 (buster): Python 3.7, OpenCASCADE 7.3.0" in text
+    assert "docs/install.md" in text and "tools/install" in text
+screenshot("message.png")
+boxes[0].close()
+Gui.activateWorkbench("PartWorkbench")
+Gui.activateWorkbench("BeltGrindingWorkbench")
+settle()
+assert not any(b.isVisible() for b in window.findChildren(QtGui.QMessageBox))
+menu("Help")
+assert "troubleshooting" in field("BeltGrinding_ManualView").toPlainText().lower()
+""",
+    )
+
+
+def test_a_core_that_the_loader_refuses_says_why(release):
+    import importlib.machinery
+
+    suffix = importlib.machinery.EXTENSION_SUFFIXES[0]
+    (release[1] / f"beltgrinding_core{suffix}").write_bytes(b"no library at all")
+    chosen(
+        release,
+        f"""
+assert len(boxes) == 1
+assert "beltgrinding_core{suffix} cannot be loaded" in boxes[0].text(), boxes[0].text()
+assert "apt install ./beltgrinding_*.deb" in report
+""",
+    )
+
+
+def test_a_core_for_another_opencascade_is_refused_before_it_is_loaded(release):
+    import importlib.machinery
+
+    core = release[1] / f"beltgrinding_core{importlib.machinery.EXTENSION_SUFFIXES[0]}"
+    core.write_bytes(b"never looked at")
+    core.with_name(core.name + ".json").write_text('{"opencascade": "6.9.1"}')
+    chosen(
+        release,
+        """
+import Part
+assert f"needs OpenCASCADE 6.9.1; this FreeCAD runs with {Part.OCC_VERSION}" in boxes[0].text()
+""",
+    )
+
+
+def test_a_missing_python_package_is_named(release):
+    (release[1] / "jsonschema.py").write_text(
+        "raise ModuleNotFoundError(\"No module named 'jsonschema'\", name='jsonschema')\n"
+    )
+    built = ROOT / "build" / "release" / "python"
+    cores = list(built.glob("beltgrinding_core*.so*"))
+    if not cores:
+        pytest.skip("the core is not built in this checkout")
+    for core in cores:
+        shutil.copy(core, release[1])
+    chosen(
+        release,
+        """
+assert len(boxes) == 1 and "apt install python3-jsonschema" in boxes[0].text(), boxes[0].text()
+""",
+    )
+
+
+def test_the_manual_leads_from_page_to_page_and_shows_its_pictures(freecad):
+    freecad.run(
+        """
+from support.hands import *
+Gui.activateWorkbench("BeltGrindingWorkbench")
+menu("Help")
+view = field("BeltGrinding_ManualView")
+home = view.toPlainText()
+view.setSource(view.source().resolved(QtCore.QUrl("workbench.md")))
+settle()
+assert "Sample spacing" in view.toPlainText()
+blocks, images = view.document().begin(), []
+while blocks.isValid():
+    it = blocks.begin()
+    while not it.atEnd():
+        form = it.fragment().charFormat()
+        if form.isImageFormat():
+            images.append(form.toImageFormat().name())
+        it += 1
+    blocks = blocks.next()
+assert images
+for name in images:
+    picture = view.loadResource(QtGui.QTextDocument.ImageResource, QtCore.QUrl(name))
+    assert 100 < picture.width() <= view.width(), name
+press("Contents")
+assert view.toPlainText() == home
+""",
+        window=True,
+    )

@@ -1,0 +1,83 @@
+"""The steps of docs/tutorial.md, as a person does them; imported inside FreeCAD.
+
+tests/gui/test_tutorial.py walks them and compares the page's figures; tools/tutorial_pictures.py walks
+them and takes its pictures.
+"""
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from support import hands
+
+
+def walk(take):
+    """Walks the tutorial; calls ``take(name)`` where it has a picture. Returns its figures, as the
+    page writes them.
+    """
+    figures = {}
+    Gui.activateWorkbench("BeltGrindingWorkbench")
+    hands.window.showMaximized()
+    hands.menu("Example: compressor blade")
+    doc = FreeCAD.ActiveDocument
+    view = Gui.ActiveDocument.ActiveView
+    view.setAnimationEnabled(False)
+    view.viewFront()
+    view.fitAll()
+    take("tutorial-blade")
+
+    open_panel(doc.RobotPath)
+    hands.field("poseNumber").setValue(100)
+    take("tutorial-pose")
+    hands.press("Cancel")
+
+    hands.menu("Simulate")
+    hands.wait(lambda: doc.getObject("Simulation") is not None, 200)
+    take("tutorial-simulation")
+    hands.press("Deviation")
+    doc.RobotPath.ViewObject.Visibility = False
+    take("tutorial-deviation")
+    figures.update(statistics())
+    hands.press("OK")
+
+    hands.menu("Belt machine")
+    hands.type_in("Force", "36 N")
+    hands.press("OK")
+    assert doc.Simulation.OutOfDate
+    take("tutorial-out-of-date")
+    figures["36 N"] = again(doc)
+    take("tutorial-more-force")
+
+    hands.menu("Belt machine")
+    hands.type_in("Force", "30 N")
+    hands.press("OK")
+    figures["30 N"] = again(doc)
+
+    hands.menu("Deviation")
+    hands.type_in("ToleranceLower", "-0.03 mm")
+    hands.type_in("ToleranceUpper", "0.03 mm")
+    figures["0.03 mm"] = statistics()["In tolerance"]
+    hands.press("Cancel")
+    return figures
+
+
+def open_panel(obj):
+    """A double click in the tree."""
+    obj.ViewObject.Proxy.doubleClicked(obj.ViewObject)
+    hands.settle()
+
+
+def again(doc):
+    """Simulates anew and looks at the deviation; returns the share in tolerance."""
+    hands.menu("Simulate")
+    hands.wait(lambda: not doc.Simulation.OutOfDate, 200)
+    hands.press("Deviation")
+    share = statistics()["In tolerance"]
+    hands.press("OK")
+    return share
+
+
+def statistics():
+    """What the deviation's panel says: {row: text}."""
+    table = hands.field("statistics")
+    rows = range(table.rowCount())
+    return {table.item(row, 0).text(): table.item(row, 1).text() for row in rows}

@@ -15,6 +15,7 @@ if(NOT DEFINED CACHE{BELTGRINDING_MOD_DIR})
 endif()
 
 # Installed, the workbench lies beside package.xml; in the checkout it does not.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS package.xml)
 file(READ package.xml package_xml)
 string(REPLACE "./Mod/BeltGrinding/" "./" package_xml "${package_xml}")
 string(REPLACE "../../Resources" "Resources" package_xml "${package_xml}")

@@ -78,6 +78,7 @@ class Manual:
             "ToolTip": QT_TRANSLATE_NOOP(
                 "BeltGrinding_Manual", "Opens the manual: tutorial, every panel, troubleshooting"
             ),
+            "CmdType": "ForEdit",  # changes nothing: stays there while a panel is open
         }
 
     def IsActive(self):

@@ -4,6 +4,7 @@ from .. import InputError
 from .compat import QtGui, translate
 from .form import Form
 from .panel import Panel
+from .probe import Probe
 
 TABLE_HEIGHT = 300  # pixels: all rows
 
@@ -47,6 +48,8 @@ class DeviationPanel(Panel):
         self.table.setMinimumHeight(TABLE_HEIGHT)
         self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
         self.body.addWidget(self.table, 1)
+        self.probe = Probe(obj)
+        self.body.addWidget(self.probe)
         self.finish()
         self.update()
 
@@ -108,6 +111,9 @@ class DeviationPanel(Panel):
             self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
         self.table.resizeColumnsToContents()
         self.table.resizeRowsToContents()
+
+    def close(self):
+        self.probe.release()
 
     def check(self):
         job = self.obj.getParentGroup()

@@ -32,6 +32,11 @@ def _coin_module():
     return beltgrinding_coin
 
 
+def has_own_node():
+    """Whether SoHeightField can be used in this program."""
+    return _coin_module() is not None
+
+
 class _OwnNode:
     """Draws with SoHeightField."""
 

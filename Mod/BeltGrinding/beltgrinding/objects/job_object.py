@@ -140,6 +140,17 @@ def shape_of(links, label):
     return (shapes[0] if len(shapes) == 1 else Part.Compound(shapes)), sorted(numbers)
 
 
+def face_name(job, index):
+    """Object.FaceN of the face that ``design`` numbers ``index`` + 1, '' if the job no longer has
+    it."""
+    for obj, _ in _by_object(job.DesignFaces):
+        count = len(obj.Shape.Faces)
+        if index < count:
+            return f"{obj.Label}.Face{index + 1}"
+        index -= count
+    return ""
+
+
 def _by_object(links):
     merged = {}
     for obj, subs in links:

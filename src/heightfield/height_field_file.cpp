@@ -1,52 +1,18 @@
-#include <hdf5.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <mutex>
 #include <utility>
 
 #include "base/error.h"
+#include "heightfield/hdf5_io.h"
 #include "heightfield/height_field.h"
 
 namespace beltgrinding {
 namespace {
 
+using namespace hdf5;
+
 constexpr int kFormat = 1;  // of the file; a reader refuses newer ones
-
-/// Owns an HDF5 identifier; negative is none.
-class Handle {
-  public:
-    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    ~Handle() {
-        if (id_ >= 0) close_(id_);
-    }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    operator hid_t() const { return id_; }
-    bool ok() const { return id_ >= 0; }
-
-  private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
-/// Thrown inside this file; becomes an InputError that names the path.
-struct FileFault {
-    std::string what;
-};
-
-void require(bool ok, const std::string& what) {
-    if (!ok) throw FileFault{what};
-}
-
-/// Debian's serial HDF5 is not thread-safe, and prints its errors unless told not to.
-std::unique_lock<std::mutex> hdf5_lock() {
-    static std::mutex mutex;
-    std::unique_lock<std::mutex> lock(mutex);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    return lock;
-}
 
 /// The arrays of a field with their names, types and row lengths, for reading and writing alike.
 template <class Field, class Visit>
@@ -62,60 +28,6 @@ void each_array(Field& f, Visit&& visit) {
 }
 
 constexpr const char* kHeightSd = "height_sd_mm";  // where a calibrated law gave it
-
-void write_scalar(hid_t file, const char* name, hid_t type, const void* value) {
-    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    const Handle attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    require(attribute.ok() && H5Awrite(attribute, type, value) >= 0, "cannot write it");
-}
-
-void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
-    const Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
-    require(attribute.ok(), std::string("has no attribute '") + name + "'");
-    const Handle space(H5Aget_space(attribute), H5Sclose);
-    require(H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, type, value) >= 0,
-            std::string("its attribute '") + name + "' is not a number");
-}
-
-template <class T>
-void write_array(hid_t file, const char* name, const std::vector<T>& data, hid_t type,
-                 hsize_t row) {
-    const hsize_t dims[2] = {data.size(), row};
-    const Handle space(H5Screate_simple(row == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-    const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Dclose);
-    require(set.ok(), "cannot write it");
-    if (!data.empty()) {
-        require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                "cannot write it; is the disk full?");
-    }
-}
-
-template <class T>
-void read_array(hid_t file, hsize_t file_bytes, const char* name, std::vector<T>& data, hid_t type,
-                hsize_t row) {
-    const std::string quoted = std::string("its array '") + name + "'";
-    const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-    require(set.ok(), std::string("has no array '") + name + "'");
-    const Handle space(H5Dget_space(set), H5Sclose);
-    hsize_t dims[2] = {0, 1};
-    const int rank = H5Sget_simple_extent_ndims(space);
-    require(rank == (row == 1 ? 1 : 2), quoted + " has the wrong shape");
-    H5Sget_simple_extent_dims(space, dims, nullptr);
-    require(dims[1] == row, quoted + " has the wrong shape");
-    // A broken header must not make us ask for memory that no such file can fill.
-    require(dims[0] <= file_bytes, quoted + " is longer than the file");
-    data.resize(dims[0]);
-    if (dims[0] > 0) {
-        require(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                quoted + " cannot be read");
-    }
-}
-
-void write_text(hid_t file, const char* name, const std::string& text) {
-    const std::vector<char> bytes(text.begin(), text.end());
-    write_array(file, name, bytes, H5T_NATIVE_CHAR, 1);
-}
 
 void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
     const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);

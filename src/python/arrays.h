@@ -50,6 +50,7 @@ void bind_height_field(py::module_& m);
 void bind_contact(py::module_& m);
 void bind_surrogate(py::module_& m);
 void bind_calibration(py::module_& m);
+void bind_recording(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
 void bind_section(py::module_& m);

@@ -270,6 +270,15 @@ void bind_simulation(py::module_& m) {
             "(n,): of the source, 0 where unknown")
         .def("duration", py::overload_cast<>(&ToolPath::duration, py::const_), "s")
         .def(
+            "frame_at",
+            [](const ToolPath& path, double time) {
+                const ToolPath::Moment moment = path.at(time);
+                return py::make_tuple(Eigen::Matrix4d(moment.base_from_tcp.matrix()), moment.pose);
+            },
+            py::arg("time"),
+            "(base_from_tcp (4, 4) mm, number from 0 of the pose that the motion leads to), time s "
+            "after the program's begin.")
+        .def(
             "work_from_contact",
             [](const ToolPath& path) {
                 const auto n = static_cast<py::ssize_t>(path.poses().size());
@@ -294,8 +303,9 @@ void bind_simulation(py::module_& m) {
         "simulate",
         [](HeightField& field, const ToolPath& path, const py::dict& wheel,
            const py::dict& compliance, const py::dict& law, const py::dict& options,
-           const RunContext* context) {
-            const SimulationOptions o = options_from(wheel, options);
+           const RunContext* context, Recording* recording) {
+            SimulationOptions o = options_from(wheel, options);
+            o.recording = recording;
             const auto elastic = compliance_from(compliance, o.wheel, o.force);
             const auto removal = law_from(law);
             SimulationResult result;
@@ -312,7 +322,9 @@ void bind_simulation(py::module_& m) {
         py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),
         py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
-        "Grinds field along path; see simulation/simulation.h for units.");
+        py::arg("recording") = nullptr,
+        "Grinds field along path; see simulation/simulation.h for units. A recording goes on with "
+        "the path.");
     m.def(
         "contact_at",
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,

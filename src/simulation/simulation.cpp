@@ -78,6 +78,21 @@ class HeightGuard {
     bool kept_ = false;
 };
 
+/// Clears a recording unless told to keep it: what a cancelled or failed run left of it is nothing.
+class RecordingGuard {
+  public:
+    explicit RecordingGuard(Recording* recording) : recording_(recording) {}
+    ~RecordingGuard() {
+        if (recording_ != nullptr) recording_->clear();
+    }
+    RecordingGuard(const RecordingGuard&) = delete;
+    RecordingGuard& operator=(const RecordingGuard&) = delete;
+    void keep() { recording_ = nullptr; }
+
+  private:
+    Recording* recording_;
+};
+
 /// Removes what the law says for the pressed wheel during one step, in as many parts as the
 /// pressure needs to follow. Returns the volume, mm3.
 double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, const PathStep& step,
@@ -178,6 +193,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     result.shifts = Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(field.size()),
                                           static_cast<Eigen::Index>(options.shifted_laws.size()));
     HeightGuard guard(field);
+    RecordingGuard recording_guard(options.recording);
+    if (options.recording != nullptr) options.recording->begin(field, path.duration());
     EventLog events(path);
     std::unique_ptr<SegmentTree> tree;
     {
@@ -202,6 +219,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
         record.duration = static_cast<float>(step.duration);
         record.feed = static_cast<float>(step.feed);
 
+        changed.clear();
         const auto state = pressing.press(field, *tree, step.work_from_contact, step.force, result);
         record.segments = static_cast<std::uint32_t>(pressing.localised());
         if (state != Pressing::State::kNoContact) {
@@ -228,7 +246,6 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
                 }
             }
             note_process(contact, law, step, i, options, result, events);
-            changed.clear();
             const double volume = grind(field, pressing, law, step, options, changed, result);
             record.removal_rate = static_cast<float>(volume / step.duration);
             const Stopwatch watch(result.refit_s);
@@ -245,6 +262,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
             }
             tree->refit(field, changed);
         }
+        if (options.recording != nullptr) {
+            options.recording->add_step(field, changed, step.time + 0.5 * step.duration);
+        }
         result.steps.push_back(record);
     }
     if (!touched && options.must_touch) {
@@ -258,7 +278,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     }
     context.report(1.0);
     result.events = events.take();
+    if (options.recording != nullptr) options.recording->end(field);
     guard.keep();
+    recording_guard.keep();
     return result;
 }
 

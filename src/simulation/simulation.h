@@ -11,6 +11,7 @@
 #include "heightfield/height_field.h"
 #include "removal/belt_wear.h"
 #include "removal/removal_law.h"
+#include "simulation/recording.h"
 #include "toolpath/event_log.h"
 #include "toolpath/tool_path.h"
 
@@ -47,6 +48,7 @@ struct SimulationOptions {
     double contact_tolerance = 1e-3;  ///< relative error of the pressure field
     bool must_touch = true;           ///< a path that never touches the stock is an error
     SteppingOptions stepping;
+    Recording* recording = nullptr;  ///< goes on with this path; cleared on cancel or error
 };
 
 struct SimulationResult {

@@ -10,6 +10,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kRotationFeed = 1.0;          // rad/s, for motions that only turn
+constexpr int kHalvings = 40;                  // of a motion's way, to find where it is at a time
 constexpr double kRotationTolerance = 1e-6;    // of R^T R from the identity
 constexpr std::size_t kMaxSteps = 50'000'000;  // more is a mistake in feed or step, not a job
 
@@ -72,6 +73,10 @@ ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw
         }
     }
     if (trapezoidal()) plan_ = MotionPlan(poses_, law_);
+    ends_.reserve(poses_.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        ends_.push_back((i == 0 ? 0.0 : ends_.back()) + duration(i));
+    }
 }
 
 double ToolPath::duration() const {
@@ -95,6 +100,21 @@ Frame ToolPath::base_from_tcp(std::size_t i, double t) const {
     if (trapezoidal() && i > 0) return plan_.frame(poses_, i, t);
     if (i == 0 || t >= 1.0) return poses_[i].base_from_tcp;
     return interpolate(poses_[i - 1].base_from_tcp, poses_[i].base_from_tcp, t);
+}
+
+ToolPath::Moment ToolPath::at(double time) const {
+    const auto found = std::lower_bound(ends_.begin(), ends_.end(), time);
+    if (found == ends_.end()) return {base_from_tcp(poses_.size() - 1, 1.0), poses_.size() - 1};
+    const auto i = static_cast<std::size_t>(found - ends_.begin());
+    if (i == 0) return {base_from_tcp(0, 0.0), 0};
+    const double since = time - ends_[i - 1], whole = duration(i);
+    if (!trapezoidal()) return {base_from_tcp(i, since / whole), i};
+    double low = 0.0, high = 1.0;  // of the way
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (elapsed(i, middle) < since ? low : high) = middle;
+    }
+    return {base_from_tcp(i, high), i};
 }
 
 std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {

@@ -68,6 +68,13 @@ class ToolPath {
     /// Where the tool is then, in the frame that the program names; the first pose for i = 0. With
     /// a zone at the pose the motion ends half way round the corner.
     Frame base_from_tcp(std::size_t i, double t) const;
+    struct Moment {
+        Frame base_from_tcp = Frame::Identity();
+        std::size_t pose = 0;  ///< that the motion leads to
+    };
+    /// Where the tool is `time` s after the program's begin, and on the way to which pose; before
+    /// and after the program, at its ends.
+    Moment at(double time) const;
     /// Steps at the middles of equal parts of each motion's way, in program order; rapid motions
     /// give none. Their durations are the time that the robot takes from part to part, and with
     /// the rapid motions' add up to `duration()`.
@@ -79,7 +86,8 @@ class ToolPath {
     std::vector<PathPose> poses_;
     CellFrames frames_;
     TimeLaw law_;
-    MotionPlan plan_;  // of the trapezoidal law
+    MotionPlan plan_;           // of the trapezoidal law
+    std::vector<double> ends_;  // s since the program's begin, of the motion to each pose
 };
 
 }  // namespace beltgrinding

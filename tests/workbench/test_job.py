@@ -46,6 +46,39 @@ def plate_job():
     }
 
 
+def test_a_recording_follows_all_programs_of_a_job(tmp_path):
+    job = plate_job()
+    job["programs"] *= 2
+    recording = core.Recording()
+    result = beltgrinding.run(job, recording=recording)
+    assert result.recording is recording
+    assert recording.last == recording.steps()[-1] == len(result.steps["time"])
+    assert recording.duration == pytest.approx(result.summary["process_time_s"])
+    # A step's time is its middle; its frame is reached at its end.
+    ends = result.steps["time"] + 0.5 * result.steps["duration"]
+    np.testing.assert_allclose(recording.times()[1:], ends, rtol=1e-6)
+    np.testing.assert_array_equal(recording.heights_at(0), np.float32(0.2))
+    final = result.field.height.astype(np.float32)
+    np.testing.assert_array_equal(recording.heights_at(recording.last), final)
+
+    recording.write_hdf5(str(tmp_path / "recording.h5"), "text")
+    read, attributes = core.Recording.from_hdf5(str(tmp_path / "recording.h5"))
+    assert attributes == "text" and read.bytes == recording.bytes
+    heights, at = read.heights_at(read.last), read.last
+    for frame in (5, 30, 7, 0, read.last):
+        samples, changed = read.advance(at, frame)
+        heights[samples] = changed
+        np.testing.assert_array_equal(heights, recording.heights_at(frame))
+        at = frame
+
+    small = core.Recording(recording.changes)  # bytes: a quarter of the heights'
+    assert beltgrinding.run(job, recording=small).summary["samples"] == small.samples
+    assert small.steps_per_frame > 1 and small.bytes < recording.bytes
+    np.testing.assert_array_equal(small.heights_at(small.last), final)
+    with pytest.raises(InputError, match="no frame"):
+        small.heights_at(small.last + 1)
+
+
 def test_a_job_grinds_what_the_law_says():
     result = beltgrinding.run(plate_job())
     summary = result.summary

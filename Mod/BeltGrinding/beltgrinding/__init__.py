@@ -31,11 +31,14 @@ def _folder(name):
     raise FileNotFoundError(f"The folder {name} is missing; install the workbench again.")
 
 
-def run(job, context=None):
-    """Runs a job (a dict, or the path of a job.json); returns a ``job.Result``."""
+def run(job, context=None, recording=None):
+    """Runs a job (a dict, or the path of a job.json); returns a ``job.Result``. ``recording``: as in
+    ``job.run``.
+    """
     from . import job as jobs
 
-    return jobs.run(jobs.validate(job) if isinstance(job, dict) else jobs.load(job), context)
+    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
+    return jobs.run(job, context, recording)
 
 
 # What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).

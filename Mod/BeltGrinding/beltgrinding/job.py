@@ -76,11 +76,13 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None):
-    """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel."""
+def run(job, context=None, recording=None):
+    """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
+    ``recording``: an empty core.Recording that is to follow it, program after program.
+    """
     warnings = []
     try:
-        return _run(job, context or core.RunContext(), warnings)
+        return _run(job, context or core.RunContext(), warnings, recording)
     except InputError as error:
         if not warnings:
             raise
@@ -88,7 +90,7 @@ def run(job, context=None):
         raise InputError(f"{error}. Note: {notes}") from None
 
 
-def _run(job, context, warnings):
+def _run(job, context, warnings, recording):
     phases = _Phases()
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     phases.end("programs")
@@ -109,7 +111,7 @@ def _run(job, context, warnings):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:
-            result = core.simulate(field, path, wheel, compliance, law, options, context=part)
+            result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
         except InputError as error:
             raise InputError(f"{program_name(job, i)}: {error}") from None
         found = [*(reached[i]["events"] if reached else []), *result["events"]]
@@ -142,7 +144,7 @@ def _run(job, context, warnings):
         },
         robot=robots.summary(job["robot"], reached),
     )
-    return Result(job, field, summary, events, steps)
+    return Result(job, field, summary, events, steps, recording)
 
 
 def remaining_cut(job, belt):

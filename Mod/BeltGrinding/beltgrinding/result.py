@@ -13,15 +13,17 @@ from . import InputError, core
 
 class Result:
     """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events`` (lists and dicts
-    as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None).
+    as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
+    ``recording`` (core.Recording of the heights, or None).
     """
 
-    def __init__(self, job, field, summary, events, steps):
+    def __init__(self, job, field, summary, events, steps, recording=None):
         self.job = job
         self.field = field
         self.summary = summary
         self.events = events
         self.steps = steps
+        self.recording = recording
 
     def write(self, folder):
         """Writes summary.json, events.json, steps.csv, deviation.ply, heightfield.h5; each whole or

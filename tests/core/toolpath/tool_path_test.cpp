@@ -98,6 +98,33 @@ std::string error_of(std::vector<PathPose> poses) {
     return "no error";
 }
 
+TEST(ToolPath, SaysWhereTheToolIsAtATime) {
+    const std::vector<PathPose> poses = {pose_at(0, 0, 0), pose_at(30, 40, 0, 10.0),
+                                         pose_at(30, 40, 0, 10.0), pose_at(30, 40, 20, 5.0, 0.5)};
+    const ToolPath path(poses, {});
+    EXPECT_EQ(path.at(-1.0).pose, 0u);
+    EXPECT_TRUE(path.at(0.0).base_from_tcp.isApprox(poses[0].base_from_tcp));
+    EXPECT_NEAR(path.at(2.5).base_from_tcp.translation().x(), 15.0, 1e-12);
+    EXPECT_EQ(path.at(2.5).pose, 1u);
+    EXPECT_NEAR(path.at(6.0).base_from_tcp.translation().z(), 5.0, 1e-12);
+    EXPECT_EQ(path.at(6.0).pose, 3u);
+    EXPECT_TRUE(path.at(99.0).base_from_tcp.isApprox(poses[3].base_from_tcp));
+    EXPECT_EQ(path.at(99.0).pose, 3u);
+
+    TimeLaw law;
+    law.timing = TimeLaw::Timing::kTrapezoidal;
+    const ToolPath accelerated(poses, {}, law);
+    SteppingOptions fine;
+    fine.max_travel = 0.5;
+    for (const PathStep& step : accelerated.steps(fine)) {
+        const double begin = step.time - 0.5 * step.duration;
+        const Vec3 a = accelerated.at(begin).base_from_tcp.translation();
+        const Vec3 b = accelerated.at(begin + step.duration).base_from_tcp.translation();
+        EXPECT_NEAR((b - a).norm(), step.feed * step.duration, 1e-6);
+        EXPECT_EQ(accelerated.at(step.time).pose, step.pose);
+    }
+}
+
 TEST(ToolPath, NamesTheWrongPose) {
     EXPECT_NE(error_of({}).find("no pose"), std::string::npos);
     auto bad = pose_at(0, 0, 0);

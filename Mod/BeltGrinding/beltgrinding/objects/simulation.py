@@ -5,6 +5,8 @@ import os
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 from .. import core
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -34,7 +36,9 @@ OUTPUTS = (
 
 
 class Simulation(Proxy):
-    """Proxy. ``HeightField`` is the HDF5 file, kept inside the document's file."""
+    """Proxy. ``HeightField`` and ``Recording`` (if it was recorded) are HDF5 files, kept inside the
+    document's file.
+    """
 
     TYPE = "BeltGrinding::Simulation"
     VIEW = "SimulationView"
@@ -54,6 +58,15 @@ class Simulation(Proxy):
             return None
         return core.HeightField.from_hdf5(path)[0]
 
+    def recording(self, obj):
+        """(core.Recording, steps as in ``Result.steps``) of the result; None if there is none."""
+        path = getattr(obj, "Recording", "")
+        if not path or not os.path.exists(path):
+            return None
+        recording, attributes = core.Recording.from_hdf5(path)
+        steps = json.loads(attributes)["steps"]
+        return recording, {name: np.array(values) for name, values in steps.items()}
+
     def events(self, obj):
         """List of dicts: kind, program, pose, line, time (s), duration (s), value, message."""
         return json.loads(obj.EventData or "[]")
@@ -65,6 +78,7 @@ def store(obj, result, fingerprint):
         path = Path(folder, "heightfield.h5")
         result.field.write_hdf5(str(path), json.dumps(_without_bulk(result.job)))
         obj.HeightField = str(path)
+        _store_recording(obj, result, folder)
     s = result.summary
     obj.RemovedVolume, obj.StockVolume = s["removed_volume_mm3"], s["stock_volume_mm3"]
     obj.DesignArea = s["design_area_mm2"]
@@ -82,6 +96,21 @@ def store(obj, result, fingerprint):
     obj.EventData = json.dumps(result.events)
     obj.Fingerprint = fingerprint
     obj.OutOfDate = False
+
+
+def _store_recording(obj, result, folder):
+    """The property exists only where there is a recording: FreeCAD empties none of its kind."""
+    if "Recording" in obj.PropertiesList:
+        obj.removeProperty("Recording")
+    if result.recording is None:
+        return
+    text = "what changed in every step, for playback"
+    obj.addProperty("App::PropertyFileIncluded", "Recording", "Result", text)
+    obj.setEditorMode("Recording", 1)
+    path = Path(folder, "recording.h5")
+    steps = {name: values.tolist() for name, values in result.steps.items()}
+    result.recording.write_hdf5(str(path), json.dumps({"steps": steps}))
+    obj.Recording = str(path)
 
 
 def _without_bulk(job):

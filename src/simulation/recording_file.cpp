@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "base/error.h"
+#include "heightfield/hdf5_io.h"
+#include "simulation/recording.h"
+
+namespace beltgrinding {
+
+using namespace hdf5;
+
+namespace {
+constexpr int kFormat = 1;  // of the file; a reader refuses newer ones
+}
+
+/// The only one that sees a recording's arrays. Key frames are no part of the file: they follow.
+struct RecordingFile {
+    template <class Log, class Visit>
+    static void each_array(Log& r, Visit&& visit) {
+        static_assert(sizeof(ChangeLog::Run) == 2 * sizeof(std::uint32_t));
+        static_assert(sizeof(ChangeLog::End) == 2 * sizeof(std::uint64_t));
+        visit("start_height", r.start_, H5T_NATIVE_FLOAT, hsize_t{1});
+        visit("run", r.log_.runs_, H5T_NATIVE_UINT32, hsize_t{2});
+        visit("height", r.log_.height_, H5T_NATIVE_FLOAT, hsize_t{1});
+        visit("frame_end", r.log_.ends_, H5T_NATIVE_UINT64, hsize_t{2});
+        visit("time", r.times_, H5T_NATIVE_DOUBLE, hsize_t{1});
+        visit("steps", r.steps_, H5T_NATIVE_UINT32, hsize_t{1});
+    }
+
+    static void write(const Recording& r, const std::string& path, const std::string& attributes) {
+        const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                          H5Fclose);
+        require(file.ok(), "cannot be made there");
+        write_scalar(file, "recording_format", H5T_NATIVE_INT, &kFormat);
+        write_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
+        const auto stride = static_cast<std::uint64_t>(r.stride_);
+        write_scalar(file, "steps_per_frame", H5T_NATIVE_UINT64, &stride);
+        each_array(r, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
+            write_array(file, name, data, type, row);
+        });
+        write_text(file, "attributes", attributes);
+        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot be written; is the disk full?");
+    }
+
+    static Recording read(const std::string& path, std::string* attributes) {
+        std::error_code error;
+        const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
+        require(!error, "cannot be opened: " + error.message());
+        const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+        require(file.ok(), "is no HDF5 file");
+        int format = 0;
+        read_scalar(file, "recording_format", H5T_NATIVE_INT, &format);
+        require(format == kFormat, "has format " + std::to_string(format) +
+                                       ", this version reads " + std::to_string(kFormat));
+        Recording r;
+        std::uint64_t stride = 1;
+        read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
+        read_scalar(file, "steps_per_frame", H5T_NATIVE_UINT64, &stride);
+        r.stride_ = static_cast<std::size_t>(stride);
+        each_array(r, [&](const char* name, auto& data, hid_t type, hsize_t row) {
+            read_array(file, bytes, name, data, type, row);
+        });
+        check(r);
+        for (std::size_t frame = 1; frame <= r.last(); ++frame) r.count_frame(frame);
+        r.total_steps_ = r.steps_.back();
+        if (attributes != nullptr) {
+            std::vector<char> text;
+            read_array(file, bytes, "attributes", text, H5T_NATIVE_CHAR, 1);
+            attributes->assign(text.begin(), text.end());
+        }
+        return r;
+    }
+
+    static void check(const Recording& r) {
+        const ChangeLog& log = r.log_;
+        require(r.stride_ > 0 && std::isfinite(r.duration_), "has no duration");
+        require(r.times_.size() == log.blocks() + 1 && r.steps_.size() == log.blocks() + 1 &&
+                    r.times_[0] == 0.0 && r.steps_[0] == 0 &&
+                    std::all_of(r.times_.begin(), r.times_.end(),
+                                [](double t) { return std::isfinite(t); }) &&
+                    std::is_sorted(r.times_.begin(), r.times_.end()) &&
+                    std::is_sorted(r.steps_.begin(), r.steps_.end()),
+                "has frames without a time");
+        std::size_t run = 0, height = 0;
+        for (const ChangeLog::End& end : log.ends_) {
+            require(end.run >= run && end.run <= log.runs_.size(), "has a frame that is cut off");
+            for (; run < end.run; ++run) {
+                const ChangeLog::Run& r0 = log.runs_[run];
+                require(std::uint64_t{r0.first} + r0.count <= r.start_.size(),
+                        "names a sample that is not there");
+                height += r0.count;
+            }
+            require(end.height == height && height <= log.height_.size(),
+                    "has a frame that is cut off");
+        }
+        require(run == log.runs_.size() && height == log.height_.size(), "has heights of no frame");
+        const auto finite = [](float h) { return std::isfinite(h); };
+        require(std::all_of(r.start_.begin(), r.start_.end(), finite) &&
+                    std::all_of(log.height_.begin(), log.height_.end(), finite),
+                "has a height that is not finite");
+    }
+};
+
+void write_hdf5(const Recording& recording, const std::string& path,
+                const std::string& attributes) {
+    const auto lock = hdf5_lock();
+    const std::string temporary = path + ".part";
+    try {
+        RecordingFile::write(recording, temporary, attributes);
+        std::error_code error;
+        std::filesystem::rename(temporary, path, error);
+        require(!error, "cannot be written: " + error.message());
+    } catch (const FileFault& fault) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        throw InputError(path + ": the recording " + fault.what);
+    }
+}
+
+Recording read_recording(const std::string& path, std::string* attributes) {
+    const auto lock = hdf5_lock();
+    try {
+        return RecordingFile::read(path, attributes);
+    } catch (const FileFault& fault) {
+        throw InputError(path + ": the recording " + fault.what);
+    }
+}
+
+}  // namespace beltgrinding

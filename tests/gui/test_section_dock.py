@@ -46,6 +46,15 @@ settle()
 assert abs(section.Point.y - 20) < 1e-6 and section.Minimum.Value < 0.1
 assert abs(field("sectionOffset").value() - 20) < 1e-3
 
+menu("Stock")  # its panel's Cancel takes back what was changed in the dock meanwhile, too
+type_in("Allowance", "0.5 mm")
+field("sectionOffset").setValue(11.0)
+settle()
+assert abs(section.Point.y - 11) < 1e-6
+press("Cancel")
+settle()
+assert doc.Stock.Allowance.Value == 0.2 and abs(section.Point.y - 20) < 1e-6
+
 share = section.InTolerance
 job.ToleranceUpper = "0.3 mm"
 doc.recompute()

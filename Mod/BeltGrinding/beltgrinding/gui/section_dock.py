@@ -34,6 +34,7 @@ class SectionDock(QtGui.QDockWidget):
         super().__init__(translate("BeltGrinding", "Cross-section"), window)
         self.setObjectName("BeltGrinding_SectionDock")
         self.obj, self.quiet, self.picks, self.picking = None, False, [], []
+        self.opened = False  # an undo step of ours
         self.low, self.high = 0.0, 0.0  # of the surface along the plane's normal, mm
         body = QtGui.QWidget()
         layout = QtGui.QHBoxLayout(body)
@@ -217,8 +218,10 @@ class SectionDock(QtGui.QDockWidget):
     # What is changed
 
     def _open(self):
-        if self.obj is not None and not self.obj.Document.HasPendingTransaction:
+        """Opens an undo step, unless the document has one: an open panel's, which is not ours."""
+        if self.alive() and not self.obj.Document.HasPendingTransaction:
             self.obj.Document.openTransaction(translate("BeltGrinding", "Move cross-section"))
+            self.opened = True
 
     def _released(self):
         if self.alive():
@@ -226,8 +229,9 @@ class SectionDock(QtGui.QDockWidget):
             self._commit()
 
     def _commit(self):
-        if not self.slider.isSliderDown():
+        if self.opened and not self.slider.isSliderDown():
             self.obj.Document.commitTransaction()
+            self.opened = False
 
     def change(self, **values):
         """Sets properties of the object, as one undo step (a drag of the slider is one, too)."""

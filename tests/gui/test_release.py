@@ -96,7 +96,6 @@ else:
     assert addon.display_name
     benches = addon.metadata.content["workbench"]
     assert {{one.package for one in benches[0].depend}} == {{"numpy", "jsonschema", "matplotlib"}}
-    addon.metadata = FreeCAD.Metadata(str(folder / "package.xml"))
     wrong = MetadataValidators().validate_top_level(addon)
     wrong += MetadataValidators().validate_content(addon)
     # There is no public repository yet, and none is invented.

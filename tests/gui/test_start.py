@@ -49,7 +49,6 @@ for text in (boxes[0].text(), report):
     assert f"There is none for {here}" in text, text
     assert "Debian GNU/Linux 10 (buster): Python 3.7, OpenCASCADE 7.3.0" in text
     assert "docs/install.md" in text and "tools/install" in text
-screenshot("message.png")
 boxes[0].close()
 Gui.activateWorkbench("PartWorkbench")
 Gui.activateWorkbench("BeltGrindingWorkbench")

@@ -97,6 +97,8 @@ def pose_of(values):
 
 def number(value):
     """``value`` if it is a number."""
+    if type(value) is float and math.isfinite(value):  # nearly all are
+        return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise Unknown("a number expected")
     if isinstance(value, int):
@@ -213,7 +215,7 @@ def _subscript(node, lookup, call):
     if isinstance(node.value, ast.Name) and node.value.id == "p":
         inner = node.slice
         values = inner.elts if isinstance(inner, ast.Tuple) else [inner]
-        return pose_of([_value(v, lookup, call) for v in values])
+        return pose_of([_component(v, lookup, call) for v in values])
     value = _value(node.value, lookup, call)
     if isinstance(value, Pose):
         value = value.components()
@@ -223,6 +225,16 @@ def _subscript(node, lookup, call):
     if isinstance(at, bool) or not isinstance(at, int) or not 0 <= at < len(value):
         raise Unknown(f"the list of {len(value)} has no element [{at}]")
     return value[at]
+
+
+def _component(node, lookup, call):
+    """The value of a pose's component: a number with or without a sign, or any expression."""
+    sign, inner = 1.0, node
+    if type(node) is ast.UnaryOp and type(node.op) is ast.USub:
+        sign, inner = -1.0, node.operand
+    if type(inner) is ast.Constant and type(inner.value) is float:
+        return sign * inner.value
+    return _value(node, lookup, call)
 
 
 def _call(node, lookup, call):

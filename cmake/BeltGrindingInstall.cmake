@@ -25,7 +25,7 @@ set(modules beltgrinding_core)
 if(TARGET beltgrinding_coin)
   list(APPEND modules beltgrinding_coin)
 endif()
-add_custom_target(beltgrinding_modules DEPENDS ${modules})  # all that an installation needs built
+add_custom_target(beltgrinding_modules DEPENDS ${modules} translations)  # all that an installation needs built
 
 # Beside each core stands what it was built for, so that one that does not fit can say why before it
 # is loaded: beltgrinding/core_library.py.
@@ -39,6 +39,7 @@ function(install_workbench folder)
   install(DIRECTORY Mod/BeltGrinding/ DESTINATION ${folder} ${ARGN}
           PATTERN "__pycache__" EXCLUDE PATTERN "*.so" EXCLUDE)
   install(DIRECTORY Resources docs DESTINATION ${folder} ${ARGN})
+  install(FILES ${compiled_translations} DESTINATION ${folder}/Resources/translations ${ARGN})
   install(FILES ${CMAKE_BINARY_DIR}/package.xml README.md CONTRIBUTING.md CHANGELOG.md
           $<TARGET_FILE:beltgrinding_core>.json DESTINATION ${folder} ${ARGN})
 endfunction()

@@ -14,7 +14,7 @@ export QTWEBENGINE_DISABLE_SANDBOX=1 LANG=${LANG:-C.UTF-8}
 packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-dev libtbb-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
-    libcoin-dev libgl-dev
+    libcoin-dev libgl-dev qttools5-dev-tools
     libassimp-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib xvfb xauth libgl1-mesa-dri)

@@ -2,8 +2,10 @@
 
 import FreeCAD
 
+# What nobody but us reads. Suffixes that FreeCAD knows as something else (tables, milling programs)
+# follow when the workbench is opened: before, FreeCAD would ask everyone who opens such a file.
 FreeCAD.addImportType(
-    "Robot program (*.src *.csv *.mod *.modx *.prg *.script *.ls *.jbi "
-    "*.apt *.cls *.cl *.pgx *.dtx *.urp *.nc *.ngc *.mpf)",
+    "Robot program (*.src *.mod *.modx *.prg *.sys *.script *.ls *.jbi *.apt *.cls *.cl "
+    "*.pgx *.dtx *.urp *.mpf)",
     "beltgrinding.objects.importer",
 )

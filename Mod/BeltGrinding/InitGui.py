@@ -6,27 +6,22 @@ import FreeCADGui
 class BeltGrindingWorkbench(FreeCADGui.Workbench):
     """Simulation of robotic belt grinding."""
 
-    MenuText = "Belt grinding"
-    ToolTip = "What a robot's belt grinding will leave, before any metal is ground"
-
     def __init__(self):
-        from beltgrinding.gui.icons import icon
+        from beltgrinding.gui import workbench
 
-        self.__class__.Icon = icon("BeltGrinding_Workbench")
+        workbench.describe(self.__class__)
         self.work = []
 
     def Initialize(self):
-        from beltgrinding.gui import start
+        from beltgrinding.gui import workbench
 
-        self.work, more = start.register()
-        if self.work:
-            self.appendToolbar("Belt grinding", self.work)
-            more = [*self.work, "Separator", *more]
-        self.appendMenu("&Belt grinding", more)
+        self.work = workbench.fill(self)
 
     def ContextMenu(self, recipient):
+        from beltgrinding.gui import workbench
+
         if self.work:
-            self.appendContextMenu("Belt grinding", self.work)
+            self.appendContextMenu(workbench.NAME, self.work)
 
     def GetClassName(self):
         return "Gui::PythonWorkbench"
@@ -34,6 +29,9 @@ class BeltGrindingWorkbench(FreeCADGui.Workbench):
 
 try:
     FreeCADGui.addWorkbench(BeltGrindingWorkbench())
+    from beltgrinding.gui import workbench
+
+    workbench.at_start()
 except ImportError as error:
     import FreeCAD
 

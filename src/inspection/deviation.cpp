@@ -35,12 +35,26 @@ std::uint32_t pack(const Colour& c) {
     return byte(c.r) << 24U | byte(c.g) << 16U | byte(c.b) << 8U | 255U;
 }
 
+Colour mix(const Colour& a, const Colour& b, double w) {
+    return {a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)};
+}
+
 std::uint32_t ramp(const std::array<Colour, 3>& stops, double t) {
     const double u = 2.0 * std::clamp(t, 0.0, 1.0);
     const std::size_t k = u < 1.0 ? 0 : 1;
     const double w = u - static_cast<double>(k);
-    const Colour &a = stops[k], &b = stops[k + 1];
-    return pack({a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)});
+    return pack(mix(stops[k], stops[k + 1], w));
+}
+
+Colour unpack(std::uint32_t packed) {
+    const auto share = [packed](unsigned shift) { return (packed >> shift & 255U) / 255.0; };
+    return {share(24), share(16), share(8)};
+}
+
+/// A ramp that darkens like the constant ones, from one colour in its middle.
+std::array<Colour, 3> ramp_of(std::uint32_t packed) {
+    const Colour c = unpack(packed);
+    return {mix(c, {1, 1, 1}, 0.5), c, mix(c, {0, 0, 0}, 0.6)};
 }
 
 /// Place on a ramp of the step in which t in [0, 1] lies; the first and the last are its ends.
@@ -157,14 +171,14 @@ std::uint32_t ColourScale::colour(double deviation) const {
     if (!std::isfinite(deviation)) return missed_colour();
     const auto step = [this](double t) { return bands > 0 ? stepped(t, bands) : t; };
     if (deviation > tolerance.upper) {
-        return ramp(kAbove,
+        return ramp(choice ? ramp_of(choice->above) : kAbove,
                     step((deviation - tolerance.upper) / std::max(limit - tolerance.upper, 1e-9)));
     }
     if (deviation < tolerance.lower) {
-        return ramp(kBelow,
+        return ramp(choice ? ramp_of(choice->below) : kBelow,
                     step((tolerance.lower - deviation) / std::max(limit + tolerance.lower, 1e-9)));
     }
-    return pack(kGood);
+    return choice ? choice->good | 255U : pack(kGood);
 }
 
 std::uint32_t ColourScale::missed_colour() const {

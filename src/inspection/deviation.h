@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,16 @@ DeviationStatistics deviation_statistics(const HeightField& field, const Toleran
 /// the band, a ramp above it and another below it, up to `limit` mm; missed samples in their own
 /// grey.
 struct ColourScale {
+    /// Colours of one's own, 0xRRGGBBAA: a ramp runs from a light tint of its colour to a dark
+    /// shade.
+    struct Choice {
+        std::uint32_t good, above, below;
+    };
+
     Tolerance tolerance;
-    double limit = 0.5;  ///< mm, deviation at which the ramps end
-    int bands = 0;       ///< equal steps of each ramp; 0: without steps
+    double limit = 0.5;                 ///< mm, deviation at which the ramps end
+    int bands = 0;                      ///< equal steps of each ramp; 0: without steps
+    std::optional<Choice> choice = {};  ///< none: the colours described above
 
     /// 0xRRGGBBAA (alpha 255: opaque).
     std::uint32_t colour(double deviation) const;

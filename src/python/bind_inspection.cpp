@@ -1,3 +1,5 @@
+#include <array>
+#include <optional>
 #include <span>
 
 #include "inspection/colour_map.h"
@@ -7,8 +9,14 @@
 namespace beltgrinding::python {
 namespace {
 
-ColourScale scale_of(double lower, double upper, double limit, int bands = 0) {
-    return {{lower, upper}, limit, bands};
+/// Colours inside, above and below the band, or none.
+using Choice = std::optional<std::array<std::uint32_t, 3>>;
+
+ColourScale scale_of(double lower, double upper, double limit, int bands = 0,
+                     const Choice& choice = {}) {
+    ColourScale scale{{lower, upper}, limit, bands, {}};
+    if (choice) scale.choice = {(*choice)[0], (*choice)[1], (*choice)[2]};
+    return scale;
 }
 
 template <class T>
@@ -54,11 +62,14 @@ void bind_inspection(py::module_& m) {
         "Area-weighted statistics of the deviation, mm, mm2, mm3.");
     m.def(
         "deviation_colours",
-        [](const HeightField& field, double lower, double upper, double limit, int bands) {
-            return own(deviation_colours(field, scale_of(lower, upper, limit, bands)));
+        [](const HeightField& field, double lower, double upper, double limit, int bands,
+           const Choice& colours) {
+            return own(deviation_colours(field, scale_of(lower, upper, limit, bands, colours)));
         },
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
-        py::arg("bands") = 0, "(n,) uint32, 0xRRGGBBAA. bands: steps of each ramp; 0: none.");
+        py::arg("bands") = 0, py::arg("colours") = py::none(),
+        "(n,) uint32, 0xRRGGBBAA. bands: steps of each ramp; 0: none. colours: in, above and below "
+        "the tolerance; None: the standard ones.");
     m.def(
         "uncertainty_colours",
         [](const HeightField& field, double limit) {
@@ -96,14 +107,16 @@ void bind_inspection(py::module_& m) {
         py::arg("limit"), py::arg("values"), "Colours of standard deviations, for a legend.");
     m.def(
         "colour_scale",
-        [](double lower, double upper, double limit, const std::vector<double>& values, int bands) {
+        [](double lower, double upper, double limit, const std::vector<double>& values, int bands,
+           const Choice& choice) {
             std::vector<std::uint32_t> colours;
-            for (const double v : values)
-                colours.push_back(scale_of(lower, upper, limit, bands).colour(v));
+            const ColourScale scale = scale_of(lower, upper, limit, bands, choice);
+            for (const double v : values) colours.push_back(scale.colour(v));
             return own(std::move(colours));
         },
         py::arg("lower"), py::arg("upper"), py::arg("limit"), py::arg("values"),
-        py::arg("bands") = 0, "Colours 0xRRGGBBAA of deviations, for a legend.");
+        py::arg("bands") = 0, py::arg("colours") = py::none(),
+        "Colours 0xRRGGBBAA of deviations, for a legend.");
     m.def(
         "deviation_ply",
         [](const HeightField& field, double lower, double upper, double limit, bool ground) {

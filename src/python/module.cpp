@@ -5,6 +5,7 @@
 #endif
 
 #include "base/run_context.h"
+#include "base/threads.h"
 #include "heightfield/kdop_tree.h"
 #include "python/arrays.h"
 
@@ -43,6 +44,16 @@ void bind_base(py::module_& m) {
         .def_property_readonly("cancelled", &RunContext::cancelled)
         .def_property_readonly("progress", &RunContext::progress, "In [0, 1].");
     m.attr("VERSION") = BELTGRINDING_VERSION;
+    m.def(
+        "set_threads",
+        [](int count) {
+            if (count < 0) throw InputError("the number of threads must not be negative");
+            set_threads(static_cast<std::size_t>(count));
+        },
+        py::arg("count"),
+        "How many threads computations may use from now on; 0: as many as the machine has. The "
+        "results do not depend on it.");
+    m.def("threads", &threads, "How many threads a computation may use.");
     m.def(
         "versions",
         [] {

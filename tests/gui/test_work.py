@@ -87,14 +87,14 @@ assert doc.getObject("Simulation") is None
 press("Close")
 
 # The document may be edited while it runs; the result then says so.
-job.Spacing = 0.1
+job.Spacing = 0.06  # long enough for what follows
 doc.recompute()
 menu("Simulate")
 machine.Force = "31 N"
 doc.recompute()
 wait(lambda: doc.getObject("Simulation") is not None)
 assert doc.Simulation.OutOfDate
-assert "Out of date" in field("state").text()
+assert "Out of date" in field("state").text(), field("state").text()
 """,
         window=True,
     )

@@ -151,6 +151,16 @@ TEST(ColourScale, OneCalmColourInsideTheBand) {
     EXPECT_EQ(scale.colour(0.0) & 255U, 255U);
 }
 
+TEST(ColourScale, ChosenColoursStandInTheMiddleOfTheirRamps) {
+    const ColourScale scale{
+        {-0.1, 0.1}, 0.5, 0, ColourScale::Choice{0x10C020FF, 0xC02010FF, 0x2010C0FF}};
+    EXPECT_EQ(scale.colour(0.0), 0x10C020FFU);
+    EXPECT_EQ(scale.colour(0.3), 0xC02010FFU);
+    EXPECT_EQ(scale.colour(-0.3), 0x2010C0FFU);
+    EXPECT_EQ(scale.colour(0.5), 0x4D0D06FFU);  // two fifths as bright
+    EXPECT_EQ(scale.colour(std::nan("")), scale.missed_colour());
+}
+
 TEST(DeviationPly, HasTheSizeThatItsHeaderSays) {
     const HeightField field = testing::plate(4.0, 3.0, 1.0, 0.2);
     const std::string ply = deviation_ply(field, {}, true);

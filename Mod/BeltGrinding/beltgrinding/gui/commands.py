@@ -7,7 +7,16 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from .. import InputError
-from ..objects import api, belt_machine, deviation, freecad_path, robot_path, simulation, stock
+from ..objects import (
+    api,
+    belt_machine,
+    deviation,
+    freecad_path,
+    preferences,
+    robot_path,
+    simulation,
+    stock,
+)
 from ..objects.job_object import BeltGrindingJob, child
 from ..objects.proxy import type_of
 from ..programs import file_pattern
@@ -16,7 +25,6 @@ from .icons import icon
 from .panel import edit
 from .start import tell
 
-PROGRAMS = f"Robot programs ({file_pattern()})"
 EXPAND = 2  # toggleTreeItem's modes: 0 toggle, 1 collapse, 2 expand
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -41,6 +49,15 @@ def report(error):
         lines = traceback.format_exception(type(error), error, error.__traceback__)
         FreeCAD.Console.PrintError("".join(lines))
     tell(str(error))
+
+
+def programs_filter():
+    """What a file dialog for robot programs offers."""
+    return translate("BeltGrinding", "Robot programs") + f" ({file_pattern()})"
+
+
+def _jobs_filter():
+    return translate("BeltGrinding", "Job") + " (*.json)"
 
 
 def expand(job):
@@ -119,8 +136,10 @@ class NewJob(Command):
             raise InputError(
                 translate("BeltGrinding", "Select the faces to be ground, or the part, first.")
             )
-        with transaction(document, "New grinding job", panel=True) as step:
-            job = api.make_job(links)
+        with transaction(
+            document, translate("BeltGrinding", "New grinding job"), panel=True
+        ) as step:
+            job = api.make_job(links, **preferences.job_defaults())
         if not step.failed:
             expand(job)
             edit(job)
@@ -178,7 +197,7 @@ class Cell(Command):
         from .cell_panel import CellPanel
 
         job = active_job()
-        with transaction(job.Document, "Cell", panel=True) as step:
+        with transaction(job.Document, translate("BeltGrinding", "Cell"), panel=True) as step:
             panel = CellPanel(api.make_belt_machine(job))
         if not step.failed:
             Gui.Control.showDialog(panel)
@@ -193,7 +212,7 @@ class Belt(Command):
 
     def run(self):
         job = active_job()
-        with transaction(job.Document, "Belt", panel=True) as step:
+        with transaction(job.Document, translate("BeltGrinding", "Belt"), panel=True) as step:
             belt = api.make_belt(job)
         if not step.failed:
             edit(belt)
@@ -206,14 +225,18 @@ class ImportProgram(Command):
 
     def run(self):
         title = translate("BeltGrinding", "Import robot program")
-        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", PROGRAMS)[0]
+        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", programs_filter())[
+            0
+        ]
         if path:
             import_program(active_job(), path)
 
 
 def import_program(job, path):
     """Imports a program's file into the job in a transaction and opens its panel."""
-    with transaction(job.Document, "Import robot program", panel=True) as step:
+    with transaction(
+        job.Document, translate("BeltGrinding", "Import robot program"), panel=True
+    ) as step:
         program = api.import_program(job, path)
     if not step.failed:
         edit(program)
@@ -240,7 +263,9 @@ class FollowPath(Command):
                     "BeltGrinding", "Select one CAM path or robot trajectory in the tree first."
                 )
             )
-        with transaction(job.Document, "Follow selected path", panel=True) as step:
+        with transaction(
+            job.Document, translate("BeltGrinding", "Follow selected path"), panel=True
+        ) as step:
             program = api.follow_path(job, sources[0])
         if not step.failed:
             edit(program)
@@ -262,7 +287,9 @@ class RasterPath(Command):
             if hasattr(one.Object, "Shape")
             and any(s.startswith("Face") for s in one.SubElementNames)
         ]
-        with transaction(job.Document, "Raster path", panel=True) as step:
+        with transaction(
+            job.Document, translate("BeltGrinding", "Raster path"), panel=True
+        ) as step:
             path = api.make_raster(job, faces, compute=False)
         if not step.failed:
             edit(path)
@@ -293,7 +320,9 @@ class Deviation(Command):
         job = active_job()
         found = child(job, deviation.Deviation)
         if found is None:
-            with transaction(job.Document, "Deviation", panel=True) as step:
+            with transaction(
+                job.Document, translate("BeltGrinding", "Deviation"), panel=True
+            ) as step:
                 found = api.make_deviation(job)
                 for part in {obj for obj, _ in job.DesignFaces}:
                     part.ViewObject.Visibility = False
@@ -372,11 +401,11 @@ class OpenJob(Command):
 
     def run(self):
         title = translate("BeltGrinding", "Open job file")
-        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", "Job (*.json)")[0]
+        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", _jobs_filter())[0]
         if not path:
             return
         document = FreeCAD.ActiveDocument or FreeCAD.newDocument(Path(path).stem)
-        with transaction(document, "Open job file"):
+        with transaction(document, translate("BeltGrinding", "Open job file")):
             expand(api.open_job(document, path))
             Gui.SendMsgToActiveView("ViewFit")
 
@@ -391,7 +420,7 @@ class ExportJob(Command):
     def run(self):
         title = translate("BeltGrinding", "Export job file")
         path = QtGui.QFileDialog.getSaveFileName(
-            Gui.getMainWindow(), title, "job.json", "Job (*.json)"
+            Gui.getMainWindow(), title, "job.json", _jobs_filter()
         )[0]
         if path:
             api.export_job(active_job(), path)
@@ -436,7 +465,7 @@ class ImportResult(Command):
         folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)
         if folder:
             job = active_job()
-            with transaction(job.Document, "Import result"):
+            with transaction(job.Document, translate("BeltGrinding", "Import result")):
                 api.import_result(job, folder)
 
 
@@ -449,7 +478,7 @@ class ReadAgain(Command):
 
     def run(self):
         job = active_job()
-        with transaction(job.Document, "Read programs again"):
+        with transaction(job.Document, translate("BeltGrinding", "Read programs again")):
             for path in job.Group:
                 if type_of(path) == robot_path.RobotPath.TYPE and path.Source:
                     robot_path.load_program(path, path.Source)
@@ -472,7 +501,9 @@ MORE = (
 
 
 def register():
-    """Tells FreeCAD the commands; returns (names in the order of work, other names)."""
+    """Tells FreeCAD the commands, if it does not know them; returns (names in the order of work, other names)."""
+    known = set(Gui.listCommands())
     for command in WORK + MORE:
-        Gui.addCommand(command.NAME, command())
+        if command.NAME not in known:
+            Gui.addCommand(command.NAME, command())
     return [c.NAME for c in WORK], [c.NAME for c in MORE]

@@ -1,8 +1,10 @@
 """Task panel of the deviation: the tolerance and the figures."""
 
 from .. import InputError
+from ..objects import preferences
 from .compat import QtGui, translate
 from .form import Form
+from .job_panel import check_tolerance, mark_tolerance
 from .panel import Panel
 from .probe import Probe
 
@@ -20,6 +22,7 @@ class DeviationPanel(Panel):
         form.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         form.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         form.changed = self.update
+        self.tolerance = form
         self.body.addWidget(form)
         colours = Form(obj, translate("BeltGrinding", "Colours"))
         colours.changed = self.update
@@ -63,6 +66,7 @@ class DeviationPanel(Panel):
         self.colours.show_rows([*always, *rows.get(obj.Bounds, [])])
         by_hand = ["ColourLimit"] if obj.Bounds == "by hand" else []
         self.tolerance.show_rows(["ToleranceLower", "ToleranceUpper", *by_hand])
+        mark_tolerance(self.tolerance, obj.getParentGroup())
         try:
             self.check()
         except InputError as error:
@@ -73,8 +77,8 @@ class DeviationPanel(Panel):
             translate("BeltGrinding", "Out of date: simulate again.") if obj.OutOfDate else "", True
         )
 
-        def mm(value):
-            return f"{value.Value:+.4f} mm"
+        def mm(value, sign="+"):
+            return preferences.length_text(value.Value, 1, sign)
 
         rows = (
             (translate("BeltGrinding", "In tolerance"), f"{obj.InTolerance:.2f} %"),
@@ -83,7 +87,7 @@ class DeviationPanel(Panel):
             (translate("BeltGrinding", "Minimum"), mm(obj.Minimum)),
             (translate("BeltGrinding", "Maximum"), mm(obj.Maximum)),
             (translate("BeltGrinding", "Mean"), mm(obj.Mean)),
-            (translate("BeltGrinding", "Root mean square"), f"{obj.RootMeanSquare.Value:.4f} mm"),
+            (translate("BeltGrinding", "Root mean square"), mm(obj.RootMeanSquare, "")),
             (translate("BeltGrinding", "5 % lie below"), mm(obj.Percentile05)),
             (translate("BeltGrinding", "Median"), mm(obj.Percentile50)),
             (translate("BeltGrinding", "95 % lie below"), mm(obj.Percentile95)),
@@ -98,11 +102,11 @@ class DeviationPanel(Panel):
                 ),
                 (
                     translate("BeltGrinding", "Uncertainty, mean"),
-                    f"{obj.UncertaintyMean.Value:.4f} mm",
+                    mm(obj.UncertaintyMean, ""),
                 ),
                 (
                     translate("BeltGrinding", "Uncertainty, 95 %"),
-                    f"{obj.Uncertainty95.Value:.4f} mm",
+                    mm(obj.Uncertainty95, ""),
                 ),
             )
         self.table.setRowCount(len(rows))
@@ -116,8 +120,4 @@ class DeviationPanel(Panel):
         self.probe.release()
 
     def check(self):
-        job = self.obj.getParentGroup()
-        if job.ToleranceLower > job.ToleranceUpper:
-            raise InputError(
-                translate("BeltGrinding", "The lower limit lies above the upper limit.")
-            )
+        check_tolerance(self.obj.getParentGroup())

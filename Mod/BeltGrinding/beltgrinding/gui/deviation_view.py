@@ -24,6 +24,7 @@ class DeviationView(View):
     """Proxy of the Mesh view provider."""
 
     ICON = "BeltGrinding_Deviation"
+    COMMANDS = ("BeltGrinding_Simulate",)
 
     def __init__(self, view):
         super().__init__(view)

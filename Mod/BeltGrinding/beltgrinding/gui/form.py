@@ -1,10 +1,13 @@
 """A form whose fields are bound to an object's properties, with FreeCAD's unit entry."""
 
 import gc
+import math
 
 import FreeCADGui as Gui
 from FreeCAD import Placement, Rotation, Units, Vector
 
+from .. import InputError
+from ..objects.properties import limits
 from .compat import QtCore, QtGui, translate
 
 QUANTITIES = {
@@ -16,6 +19,8 @@ QUANTITIES = {
     "App::PropertyPressure",
     "App::PropertyAcceleration",
 }
+NUMBERS = {"App::PropertyFloat", "App::PropertyInteger"}
+WRONG = "QAbstractSpinBox, QLineEdit { border: 2px solid #b3261e; }"
 ATTEMPTS = 20
 MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
 NOT_NEGATIVE = {
@@ -55,6 +60,15 @@ def show_quantity(widget, quantity):
     widget.setProperty("value", quantity)
 
 
+def number(text):
+    """The number in a text, with a point or, as many languages have it, a comma; or None."""
+    try:
+        value = float(text.strip().replace(",", "."))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
 SIGNED = "signed"
 
 
@@ -66,6 +80,9 @@ class Form(QtGui.QGroupBox):
         self.obj = obj
         self.rows = {}  # property name: (label, widget)
         self.changed = lambda: None  # called after a property was set
+        self.unsigned = set()  # numbers that must not be negative, whatever the schema says
+        # property name: what is wrong with what stands in its field, as typed, as told, as shown
+        self.typed, self.told, self.mistakes = {}, {}, {}
         self.layout_ = QtGui.QFormLayout(self)
         self.layout_.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
@@ -94,14 +111,91 @@ class Form(QtGui.QGroupBox):
         elif kind == "App::PropertyPlacement":
             widget = FrameField(getattr(self.obj, name), lambda value: self._set(name, value))
         else:
-            widget = self._number(name, -1e12 if choices == SIGNED else 0.0)
+            widget = self._number(name, choices == SIGNED)
         widget.setToolTip(self.obj.getDocumentationOfProperty(name))
         widget.setObjectName(name)
         label = QtGui.QLabel(f"{text}, {unit}" if unit else text)
         label.setToolTip(widget.toolTip())
         self.layout_.addRow(label, widget)
         self.rows[name] = (label, widget)
+        self._watch(name, widget)
         return widget
+
+    def _watch(self, name, widget):
+        """Checks a number as it is typed."""
+        line = widget if isinstance(widget, QtGui.QLineEdit) else widget.findChild(QtGui.QLineEdit)
+        kind = self.obj.getTypeIdOfProperty(name)
+        if line is not None and (kind in QUANTITIES or kind in NUMBERS):
+            line.textChanged.connect(lambda text: self._check_typed(name, text))
+
+    def _mistake(self, name, text):
+        """What is wrong with a number as it was typed; '' if nothing is."""
+        unit = getattr(getattr(self.obj, name), "Unit", None)
+        if unit is None:
+            value = number(text)
+            if value is None:
+                return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+            return self._out_of_limits(name, value)
+        if text.startswith("="):
+            return ""  # an expression, which FreeCAD checks itself
+        try:
+            quantity = Units.Quantity(text)
+        except Exception:  # the kind differs between FreeCAD's generations
+            return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+        if quantity.Unit == unit:
+            return self._out_of_limits(name, quantity.Value)
+        if quantity.Unit != Units.Unit():
+            return translate("BeltGrinding", "The unit does not fit: {}").format(text)
+        # A bare number takes the unit that the field shows; zero is the same in all.
+        bare = limits(self.obj, name)[0] == 0.0 and quantity.Value <= 0.0
+        return self._out_of_limits(name, quantity.Value) if bare else ""
+
+    def _out_of_limits(self, name, value):
+        low, high, open_low = limits(self.obj, name)
+        if low is None and name in self.unsigned:
+            low = 0.0
+        if low is not None and (value < low or open_low and value == low):
+            if open_low:
+                return translate("BeltGrinding", "Must be greater than {}").format(
+                    self._shown(name, low)
+                )
+            return translate("BeltGrinding", "Must be at least {}").format(self._shown(name, low))
+        if high is not None and value > high:
+            return translate("BeltGrinding", "Must be at most {}").format(self._shown(name, high))
+        return ""
+
+    def _shown(self, name, value):
+        unit = getattr(getattr(self.obj, name), "Unit", None)
+        return f"{value:g}" if unit is None else Units.Quantity(value, unit).UserString
+
+    def mark(self, name, mistake):
+        """Frames a field in red and says in its tooltip what is wrong; '' takes that back. What is
+        wrong with the number as it was typed is marked anyway.
+        """
+        self.told[name] = mistake
+        self._show_mistake(name)
+
+    def _show_mistake(self, name):
+        mistake = self.typed.get(name) or self.told.get(name) or ""
+        if self.mistakes.get(name, "") == mistake:
+            return
+        widget = self.rows[name][1]
+        self.mistakes[name] = mistake
+        widget.setStyleSheet(WRONG if mistake else "")
+        # FreeCAD's entry resets its own tooltip while something wrong stands in it.
+        for shown in (widget, *widget.findChildren(QtGui.QLineEdit)):
+            shown.setToolTip(mistake or self.obj.getDocumentationOfProperty(name))
+
+    def _check_typed(self, name, text):
+        self.typed[name] = self._mistake(name, text)
+        self._show_mistake(name)
+
+    def check(self):
+        """Raises InputError for the first visible field with a mistake."""
+        for name, mistake in self.mistakes.items():
+            label, widget = self.rows[name]
+            if mistake and not widget.isHidden():
+                raise InputError(f"{label.text()}: {mistake}")
 
     def show_rows(self, names):
         """Shows the rows in ``names`` and hides the others."""
@@ -136,16 +230,16 @@ class Form(QtGui.QGroupBox):
         widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), changed)
         return widget
 
-    def _number(self, name, lowest=0.0):
+    def _number(self, name, signed=False):
         widget = QtGui.QLineEdit(f"{getattr(self.obj, name):g}")
-        validator = QtGui.QDoubleValidator(lowest, 1e12, 12, widget)
-        validator.setLocale(QtCore.QLocale.c())
-        widget.setValidator(validator)
+        if not signed:
+            self.unsigned.add(name)
         widget.setCursorPosition(0)  # else a narrow panel shows the last digits only
 
         def changed(text):
-            if widget.hasAcceptableInput():
-                self._set(name, float(text))
+            value = number(text)
+            if value is not None and not self._out_of_limits(name, value):
+                self._set(name, value)
 
         widget.textChanged.connect(changed)
         return widget

@@ -6,8 +6,26 @@ from .. import InputError
 from ..objects import job_object
 from .compat import QtGui, translate
 from .form import Form
+from .face_tint import FaceTint
 from .law_forms import LawForms
 from .panel import Panel
+
+
+def check_tolerance(job):
+    """Raises InputError if a job's tolerance is upside down."""
+    if job.ToleranceLower > job.ToleranceUpper:
+        raise InputError(translate("BeltGrinding", "The lower limit lies above the upper limit."))
+
+
+def mark_tolerance(form, job):
+    """Marks the fields of a job's tolerance in a form if it is upside down."""
+    try:
+        check_tolerance(job)
+        mistake = ""
+    except InputError as error:
+        mistake = str(error)
+    for name in ("ToleranceLower", "ToleranceUpper"):
+        form.mark(name, mistake)
 
 
 class FaceGate:
@@ -47,10 +65,12 @@ class JobPanel(Panel):
         self.body.addWidget(self.law)
         self.body.addWidget(self.timing)
         self.forms = (sampling, self.timing, self.law)
+        self.sampling = sampling
         sampling.changed = self.estimate
         self.timing.changed = self.arrange_timing
         self.finish()
         Gui.Selection.addSelectionGate(FaceGate())
+        self.tint = FaceTint(self.document)
         self.estimate()
 
     def arrange_timing(self):
@@ -112,12 +132,15 @@ class JobPanel(Panel):
 
     def estimate(self):
         """Says what the settings will cost."""
+        mark_tolerance(self.sampling, self.obj)
         try:
             self.check()
             shape, numbers = job_object.design(self.obj)
         except InputError as error:
+            self.tint.show([])
             self.tell(str(error), True)
             return
+        self.tint.show([shape.Faces[number - 1] for number in numbers])
         area = sum(shape.Faces[number - 1].Area for number in numbers)
         count = area / self.obj.Spacing.Value**2
         self.tell(
@@ -129,11 +152,9 @@ class JobPanel(Panel):
     def check(self):
         if self.obj.Spacing.Value <= 0:
             raise InputError(translate("BeltGrinding", "The sample spacing must be positive."))
-        if self.obj.ToleranceLower > self.obj.ToleranceUpper:
-            raise InputError(
-                translate("BeltGrinding", "The lower limit lies above the upper limit.")
-            )
+        check_tolerance(self.obj)
         job_object.design(self.obj)
 
     def close(self):
         Gui.Selection.removeSelectionGate()
+        self.tint.close()

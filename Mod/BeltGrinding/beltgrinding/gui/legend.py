@@ -3,6 +3,7 @@
 from pivy import coin
 
 from .. import core
+from ..objects import preferences
 from .compat import translate
 
 BAR_STEPS = 120
@@ -20,11 +21,14 @@ def node(lower, upper, limit, out_of_date=False, bands=0):
     each ramp.
     """
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    unit = preferences.deviation_unit()
     labels = {
-        _height(value, limit): f"{value:+.3f}" for value in label_values(lower, upper, limit, bands)
+        _height(value, limit): f"{value / unit.size:+.{unit.decimals}f}"
+        for value in label_values(lower, upper, limit, bands)
     }
-    colours = core.colour_scale(lower, upper, limit, values, bands=bands)
-    return _legend(colours, labels, translate("BeltGrinding", "deviation, mm"), out_of_date)
+    colours = core.colour_scale(lower, upper, limit, values, bands, preferences.colours())
+    text = translate("BeltGrinding", "deviation, {}").format(unit.symbol)
+    return _legend(colours, labels, text, out_of_date)
 
 
 def label_values(lower, upper, limit, bands=0):
@@ -48,8 +52,9 @@ def uncertainty_node(limit, out_of_date=False):
     colours = core.uncertainty_scale(
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
-    labels = {HEIGHT * k / 4: f"{limit * k / 4:.3g}" for k in range(5)}
-    text = translate("BeltGrinding", "uncertainty, mm")
+    unit = preferences.deviation_unit()
+    labels = {HEIGHT * k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
+    text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
     return _legend(colours, labels, text, out_of_date)
 
 

@@ -5,6 +5,7 @@ import FreeCADGui as Gui
 
 from .. import InputError
 from .compat import QtGui, buttons, translate
+from .form import Form
 from .icons import icon
 
 
@@ -49,9 +50,13 @@ class Panel:
 
     def accept(self):
         try:
+            for form in self.form.findChildren(QtGui.QGroupBox):
+                if isinstance(form, Form):
+                    form.check()
             self.check()
         except InputError as error:
             self.tell(str(error), True)
+            FreeCAD.Console.PrintError(f"{self.obj.Label}: {error}\n")
             return False
         self.close()
         self.document.recompute()

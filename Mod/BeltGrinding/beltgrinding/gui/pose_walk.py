@@ -12,7 +12,6 @@ from .compat import QtCore, QtGui, translate
 REACH = 8  # pixels around the mouse in which a pose is picked
 LARGEST_SOURCE = 20_000_000  # bytes; a larger file is not shown
 CURRENT = "#ffd54f"  # behind the line of the source that leads to the pose
-COLUMNS = ("Pose", "Line", "Motion", "X", "Y", "Z", "A", "B", "C", "Feed", "Force")
 
 
 class PoseWalk(QtGui.QWidget):
@@ -123,16 +122,24 @@ class _Poses(QtCore.QAbstractTableModel):
     def __init__(self, arrays):
         super().__init__()
         self.arrays = arrays
+        self.titles = (
+            translate("BeltGrinding", "Pose"),
+            translate("BeltGrinding", "Line"),
+            translate("BeltGrinding", "Motion"),
+            *"XYZABC",
+            translate("BeltGrinding", "Feed"),
+            translate("BeltGrinding", "Force"),
+        )
 
     def rowCount(self, parent=None):
         return len(self.arrays["lines"])
 
     def columnCount(self, parent=None):
-        return len(COLUMNS)
+        return len(self.titles)
 
     def headerData(self, section, orientation, role):
         if role == QtCore.Qt.DisplayRole and orientation == QtCore.Qt.Horizontal:
-            return translate("BeltGrinding", COLUMNS[section])
+            return self.titles[section]
         return None
 
     def data(self, index, role):
@@ -190,7 +197,7 @@ class PoseTable(QtGui.QTabWidget):
         self.model = _Poses(self.arrays)
         self.table.setModel(self.model)
         self.table.selectionModel().currentRowChanged.connect(self._row_chosen)
-        for k in range(len(COLUMNS)):
+        for k in range(self.model.columnCount()):
             self.table.setColumnWidth(k, 52 if k in (0, 1, 2) else 68)
         self.quiet = True
         self.source.setPlainText(_text(obj.Source))

@@ -4,7 +4,6 @@ from pathlib import Path
 
 from .. import InputError
 from ..objects import robot_path
-from ..programs import file_pattern
 from .compat import QtGui, translate
 from .form import Form
 from .panel import Panel
@@ -23,8 +22,9 @@ class ProgramPanel(Panel):
         super().__init__(obj, title, "BeltGrinding_ImportProgram")
         form = Form(obj, translate("BeltGrinding", "Program"))
         if obj.SourceObject is None:
-            pattern = f"Robot programs ({file_pattern()})"
-            form.add("Source", translate("BeltGrinding", "File"), pattern)
+            from .commands import programs_filter
+
+            form.add("Source", translate("BeltGrinding", "File"), programs_filter())
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
         self.body.addWidget(form)

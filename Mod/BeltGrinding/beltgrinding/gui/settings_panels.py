@@ -30,7 +30,11 @@ class StockPanel(Panel):
         form.add("Kind", translate("BeltGrinding", "Kind"), kinds)
         form.add("Allowance", translate("BeltGrinding", "Allowance"))
         form.add("Source", translate("BeltGrinding", "Object"), bodies)
-        form.add("File", translate("BeltGrinding", "or file"), f"Mesh ({MESH_FILES})")
+        form.add(
+            "File",
+            translate("BeltGrinding", "or file"),
+            translate("BeltGrinding", "Mesh") + f" ({MESH_FILES})",
+        )
         form.add("FileUnit", translate("BeltGrinding", "Unit of the file"), unit="mm")
         form.add("FilePlacement", translate("BeltGrinding", "Place of the file"))
         form.add("Deflection", translate("BeltGrinding", "Chord error"))

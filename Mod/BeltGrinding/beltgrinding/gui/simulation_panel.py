@@ -12,6 +12,8 @@ from ..objects.simulation import Simulation
 from .compat import QtCore, QtGui, buttons, translate
 from .icons import icon
 from .runner import Runner
+from .status_progress import StatusProgress
+from .time_left import TimeLeft, duration
 
 SHOWN_EVENTS = 1000
 TABLE_HEIGHT = 320  # pixels
@@ -22,7 +24,7 @@ class SimulationPanel:
 
     def __init__(self, job, run):
         self.job = job
-        self.runner = None
+        self.runner = self.status = None
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(translate("BeltGrinding", "Simulation"))
         self.form.setWindowIcon(QtGui.QIcon(icon("BeltGrinding_Simulate")))
@@ -81,8 +83,11 @@ class SimulationPanel:
             self.runner = Runner(self.job, self.progress, self.done)
         except InputError as error:
             self._arrange(False)
+            FreeCAD.Console.PrintError(f"{error}\n")
             self._say(str(error), True)
             return
+        self.left = TimeLeft()
+        self.status = StatusProgress(self.stop)
         self._arrange(True)
         self.progress(0.0)
 
@@ -93,10 +98,16 @@ class SimulationPanel:
     def progress(self, share):
         self.bar.setValue(int(1000 * share))
         seconds = time.monotonic() - self.runner.start
-        self._say(translate("BeltGrinding", "Grinding, {:.0f} s").format(seconds))
+        text = translate("BeltGrinding", "Grinding, {}").format(duration(seconds))
+        left = self.left.update(seconds, share)
+        if left is not None:
+            text += translate("BeltGrinding", "; about {} left").format(duration(left))
+        self._say(text)
+        self.status.update_progress(share, text)
 
     def done(self, simulation, error):
         """The run has ended."""
+        self._remove_status()
         if self.runner.job() is None:
             Gui.Control.closeDialog()
             return
@@ -165,6 +176,11 @@ class SimulationPanel:
         Gui.Control.closeDialog()
         Gui.runCommand("BeltGrinding_Deviation")
 
+    def _remove_status(self):
+        if self.status:
+            self.status.remove()
+            self.status = None
+
     def _arrange(self, running):
         self.bar.setVisible(running)
         self.cancel.setVisible(running)
@@ -181,6 +197,7 @@ class SimulationPanel:
     def reject(self):
         """Close: a run that still goes on is cancelled."""
         if self.runner:
+            self._remove_status()
             self.runner.abandon()  # this panel's widgets are gone before the run has ended
         Gui.Control.closeDialog()
         return True

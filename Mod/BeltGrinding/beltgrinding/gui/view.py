@@ -3,14 +3,29 @@
 import FreeCADGui as Gui
 
 from ..objects.proxy import Stateless
+from .compat import QtGui, translate
 from .icons import icon
 from .panel import edit
 
 
+def add_commands(menu, names):
+    """Adds commands of the workbench to a menu. They work on the job of what is selected, which is
+    what the menu was called on.
+    """
+    from . import commands
+
+    commands.register()
+    for name in names:
+        menu.addActions(Gui.Command.get(name).getAction())
+
+
 class View(Stateless):
-    """Base. ``ICON`` names the icon; ``panel`` makes the task panel."""
+    """Base. ``ICON`` names the icon; ``panel`` makes the task panel; ``COMMANDS`` are those of the
+    job that the tree's context menu offers.
+    """
 
     ICON = ""
+    COMMANDS = ()
 
     def __init__(self, view):
         view.Proxy = self
@@ -27,6 +42,21 @@ class View(Stateless):
     def doubleClicked(self, view):
         edit(view.Object)
         return True
+
+    def setupContextMenu(self, view, menu):
+        """The object's own entries in the tree's context menu."""
+        menu.addAction(QtGui.QIcon(icon(self.ICON)), self.verb(), lambda: self.doubleClicked(view))
+        self.own_entries(view.Object, menu)
+        if self.COMMANDS:
+            menu.addSeparator()
+            add_commands(menu, self.COMMANDS)
+
+    def verb(self):
+        """What a double click does."""
+        return translate("BeltGrinding", "Edit...")
+
+    def own_entries(self, obj, menu):
+        """Adds what only this kind of object can do."""
 
     def setEdit(self, view, mode=0):
         if mode != 0:

@@ -2,6 +2,8 @@
 
 from pivy import coin
 
+from ..objects.robot_path import load_program
+from .compat import QtGui, translate
 from .deviation_view import DeviationView
 from .icons import icon
 from .section_view import SectionView
@@ -36,6 +38,17 @@ class Undrawn(View):
 
 class JobView(View):
     ICON = "BeltGrinding_Job"
+    COMMANDS = (
+        "BeltGrinding_Stock",
+        "BeltGrinding_BeltMachine",
+        "BeltGrinding_ImportProgram",
+        "BeltGrinding_RasterPath",
+        "BeltGrinding_ReadAgain",
+        "BeltGrinding_Simulate",
+        "BeltGrinding_Deviation",
+        "BeltGrinding_ExportJob",
+        "BeltGrinding_ImportResult",
+    )
 
     def panel(self, obj):
         from .job_panel import JobPanel
@@ -54,6 +67,7 @@ class StockView(Undrawn):
 
 class BeltMachineView(Undrawn):
     ICON = "BeltGrinding_BeltMachine"
+    COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
 
     def panel(self, obj):
         from .settings_panels import BeltMachinePanel
@@ -63,6 +77,7 @@ class BeltMachineView(Undrawn):
 
 class BeltView(Undrawn):
     ICON = "BeltGrinding_Belt"
+    COMMANDS = ("BeltGrinding_Simulate",)
 
     def panel(self, obj):
         from .belt_panel import BeltPanel
@@ -74,6 +89,12 @@ class RobotPathView(View):
     """The line begins at the first pose; FreeCAD's own begins at the document's origin."""
 
     ICON = "BeltGrinding_ImportProgram"
+    COMMANDS = (
+        "BeltGrinding_ExportProgram",
+        "BeltGrinding_Simulate",
+        "BeltGrinding_Contact",
+        "BeltGrinding_Cell",
+    )
 
     def attach(self, view):
         super().attach(view)
@@ -93,6 +114,22 @@ class RobotPathView(View):
 
         return ProgramPanel(obj)
 
+    def own_entries(self, obj, menu):
+        if obj.Source:
+            text = translate("BeltGrinding", "Read the file again")
+            menu.addAction(
+                QtGui.QIcon(icon("BeltGrinding_ReadAgain")), text, lambda: read_again(obj)
+            )
+
+
+def read_again(obj):
+    """Reads a path's file again, as one undo step."""
+    from .commands import transaction
+
+    with transaction(obj.Document, translate("BeltGrinding", "Read the file again")):
+        load_program(obj, obj.Source)
+        obj.Document.recompute()
+
 
 class RasterPathView(RobotPathView):
     ICON = "BeltGrinding_RasterPath"
@@ -107,6 +144,7 @@ class SimulationView(Undrawn):
     """The icon says when the result is out of date; a double click shows the result."""
 
     ICON = "BeltGrinding_Simulate"
+    COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation", "BeltGrinding_ImportResult")
 
     def getIcon(self):
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
@@ -121,3 +159,6 @@ class SimulationView(Undrawn):
 
         show_result(view.Object)
         return True
+
+    def verb(self):
+        return translate("BeltGrinding", "Show result")

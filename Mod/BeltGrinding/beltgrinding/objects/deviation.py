@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import InputError, core
 from ..result import colour_scale
+from . import preferences
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -107,14 +108,16 @@ class Deviation(Proxy):
         scale = colour_scale({"inspection": inspection(job)})
         result = [simulation.Fingerprint, simulation.WallTime]
         bounds = [obj.Bounds, obj.TimesTolerance, obj.Percentile, obj.Bands]
+        chosen = preferences.colours()
+        shown = [*scale, obj.ColourBy, *bounds, chosen and list(chosen)]
         before = json.loads(obj.Shown or "[null, null]")
-        if before == [result, [*scale, obj.ColourBy, *bounds]]:
+        if before == [result, shown]:
             return
         field = simulation.Proxy.field(simulation)
         if field is None:
             raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
         show(obj, field, scale, before[0] != result)
-        obj.Shown = json.dumps([result, [*scale, obj.ColourBy, *bounds]])
+        obj.Shown = json.dumps([result, shown])
 
 
 def _round_up(value):
@@ -164,7 +167,7 @@ def show(obj, field, scale, new_mesh=True):
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
         colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
     else:
-        colours = core.deviation_colours(field, *scale, bands=bands_of(obj))
+        colours = core.deviation_colours(field, *scale, bands_of(obj), preferences.colours())
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
     for name, key in STATISTICS.items():
         setattr(obj, name, statistics[key])

@@ -6,6 +6,12 @@ import FreeCAD
 
 from . import api
 
+# Suffixes that FreeCAD's spreadsheets and CAM read too: with the workbench open it asks who shall.
+SHARED_TYPE = (
+    "Robot program, milling program or table (*.csv *.nc *.ngc *.gcode *.tap)",
+    "beltgrinding.objects.importer",
+)
+
 
 def open(path):
     """Opens a robot program as a new document."""

@@ -11,7 +11,7 @@ from ..poses import list_poses
 from .belt_machine import BeltMachine
 from .deviation import Deviation
 from .geometry import faces_digest, placed_shape
-from .properties import Key, add_keys, to_job
+from .properties import Key, add_keys, check_limits, to_job
 from .proxy import Proxy, type_of
 from .robot_path import RobotPath
 from .section import Section
@@ -73,7 +73,9 @@ class BeltGrindingJob(Proxy):
         add_keys(obj, KEYS)
 
     def execute(self, obj):
-        """Marks the result out of date or up to date, and recolours it; never simulates."""
+        """Marks the result out of date or up to date, and recolours it; never simulates. Raises
+        InputError for settings that cannot be, so that the tree shows where the mistake is.
+        """
         simulation = child(obj, Simulation)
         if simulation is not None and simulation.Fingerprint:
             try:
@@ -85,6 +87,10 @@ class BeltGrindingJob(Proxy):
             deviation.Proxy.update(deviation)
         for section in children(obj, Section):
             section.Proxy.update(section)
+        check_limits(obj, KEYS)
+        if obj.ToleranceLower > obj.ToleranceUpper:
+            raise InputError(f"{obj.Label}: ToleranceLower lies above ToleranceUpper")
+        design(obj)
 
 
 def children(job, proxy):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from .. import InputError, schemas
 from ..job import schema
+from .proxy import type_of
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
 # pressure in kPa.
@@ -27,6 +28,9 @@ class Key(NamedTuple):
     @property
     def scale(self):
         return self.factor * FACTOR.get(self.kind, 1.0)
+
+
+_keys = {}  # (type of the object, name of the property): Key
 
 
 class Output(NamedTuple):
@@ -65,6 +69,7 @@ def rule(key):
 def add_keys(obj, keys):
     """Adds what ``obj`` lacks, with the schema's defaults."""
     for key in keys:
+        _keys[type_of(obj), key.name] = key
         if key.name in obj.PropertiesList:
             _widen(obj, key)
             continue
@@ -94,6 +99,37 @@ def add_outputs(obj, outputs):
         kind = f"App::Property{output.kind}"
         obj.addProperty(kind, output.name, output.group, output.text, 8)
         obj.setEditorMode(output.name, 2 if output.hidden else 1)
+
+
+def limits(obj, name):
+    """(lowest, highest, whether the lowest itself is out) of a property in FreeCAD's unit; None where
+    the schema sets no limit, or the property is none of a job's numbers.
+    """
+    key = _keys.get((type_of(obj), name))
+    if key is None or key.kind in (*AS_IS, "JSON", "Vector", "VectorList"):
+        return None, None, False
+    found = rule(key.key)[0]
+    low, high = found.get("minimum"), found.get("maximum")
+    open_low = "exclusiveMinimum" in found
+    if open_low:
+        low = found["exclusiveMinimum"]
+    scaled = [None if value is None else value * key.scale for value in (low, high)]
+    return scaled[0], scaled[1], open_low
+
+
+def check_limits(obj, keys):
+    """Raises InputError for the first property that lies outside of the schema's limits."""
+    for key in keys:
+        low, high, open_low = limits(obj, key.name)
+        value = getattr(obj, key.name)
+        number = getattr(value, "Value", value)
+        if low is not None and (number < low or open_low and number == low):
+            raise InputError(
+                f"{obj.Label}: {key.name} is {value}; it must be "
+                f"{'greater than' if open_low else 'at least'} {low:g}"
+            )
+        if high is not None and number > high:
+            raise InputError(f"{obj.Label}: {key.name} is {value}; it must be at most {high:g}")
 
 
 def get_value(obj, key):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .. import InputError
 from .geometry import faces_digest, placed_shape, placement_to_job
-from .properties import Key, add_keys, get_value
+from .properties import Key, add_keys, check_limits, get_value
 from .proxy import Proxy
 
 KEYS = (
@@ -41,6 +41,14 @@ class Stock(Proxy):
             if name not in obj.PropertiesList:
                 obj.addProperty(f"App::Property{kind}", name, group, text)
 
+    def execute(self, obj):
+        """Raises InputError for a stock that cannot be; the tree shows it there."""
+        check_limits(obj, [key for key in KEYS if key.name in USED[obj.Kind]])
+        if obj.Kind == "solid":
+            _require_solid(obj)
+        elif obj.Kind == "mesh":
+            _require_mesh(obj)
+
     def settings(self, obj):
         """The part of a job under 'stock' that needs no geometry."""
         used = USED[obj.Kind]
@@ -72,14 +80,13 @@ class Stock(Proxy):
         if obj.Kind == "solid":
             job["brep"] = _shape(obj).exportBrepToString()
         elif obj.Kind == "mesh":
+            _require_mesh(obj)
             if obj.Source is not None:
                 job["file"] = _write_mesh(obj, Path(folder))
                 job["unit_mm"] = 1.0
-            elif obj.File:
+            else:
                 job["file"] = obj.File
                 job["placement"] = placement_to_job(obj.FilePlacement)
-            else:
-                raise InputError(f"{obj.Label}: choose the mesh: an object or a file")
         return job
 
 
@@ -92,17 +99,26 @@ def _file_digest(path, size, time):
     return hashed.hexdigest()
 
 
-def _shape(obj):
+def _require_solid(obj):
     if obj.Source is None:
         raise InputError(f"{obj.Label}: choose the solid that is the stock")
     if not hasattr(obj.Source, "Shape"):
         raise InputError(f"{obj.Label}: {obj.Source.Label} is no solid; set Kind to mesh")
+
+
+def _require_mesh(obj):
+    if obj.Source is None and not obj.File:
+        raise InputError(f"{obj.Label}: choose the mesh: an object or a file")
+    if obj.Source is not None and not hasattr(obj.Source, "Mesh"):
+        raise InputError(f"{obj.Label}: {obj.Source.Label} is no mesh; set Kind to solid")
+
+
+def _shape(obj):
+    _require_solid(obj)
     return placed_shape(obj.Source)
 
 
 def _write_mesh(obj, folder):
-    if not hasattr(obj.Source, "Mesh"):
-        raise InputError(f"{obj.Label}: {obj.Source.Label} is no mesh; set Kind to solid")
     mesh = obj.Source.Mesh.copy()
     mesh.Placement = obj.Source.getGlobalPlacement()
     path = folder / "stock.ply"

@@ -1,0 +1,41 @@
+"""A run's progress in FreeCAD's status bar, seen whatever panel is in front."""
+
+import FreeCADGui as Gui
+
+from .compat import QtGui, translate
+
+WIDTH = 120  # pixels
+
+
+class StatusProgress(QtGui.QWidget):
+    """Text, bar and Cancel; it is there until ``remove``."""
+
+    def __init__(self, cancel):
+        super().__init__()
+        self.setObjectName("BeltGrinding_Progress")
+        row = QtGui.QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        self.text = QtGui.QLabel()
+        self.bar = QtGui.QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.bar.setFixedWidth(WIDTH)
+        self.bar.setTextVisible(False)
+        button = QtGui.QToolButton()
+        button.setIcon(self.style().standardIcon(QtGui.QStyle.SP_DialogCancelButton))
+        button.setToolTip(translate("BeltGrinding", "Cancel the simulation"))
+        button.setAutoRaise(True)
+        button.clicked.connect(cancel)
+        for widget in (self.text, self.bar, button):
+            row.addWidget(widget)
+        Gui.getMainWindow().statusBar().addPermanentWidget(self)
+        self.show()
+
+    def update_progress(self, share, text):
+        """``share`` done in [0, 1]."""
+        self.bar.setValue(int(1000 * share))
+        self.text.setText(text)
+
+    def remove(self):
+        """Takes it out of the status bar."""
+        Gui.getMainWindow().statusBar().removeWidget(self)
+        self.deleteLater()

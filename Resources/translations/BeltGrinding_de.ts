@@ -1,0 +1,1620 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de_DE" sourcelanguage="en">
+<context>
+    <name>BeltGrinding</name>
+    <message>
+        <source>(none)</source>
+        <translation>(keine)</translation>
+    </message>
+    <message>
+        <source>(not known)</source>
+        <translation>(nicht bekannt)</translation>
+    </message>
+    <message>
+        <source>... and {} more</source>
+        <translation>... und {} weitere</translation>
+    </message>
+    <message>
+        <source>5 % lie below</source>
+        <translation>5 % liegen darunter</translation>
+    </message>
+    <message>
+        <source>95 % lie below</source>
+        <translation>95 % liegen darunter</translation>
+    </message>
+    <message>
+        <source>; about {} left</source>
+        <translation>; noch etwa {}</translation>
+    </message>
+    <message>
+        <source>A direction</source>
+        <translation>Eine Richtung</translation>
+    </message>
+    <message>
+        <source>A new belt is on.</source>
+        <translation>Ein neues Band ist aufgelegt.</translation>
+    </message>
+    <message>
+        <source>A rigid tool has no force: set the control to position.</source>
+        <translation>Ein starres Werkzeug hat keine Kraft: die Regelung auf Lage stellen.</translation>
+    </message>
+    <message>
+        <source>Add selected</source>
+        <translation>Hinzufügen</translation>
+    </message>
+    <message>
+        <source>Again</source>
+        <translation>Erneut</translation>
+    </message>
+    <message>
+        <source>Allowance</source>
+        <translation>Aufmaß</translation>
+    </message>
+    <message>
+        <source>Along</source>
+        <translation>Entlang</translation>
+    </message>
+    <message>
+        <source>Along the normal</source>
+        <translation>Entlang der Normalen</translation>
+    </message>
+    <message>
+        <source>Angular acceleration</source>
+        <translation>Winkelbeschleunigung</translation>
+    </message>
+    <message>
+        <source>Approach</source>
+        <translation>Anfahren</translation>
+    </message>
+    <message>
+        <source>Approach feed</source>
+        <translation>Anfahrvorschub</translation>
+    </message>
+    <message>
+        <source>Approach length</source>
+        <translation>Anfahrlänge</translation>
+    </message>
+    <message>
+        <source>Area</source>
+        <translation>Fläche</translation>
+    </message>
+    <message>
+        <source>At a pose of the program</source>
+        <translation>An einer Pose des Programms</translation>
+    </message>
+    <message>
+        <source>At the part, as they are drawn</source>
+        <translation>Am Werkstück, wie gezeichnet</translation>
+    </message>
+    <message>
+        <source>At the wheel, in the contact frame</source>
+        <translation>An der Scheibe, im Kontaktsystem</translation>
+    </message>
+    <message>
+        <source>Belt</source>
+        <translation>Schleifband</translation>
+    </message>
+    <message>
+        <source>Belt against pass</source>
+        <translation>Band gegen Bahn</translation>
+    </message>
+    <message>
+        <source>Belt and control</source>
+        <translation>Band und Regelung</translation>
+    </message>
+    <message>
+        <source>Belt bending</source>
+        <translation>Bandbiegung</translation>
+    </message>
+    <message>
+        <source>Belt grinding</source>
+        <translation>Bandschleifen</translation>
+    </message>
+    <message>
+        <source>Belt machine</source>
+        <translation>Bandschleifmaschine</translation>
+    </message>
+    <message>
+        <source>Belt speed</source>
+        <translation>Bandgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Belt tension</source>
+        <translation>Bandspannung</translation>
+    </message>
+    <message>
+        <source>Belt wear</source>
+        <translation>Bandverschleiß</translation>
+    </message>
+    <message>
+        <source>Belt-grinding job</source>
+        <translation>Bandschleifauftrag</translation>
+    </message>
+    <message>
+        <source>Bodies</source>
+        <translation>Körper</translation>
+    </message>
+    <message>
+        <source>Bonded layer</source>
+        <translation>Aufgeklebte Schicht</translation>
+    </message>
+    <message>
+        <source>Bridge gaps up to</source>
+        <translation>Lücken überbrücken bis</translation>
+    </message>
+    <message>
+        <source>By a curve</source>
+        <translation>Nach Kurve</translation>
+    </message>
+    <message>
+        <source>CSV with columns such as force_N, time_s, area_mm2</source>
+        <translation>CSV mit Spalten wie force_N, time_s, area_mm2</translation>
+    </message>
+    <message>
+        <source>Calibrate removal law</source>
+        <translation>Abtragsgesetz kalibrieren</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Cancel the simulation</source>
+        <translation>Simulation abbrechen</translation>
+    </message>
+    <message>
+        <source>Cancelled; the document is as it was.</source>
+        <translation>Abgebrochen; das Dokument ist wie zuvor.</translation>
+    </message>
+    <message>
+        <source>Cell</source>
+        <translation>Zelle</translation>
+    </message>
+    <message>
+        <source>Choose the file that `beltgrind surrogate` wrote.</source>
+        <translation>Bitte die Datei wählen, die `beltgrind surrogate` geschrieben hat.</translation>
+    </message>
+    <message>
+        <source>Choose the mesh: an object or a file.</source>
+        <translation>Bitte das Netz wählen: ein Objekt oder eine Datei.</translation>
+    </message>
+    <message>
+        <source>Choose the solid that is the stock.</source>
+        <translation>Bitte den Volumenkörper wählen, der das Rohteil ist.</translation>
+    </message>
+    <message>
+        <source>Choose the table of measured grinds.</source>
+        <translation>Bitte die Tabelle der gemessenen Schliffe wählen.</translation>
+    </message>
+    <message>
+        <source>Chord error</source>
+        <translation>Sehnenfehler</translation>
+    </message>
+    <message>
+        <source>Clearance</source>
+        <translation>Sicherheitsabstand</translation>
+    </message>
+    <message>
+        <source>Close the open task panel first.</source>
+        <translation>Zuerst das offene Aufgabenfenster schließen.</translation>
+    </message>
+    <message>
+        <source>Colours</source>
+        <translation>Farben</translation>
+    </message>
+    <message>
+        <source>Colours end at</source>
+        <translation>Farbskala endet bei</translation>
+    </message>
+    <message>
+        <source>Constant feed</source>
+        <translation>Konstanter Vorschub</translation>
+    </message>
+    <message>
+        <source>Contact across the pass: {:.1f} mm</source>
+        <translation>Kontakt quer zur Bahn: {:.1f} mm</translation>
+    </message>
+    <message>
+        <source>Contact at a pose</source>
+        <translation>Kontakt an einer Pose</translation>
+    </message>
+    <message>
+        <source>Contact in base</source>
+        <translation>Kontakt in Basis</translation>
+    </message>
+    <message>
+        <source>Contact in tool</source>
+        <translation>Kontakt im Werkzeug</translation>
+    </message>
+    <message>
+        <source>Contact wheel</source>
+        <translation>Kontaktscheibe</translation>
+    </message>
+    <message>
+        <source>Control</source>
+        <translation>Regelung</translation>
+    </message>
+    <message>
+        <source>Count the simulated grind</source>
+        <translation>Simulierten Schliff anrechnen</translation>
+    </message>
+    <message>
+        <source>Crown radius (0: cylinder)</source>
+        <translation>Balligkeitsradius (0: Zylinder)</translation>
+    </message>
+    <message>
+        <source>Cut too deep</source>
+        <translation>Zu tief geschliffen</translation>
+    </message>
+    <message>
+        <source>Cutting ability (fresh: 1)</source>
+        <translation>Schnittvermögen (neu: 1)</translation>
+    </message>
+    <message>
+        <source>Default zone</source>
+        <translation>Standardzone</translation>
+    </message>
+    <message>
+        <source>Deviation</source>
+        <translation>Abweichung</translation>
+    </message>
+    <message>
+        <source>Direction</source>
+        <translation>Richtung</translation>
+    </message>
+    <message>
+        <source>Distance at most</source>
+        <translation>Abstand höchstens</translation>
+    </message>
+    <message>
+        <source>Done.</source>
+        <translation>Fertig.</translation>
+    </message>
+    <message>
+        <source>Drive wheel&apos;s diameter, mm</source>
+        <translation>Durchmesser der Antriebsscheibe, mm</translation>
+    </message>
+    <message>
+        <source>Edit</source>
+        <translation>Bearbeiten</translation>
+    </message>
+    <message>
+        <source>Edit...</source>
+        <translation>Bearbeiten...</translation>
+    </message>
+    <message>
+        <source>Elastic foundation</source>
+        <translation>Elastische Bettung</translation>
+    </message>
+    <message>
+        <source>Elasticity</source>
+        <translation>Elastizität</translation>
+    </message>
+    <message>
+        <source>Even on the surface</source>
+        <translation>Gleichmäßig auf der Fläche</translation>
+    </message>
+    <message>
+        <source>Event</source>
+        <translation>Ereignis</translation>
+    </message>
+    <message>
+        <source>Exponent of belt speed</source>
+        <translation>Exponent der Bandgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Exponent of feed</source>
+        <translation>Exponent des Vorschubs</translation>
+    </message>
+    <message>
+        <source>Exponent of pressure</source>
+        <translation>Exponent des Drucks</translation>
+    </message>
+    <message>
+        <source>Exponential</source>
+        <translation>Exponentiell</translation>
+    </message>
+    <message>
+        <source>Export job file</source>
+        <translation>Auftragsdatei schreiben</translation>
+    </message>
+    <message>
+        <source>Faces</source>
+        <translation>Flächen</translation>
+    </message>
+    <message>
+        <source>Faces to be ground</source>
+        <translation>Zu schleifende Flächen</translation>
+    </message>
+    <message>
+        <source>Faces: {}. Area: {:,.0f} mm². Samples: about {:,.0f}.</source>
+        <translation>Flächen: {}. Flächeninhalt: {:,.0f} mm². Abtastpunkte: etwa {:,.0f}.</translation>
+    </message>
+    <message>
+        <source>Falls to 1/e in</source>
+        <translation>Fällt auf 1/e nach</translation>
+    </message>
+    <message>
+        <source>Falls with</source>
+        <translation>Fällt mit</translation>
+    </message>
+    <message>
+        <source>Feed</source>
+        <translation>Vorschub</translation>
+    </message>
+    <message>
+        <source>Feed (0: as programmed)</source>
+        <translation>Vorschub (0: wie programmiert)</translation>
+    </message>
+    <message>
+        <source>Fewer leave more of the machine to others; results are equal</source>
+        <translation>Weniger lassen anderen Programmen mehr vom Rechner; die Ergebnisse sind gleich</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>Datei</translation>
+    </message>
+    <message>
+        <source>Fit</source>
+        <translation>Anpassen</translation>
+    </message>
+    <message>
+        <source>Fitting ...</source>
+        <translation>Wird angepasst ...</translation>
+    </message>
+    <message>
+        <source>Flip loose normals</source>
+        <translation>Lose Normalen umkehren</translation>
+    </message>
+    <message>
+        <source>Folder of the result</source>
+        <translation>Ordner des Ergebnisses</translation>
+    </message>
+    <message>
+        <source>For the legend and the figures of the deviation. All else is shown in the units of FreeCAD&apos;s own preferences</source>
+        <translation>Für die Legende und die Kennwerte der Abweichung. Alles andere erscheint in den Einheiten aus FreeCADs eigenen Einstellungen</translation>
+    </message>
+    <message>
+        <source>Force</source>
+        <translation>Kraft</translation>
+    </message>
+    <message>
+        <source>Force (0: as programmed)</source>
+        <translation>Kraft (0: wie programmiert)</translation>
+    </message>
+    <message>
+        <source>Force (0: machine&apos;s)</source>
+        <translation>Kraft (0: der Maschine)</translation>
+    </message>
+    <message>
+        <source>Force: {:.1f} N (commanded: {:.1f} N)
+Highest pressure: {:.3f} MPa (darkest)
+Contact: {:.0f} mm² of {:.1f} x {:.1f} mm
+Wheel: {:+.3f} mm beyond its pose
+x to the right along the belt, y upwards along the axis</source>
+        <translation>Kraft: {:.1f} N (Sollwert: {:.1f} N)
+Höchster Druck: {:.3f} MPa (am dunkelsten)
+Kontakt: {:.0f} mm² bei {:.1f} x {:.1f} mm
+Scheibe: {:+.3f} mm über ihre Pose hinaus
+x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
+    </message>
+    <message>
+        <source>Frames</source>
+        <translation>Koordinatensysteme</translation>
+    </message>
+    <message>
+        <source>From selected edge</source>
+        <translation>Von gewählter Kante</translation>
+    </message>
+    <message>
+        <source>General</source>
+        <translation>Allgemein</translation>
+    </message>
+    <message>
+        <source>Geometric (rigid tool)</source>
+        <translation>Geometrisch (starres Werkzeug)</translation>
+    </message>
+    <message>
+        <source>Grinding up to pose {} ...</source>
+        <translation>Schleift bis Pose {} ...</translation>
+    </message>
+    <message>
+        <source>Grinding, {}</source>
+        <translation>Schleift, {}</translation>
+    </message>
+    <message>
+        <source>Half-space</source>
+        <translation>Halbraum</translation>
+    </message>
+    <message>
+        <source>Hammann, global</source>
+        <translation>Hammann, global</translation>
+    </message>
+    <message>
+        <source>Heat limit</source>
+        <translation>Wärmegrenze</translation>
+    </message>
+    <message>
+        <source>Housing, gripper, fixtures: their coordinates are taken in the chosen frame</source>
+        <translation>Gehäuse, Greifer, Vorrichtungen: ihre Koordinaten gelten im gewählten Koordinatensystem</translation>
+    </message>
+    <message>
+        <source>Import a robot program to see the cell at its poses.</source>
+        <translation>Ein Roboterprogramm einlesen, um die Zelle an seinen Posen zu sehen.</translation>
+    </message>
+    <message>
+        <source>Import robot program</source>
+        <translation>Roboterprogramm einlesen</translation>
+    </message>
+    <message>
+        <source>In contact</source>
+        <translation>Im Eingriff</translation>
+    </message>
+    <message>
+        <source>In the robot&apos;s hand, in the tool frame</source>
+        <translation>In der Roboterhand, im Werkzeugsystem</translation>
+    </message>
+    <message>
+        <source>In tol., expected</source>
+        <translation>In Tol., erwartet</translation>
+    </message>
+    <message>
+        <source>In tolerance</source>
+        <translation>In Toleranz</translation>
+    </message>
+    <message>
+        <source>K</source>
+        <translation>K</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>Lands of a serrated wheel (share)</source>
+        <translation>Stege einer genuteten Scheibe (Anteil)</translation>
+    </message>
+    <message>
+        <source>Larger plot</source>
+        <translation>Größeres Diagramm</translation>
+    </message>
+    <message>
+        <source>Law</source>
+        <translation>Gesetz</translation>
+    </message>
+    <message>
+        <source>Line</source>
+        <translation>Zeile</translation>
+    </message>
+    <message>
+        <source>Lines of the surface</source>
+        <translation>Linien der Fläche</translation>
+    </message>
+    <message>
+        <source>Local linear</source>
+        <translation>Lokal linear</translation>
+    </message>
+    <message>
+        <source>Local with exponents</source>
+        <translation>Lokal mit Exponenten</translation>
+    </message>
+    <message>
+        <source>Lower limit</source>
+        <translation>Untere Grenze</translation>
+    </message>
+    <message>
+        <source>Material</source>
+        <translation>Werkstoff</translation>
+    </message>
+    <message>
+        <source>Maximum</source>
+        <translation>Maximum</translation>
+    </message>
+    <message>
+        <source>Mean</source>
+        <translation>Mittelwert</translation>
+    </message>
+    <message>
+        <source>Measured grinds</source>
+        <translation>Gemessene Schliffe</translation>
+    </message>
+    <message>
+        <source>Median</source>
+        <translation>Median</translation>
+    </message>
+    <message>
+        <source>Mesh (a scan)</source>
+        <translation>Netz (ein Scan)</translation>
+    </message>
+    <message>
+        <source>Minimum</source>
+        <translation>Minimum</translation>
+    </message>
+    <message>
+        <source>Model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
+        <source>Motion</source>
+        <translation>Bewegung</translation>
+    </message>
+    <message>
+        <source>Must be at least {}</source>
+        <translation>Muss mindestens {} sein</translation>
+    </message>
+    <message>
+        <source>Must be at most {}</source>
+        <translation>Darf höchstens {} sein</translation>
+    </message>
+    <message>
+        <source>Must be greater than {}</source>
+        <translation>Muss größer als {} sein</translation>
+    </message>
+    <message>
+        <source>New belt</source>
+        <translation>Neues Band</translation>
+    </message>
+    <message>
+        <source>New jobs</source>
+        <translation>Neue Aufträge</translation>
+    </message>
+    <message>
+        <source>No events.</source>
+        <translation>Keine Ereignisse.</translation>
+    </message>
+    <message>
+        <source>No result yet.</source>
+        <translation>Noch kein Ergebnis.</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>Keiner</translation>
+    </message>
+    <message>
+        <source>Object</source>
+        <translation>Objekt</translation>
+    </message>
+    <message>
+        <source>Off: the part stays and the wheel moves over it. On: the part moves where the robot holds it</source>
+        <translation>Aus: Das Werkstück bleibt stehen, die Scheibe fährt darüber. Ein: Das Werkstück bewegt sich, wenn der Roboter es hält</translation>
+    </message>
+    <message>
+        <source>One way</source>
+        <translation>Gleichsinnig</translation>
+    </message>
+    <message>
+        <source>Open job file</source>
+        <translation>Auftragsdatei öffnen</translation>
+    </message>
+    <message>
+        <source>Order</source>
+        <translation>Reihenfolge</translation>
+    </message>
+    <message>
+        <source>Out of date: an input has changed since.</source>
+        <translation>Veraltet: Eine Eingabe hat sich seitdem geändert.</translation>
+    </message>
+    <message>
+        <source>Out of date: simulate again.</source>
+        <translation>Veraltet: erneut simulieren.</translation>
+    </message>
+    <message>
+        <source>Parameter</source>
+        <translation>Parameter</translation>
+    </message>
+    <message>
+        <source>Part in base</source>
+        <translation>Werkstück in Basis</translation>
+    </message>
+    <message>
+        <source>Part in hand</source>
+        <translation>Werkstück</translation>
+    </message>
+    <message>
+        <source>Part in tool</source>
+        <translation>Werkstück im Werkzeug</translation>
+    </message>
+    <message>
+        <source>Passes</source>
+        <translation>Bahnen</translation>
+    </message>
+    <message>
+        <source>Path acceleration</source>
+        <translation>Bahnbeschleunigung</translation>
+    </message>
+    <message>
+        <source>Place of the file</source>
+        <translation>Lage der Datei</translation>
+    </message>
+    <message>
+        <source>Poisson&apos;s ratio</source>
+        <translation>Querkontraktionszahl</translation>
+    </message>
+    <message>
+        <source>Poisson&apos;s ratio lies from 0 to 0.499.</source>
+        <translation>Die Querkontraktionszahl liegt zwischen 0 und 0,499.</translation>
+    </message>
+    <message>
+        <source>Pose</source>
+        <translation>Pose</translation>
+    </message>
+    <message>
+        <source>Poses</source>
+        <translation>Posen</translation>
+    </message>
+    <message>
+        <source>Position</source>
+        <translation>Lage</translation>
+    </message>
+    <message>
+        <source>Presets</source>
+        <translation>Vorgaben</translation>
+    </message>
+    <message>
+        <source>Problems ({})</source>
+        <translation>Probleme ({})</translation>
+    </message>
+    <message>
+        <source>Process</source>
+        <translation>Prozess</translation>
+    </message>
+    <message>
+        <source>Program</source>
+        <translation>Programm</translation>
+    </message>
+    <message>
+        <source>Radius</source>
+        <translation>Radius</translation>
+    </message>
+    <message>
+        <source>Raster path</source>
+        <translation>Zeilenbahn</translation>
+    </message>
+    <message>
+        <source>Read the file again</source>
+        <translation>Datei neu einlesen</translation>
+    </message>
+    <message>
+        <source>Reference feed</source>
+        <translation>Bezugsvorschub</translation>
+    </message>
+    <message>
+        <source>Reference pressure</source>
+        <translation>Bezugsdruck</translation>
+    </message>
+    <message>
+        <source>Reference speed</source>
+        <translation>Bezugsgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Remaining cut: {:.1f} % of a fresh belt&apos;s</source>
+        <translation>Restschnittvermögen: {:.1f} % eines neuen Bandes</translation>
+    </message>
+    <message>
+        <source>Removal</source>
+        <translation>Abtrag</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>Removed</source>
+        <translation>Abgetragen</translation>
+    </message>
+    <message>
+        <source>Removed volume, mm³</source>
+        <translation>Abtragsvolumen, mm³</translation>
+    </message>
+    <message>
+        <source>Removed: {:,.1f} of {:,.1f} mm³
+Process time: {:.1f} s
+Samples: {:,}, steps: {:,}, computed in {:.1f} s
+Missed rays: {:,}, defective stock: {:,} samples</source>
+        <translation>Abgetragen: {:,.1f} von {:,.1f} mm³
+Prozesszeit: {:.1f} s
+Abtastpunkte: {:,}, Schritte: {:,}, gerechnet in {:.1f} s
+Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
+    </message>
+    <message>
+        <source>Rigid (geometric)</source>
+        <translation>Starr (geometrisch)</translation>
+    </message>
+    <message>
+        <source>Rim thickness</source>
+        <translation>Belagdicke</translation>
+    </message>
+    <message>
+        <source>Robot holds</source>
+        <translation>Roboter hält</translation>
+    </message>
+    <message>
+        <source>Robot program</source>
+        <translation>Roboterprogramm</translation>
+    </message>
+    <message>
+        <source>Robot&apos;s speed</source>
+        <translation>Robotergeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Robot&apos;s stiffness (0: rigid)</source>
+        <translation>Robotersteifigkeit (0: starr)</translation>
+    </message>
+    <message>
+        <source>Root mean square</source>
+        <translation>Quadratisches Mittel</translation>
+    </message>
+    <message>
+        <source>Rotation speed</source>
+        <translation>Drehgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Run-out at borders</source>
+        <translation>Überlauf an Rändern</translation>
+    </message>
+    <message>
+        <source>Runs counted: {}.</source>
+        <translation>Angerechnete Läufe: {}.</translation>
+    </message>
+    <message>
+        <source>Sample spacing</source>
+        <translation>Abtastabstand</translation>
+    </message>
+    <message>
+        <source>Sampling and tolerance</source>
+        <translation>Abtastung und Toleranz</translation>
+    </message>
+    <message>
+        <source>Saturation (0: none)</source>
+        <translation>Sättigung (0: keine)</translation>
+    </message>
+    <message>
+        <source>Search inward</source>
+        <translation>Suche nach innen</translation>
+    </message>
+    <message>
+        <source>Search outward</source>
+        <translation>Suche nach außen</translation>
+    </message>
+    <message>
+        <source>Select Part or Mesh objects in the tree first.</source>
+        <translation>Zuerst Part- oder Mesh-Objekte im Baum auswählen.</translation>
+    </message>
+    <message>
+        <source>Select an edge in the 3D view first.</source>
+        <translation>Zuerst eine Kante in der 3D-Ansicht auswählen.</translation>
+    </message>
+    <message>
+        <source>Select faces in the 3D view first.</source>
+        <translation>Zuerst Flächen in der 3D-Ansicht auswählen.</translation>
+    </message>
+    <message>
+        <source>Select one CAM path or robot trajectory in the tree first.</source>
+        <translation>Zuerst eine CAM-Bahn oder Roboterbahn im Baum auswählen.</translation>
+    </message>
+    <message>
+        <source>Select the faces to be ground, or the part, first.</source>
+        <translation>Zuerst die zu schleifenden Flächen oder das Werkstück auswählen.</translation>
+    </message>
+    <message>
+        <source>Set the belt speed to {} m/s</source>
+        <translation>Bandgeschwindigkeit auf {} m/s setzen</translation>
+    </message>
+    <message>
+        <source>Share of contact width</source>
+        <translation>Anteil der Kontaktbreite</translation>
+    </message>
+    <message>
+        <source>Share that goes at first</source>
+        <translation>Anfangs verlorener Anteil</translation>
+    </message>
+    <message>
+        <source>Share that stays</source>
+        <translation>Bleibender Anteil</translation>
+    </message>
+    <message>
+        <source>Shore A</source>
+        <translation>Shore A</translation>
+    </message>
+    <message>
+        <source>Show</source>
+        <translation>Anzeigen</translation>
+    </message>
+    <message>
+        <source>Show result</source>
+        <translation>Ergebnis zeigen</translation>
+    </message>
+    <message>
+        <source>Show the cell as it moves</source>
+        <translation>Zelle in Bewegung zeigen</translation>
+    </message>
+    <message>
+        <source>Simulate a job that runs on this belt first.</source>
+        <translation>Zuerst einen Auftrag simulieren, der mit diesem Band läuft.</translation>
+    </message>
+    <message>
+        <source>Simulation</source>
+        <translation>Simulation</translation>
+    </message>
+    <message>
+        <source>Smooth normals over</source>
+        <translation>Normalen glätten über</translation>
+    </message>
+    <message>
+        <source>Solid</source>
+        <translation>Volumenkörper</translation>
+    </message>
+    <message>
+        <source>Source</source>
+        <translation>Quelltext</translation>
+    </message>
+    <message>
+        <source>Spacing</source>
+        <translation>Abstände</translation>
+    </message>
+    <message>
+        <source>Stand still, in the base frame</source>
+        <translation>Stehen still, im Basissystem</translation>
+    </message>
+    <message>
+        <source>Standard colours</source>
+        <translation>Standardfarben</translation>
+    </message>
+    <message>
+        <source>Step-over (0: by contact)</source>
+        <translation>Zeilenabstand (0: nach Kontakt)</translation>
+    </message>
+    <message>
+        <source>Stiffness (0: of the rim)</source>
+        <translation>Steifigkeit (0: des Kranzes)</translation>
+    </message>
+    <message>
+        <source>Stock</source>
+        <translation>Rohteil</translation>
+    </message>
+    <message>
+        <source>Stock on the design faces</source>
+        <translation>Aufmaß auf den Sollflächen</translation>
+    </message>
+    <message>
+        <source>Surrogate</source>
+        <translation>Ersatzmodell</translation>
+    </message>
+    <message>
+        <source>Surrogate (trained)</source>
+        <translation>Ersatzmodell (trainiert)</translation>
+    </message>
+    <message>
+        <source>Take selected</source>
+        <translation>Auswahl übernehmen</translation>
+    </message>
+    <message>
+        <source>Tangential arc</source>
+        <translation>Tangentialer Bogen</translation>
+    </message>
+    <message>
+        <source>The belt speed must be positive.</source>
+        <translation>Die Bandgeschwindigkeit muss positiv sein.</translation>
+    </message>
+    <message>
+        <source>The lower limit lies above the upper limit.</source>
+        <translation>Die untere Grenze liegt über der oberen.</translation>
+    </message>
+    <message>
+        <source>The rim must be thinner than the wheel&apos;s radius.</source>
+        <translation>Der Belag muss dünner sein als der Radius der Scheibe.</translation>
+    </message>
+    <message>
+        <source>The sample spacing must be positive.</source>
+        <translation>Der Abtastabstand muss positiv sein.</translation>
+    </message>
+    <message>
+        <source>The standard colours can be told apart with any colour vision</source>
+        <translation>Die Standardfarben sind bei jeder Farbsehschwäche unterscheidbar</translation>
+    </message>
+    <message>
+        <source>The unit does not fit: {}</source>
+        <translation>Die Einheit passt nicht: {}</translation>
+    </message>
+    <message>
+        <source>The wheel&apos;s radius must be positive.</source>
+        <translation>Der Radius der Scheibe muss positiv sein.</translation>
+    </message>
+    <message>
+        <source>The wheel&apos;s width must be positive.</source>
+        <translation>Die Breite der Scheibe muss positiv sein.</translation>
+    </message>
+    <message>
+        <source>This is no number: {}</source>
+        <translation>Das ist keine Zahl: {}</translation>
+    </message>
+    <message>
+        <source>Threads</source>
+        <translation>Threads</translation>
+    </message>
+    <message>
+        <source>Threshold pressure</source>
+        <translation>Schwellendruck</translation>
+    </message>
+    <message>
+        <source>Time, s</source>
+        <translation>Zeit, s</translation>
+    </message>
+    <message>
+        <source>Timing</source>
+        <translation>Zeitgesetz</translation>
+    </message>
+    <message>
+        <source>Tolerance</source>
+        <translation>Toleranz</translation>
+    </message>
+    <message>
+        <source>Too much left</source>
+        <translation>Zu viel Aufmaß</translation>
+    </message>
+    <message>
+        <source>Tool in hand</source>
+        <translation>Werkzeug</translation>
+    </message>
+    <message>
+        <source>Travel of the force control</source>
+        <translation>Hub der Kraftregelung</translation>
+    </message>
+    <message>
+        <source>Turn at most</source>
+        <translation>Drehung höchstens</translation>
+    </message>
+    <message>
+        <source>Two stages</source>
+        <translation>Zweistufig</translation>
+    </message>
+    <message>
+        <source>Uncertainty (1 sd)</source>
+        <translation>Unsicherheit (1 σ)</translation>
+    </message>
+    <message>
+        <source>Uncertainty, 95 %</source>
+        <translation>Unsicherheit, 95 %</translation>
+    </message>
+    <message>
+        <source>Uncertainty, mean</source>
+        <translation>Unsicherheit, Mittel</translation>
+    </message>
+    <message>
+        <source>Uniform allowance</source>
+        <translation>Gleichmäßiges Aufmaß</translation>
+    </message>
+    <message>
+        <source>Unit</source>
+        <translation>Einheit</translation>
+    </message>
+    <message>
+        <source>Unit of the file</source>
+        <translation>Einheit der Datei</translation>
+    </message>
+    <message>
+        <source>Upper limit</source>
+        <translation>Obere Grenze</translation>
+    </message>
+    <message>
+        <source>Use in the job</source>
+        <translation>Im Auftrag verwenden</translation>
+    </message>
+    <message>
+        <source>Value (95 %)</source>
+        <translation>Wert (95 %)</translation>
+    </message>
+    <message>
+        <source>What it has done</source>
+        <translation>Bisherige Leistung</translation>
+    </message>
+    <message>
+        <source>Wheel</source>
+        <translation>Scheibe</translation>
+    </message>
+    <message>
+        <source>Wheel rim</source>
+        <translation>Scheibenkranz</translation>
+    </message>
+    <message>
+        <source>Width</source>
+        <translation>Breite</translation>
+    </message>
+    <message>
+        <source>With acceleration and zones</source>
+        <translation>Mit Beschleunigung und Überschleifzonen</translation>
+    </message>
+    <message>
+        <source>Work</source>
+        <translation>Arbeit</translation>
+    </message>
+    <message>
+        <source>Work of one unit of wear, J</source>
+        <translation>Arbeit je Verschleißeinheit, J</translation>
+    </message>
+    <message>
+        <source>Work, J</source>
+        <translation>Arbeit, J</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus</source>
+        <translation>E-Modul</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus E in MPa from the Shore A hardness S:</source>
+        <translation>E-Modul E in MPa aus der Shore-A-Härte S:</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus must be positive.</source>
+        <translation>Der E-Modul muss positiv sein.</translation>
+    </message>
+    <message>
+        <source>Zigzag</source>
+        <translation>Zickzack</translation>
+    </message>
+    <message>
+        <source>all</source>
+        <translation>alle</translation>
+    </message>
+    <message>
+        <source>all faces</source>
+        <translation>alle Flächen</translation>
+    </message>
+    <message>
+        <source>choose a preset…</source>
+        <translation>Vorgabe wählen…</translation>
+    </message>
+    <message>
+        <source>deviation, {}</source>
+        <translation>Abweichung, {}</translation>
+    </message>
+    <message>
+        <source>falls to 1/e in</source>
+        <translation>fällt auf 1/e nach</translation>
+    </message>
+    <message>
+        <source>fixed</source>
+        <translation>fest</translation>
+    </message>
+    <message>
+        <source>from hardness…</source>
+        <translation>aus Härte…</translation>
+    </message>
+    <message>
+        <source>linear</source>
+        <translation>linear</translation>
+    </message>
+    <message>
+        <source>needed only where the table gives a wear number</source>
+        <translation>nur nötig, wenn die Tabelle eine Verschleißzahl angibt</translation>
+    </message>
+    <message>
+        <source>needed only where the table gives rotations a minute</source>
+        <translation>nur nötig, wenn die Tabelle Umdrehungen je Minute angibt</translation>
+    </message>
+    <message>
+        <source>or file</source>
+        <translation>oder Datei</translation>
+    </message>
+    <message>
+        <source>out of date: simulate again</source>
+        <translation>veraltet: erneut simulieren</translation>
+    </message>
+    <message>
+        <source>pose </source>
+        <translation>Pose </translation>
+    </message>
+    <message>
+        <source>rapid</source>
+        <translation>Eilgang</translation>
+    </message>
+    <message>
+        <source>the job was removed while it ran</source>
+        <translation>der Auftrag wurde während des Laufs gelöscht</translation>
+    </message>
+    <message>
+        <source>u of each face</source>
+        <translation>u jeder Fläche</translation>
+    </message>
+    <message>
+        <source>uncertainty, {}</source>
+        <translation>Unsicherheit, {}</translation>
+    </message>
+    <message>
+        <source>v of each face</source>
+        <translation>v jeder Fläche</translation>
+    </message>
+    <message>
+        <source>{} grinds. Left out one by one, they are predicted with a median error of {:.1f} %, nine of ten within {:.0f} %.</source>
+        <translation>{} Schliffe. Einzeln ausgelassen, werden sie mit einem Medianfehler von {:.1f} % vorhergesagt, neun von zehn innerhalb von {:.0f} %.</translation>
+    </message>
+    <message>
+        <source>{} passes {:.2f} mm apart, {:.0f} mm; {} poses, {:.1f} s</source>
+        <translation>{} Bahnen im Abstand von {:.2f} mm, {:.0f} mm; {} Posen, {:.1f} s</translation>
+    </message>
+    <message>
+        <source>{} poses, {:.1f} mm, {:.1f} s ({})</source>
+        <translation>{} Posen, {:.1f} mm, {:.1f} s ({})</translation>
+    </message>
+    <message>
+        <source>{} uses the calibrated law.</source>
+        <translation>{} verwendet das kalibrierte Gesetz.</translation>
+    </message>
+    <message>
+        <source>Follow selected path</source>
+        <translation>Gewählter Bahn folgen</translation>
+    </message>
+    <message>
+        <source>Import result</source>
+        <translation>Ergebnis einlesen</translation>
+    </message>
+    <message>
+        <source>Job</source>
+        <translation>Auftrag</translation>
+    </message>
+    <message>
+        <source>Mesh</source>
+        <translation>Netz</translation>
+    </message>
+    <message>
+        <source>New grinding job</source>
+        <translation>Neuer Schleifauftrag</translation>
+    </message>
+    <message>
+        <source>Read programs again</source>
+        <translation>Programme neu einlesen</translation>
+    </message>
+    <message>
+        <source>Robot programs</source>
+        <translation>Roboterprogramme</translation>
+    </message>
+    <message>
+        <source>(none: reach is not checked)</source>
+        <translation>(keiner: Erreichbarkeit ungeprüft)</translation>
+    </message>
+    <message>
+        <source>Check the whole program</source>
+        <translation>Ganzes Programm prüfen</translation>
+    </message>
+    <message>
+        <source>Export robot program</source>
+        <translation>Roboterprogramm schreiben</translation>
+    </message>
+    <message>
+        <source>Joints: {}°</source>
+        <translation>Achsen: {}°</translation>
+    </message>
+    <message>
+        <source>Out of reach at this pose.</source>
+        <translation>An dieser Pose nicht erreichbar.</translation>
+    </message>
+    <message>
+        <source>Robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>Robot in base</source>
+        <translation>Roboter in Basis</translation>
+    </message>
+    <message>
+        <source>Select the robot path that is to be written.</source>
+        <translation>Bitte die Roboterbahn auswählen, die geschrieben werden soll.</translation>
+    </message>
+    <message>
+        <source>The robot follows the whole program; nothing to report.</source>
+        <translation>Der Roboter folgt dem ganzen Programm; nichts zu melden.</translation>
+    </message>
+    <message>
+        <source>Tool in flange</source>
+        <translation>Werkzeug im Flansch</translation>
+    </message>
+    <message>
+        <source>own model (property RobotModel)</source>
+        <translation>eigenes Modell (Eigenschaft RobotModel)</translation>
+    </message>
+    <message>
+        <source>95 % uncertainty</source>
+        <translation>95-%-Unsicherheit</translation>
+    </message>
+    <message>
+        <source>Click the first point on the surface.</source>
+        <translation>Den ersten Punkt auf der Fläche anklicken.</translation>
+    </message>
+    <message>
+        <source>Click the second point.</source>
+        <translation>Den zweiten Punkt anklicken.</translation>
+    </message>
+    <message>
+        <source>Click two points on the surface in the 3D view</source>
+        <translation>In der 3D-Ansicht zwei Punkte auf der Fläche anklicken</translation>
+    </message>
+    <message>
+        <source>Colours end</source>
+        <translation>Farben enden</translation>
+    </message>
+    <message>
+        <source>Cross-section</source>
+        <translation>Querschnitt</translation>
+    </message>
+    <message>
+        <source>Cut</source>
+        <translation>Schnitt</translation>
+    </message>
+    <message>
+        <source>Export cross-section</source>
+        <translation>Querschnitt schreiben</translation>
+    </message>
+    <message>
+        <source>Export {}</source>
+        <translation>{} schreiben</translation>
+    </message>
+    <message>
+        <source>Face {}, {:.2f} mm along</source>
+        <translation>Fläche {}, bei {:.2f} mm</translation>
+    </message>
+    <message>
+        <source>Heights ×</source>
+        <translation>Höhen ×</translation>
+    </message>
+    <message>
+        <source>How much the heights are enlarged</source>
+        <translation>Wie stark die Höhen vergrößert sind</translation>
+    </message>
+    <message>
+        <source>Move cross-section</source>
+        <translation>Querschnitt verschieben</translation>
+    </message>
+    <message>
+        <source>No section</source>
+        <translation>Kein Schnitt</translation>
+    </message>
+    <message>
+        <source>Own plane: Point and Normal in the property editor</source>
+        <translation>Eigene Ebene: Point und Normal im Eigenschafteneditor</translation>
+    </message>
+    <message>
+        <source>Percentile</source>
+        <translation>Perzentil</translation>
+    </message>
+    <message>
+        <source>Pick two points</source>
+        <translation>Zwei Punkte wählen</translation>
+    </message>
+    <message>
+        <source>Plot</source>
+        <translation>Diagramm</translation>
+    </message>
+    <message>
+        <source>Steps of each ramp</source>
+        <translation>Stufen je Farbrampe</translation>
+    </message>
+    <message>
+        <source>Times the limit</source>
+        <translation>Vielfaches der Grenze</translation>
+    </message>
+    <message>
+        <source>Unrolled: heights over the arc length. True shape: the outline in the plane, heights enlarged</source>
+        <translation>Abgewickelt: Höhen über der Bogenlänge. Wahre Gestalt: der Umriss in der Ebene, Höhen vergrößert</translation>
+    </message>
+    <message>
+        <source>Written: {}</source>
+        <translation>Geschrieben: {}</translation>
+    </message>
+    <message>
+        <source>across {}</source>
+        <translation>quer zu {}</translation>
+    </message>
+    <message>
+        <source>arc length, mm; upright: height above the design, mm</source>
+        <translation>Bogenlänge, mm; senkrecht: Höhe über dem Soll, mm</translation>
+    </message>
+    <message>
+        <source>at</source>
+        <translation>bei</translation>
+    </message>
+    <message>
+        <source>automatic</source>
+        <translation>automatisch</translation>
+    </message>
+    <message>
+        <source>between two points</source>
+        <translation>zwischen zwei Punkten</translation>
+    </message>
+    <message>
+        <source>by hand</source>
+        <translation>von Hand</translation>
+    </message>
+    <message>
+        <source>by percentile</source>
+        <translation>nach Perzentil</translation>
+    </message>
+    <message>
+        <source>by tolerance</source>
+        <translation>nach Toleranz</translation>
+    </message>
+    <message>
+        <source>design</source>
+        <translation>Soll</translation>
+    </message>
+    <message>
+        <source>deviation {:+.4f} mm</source>
+        <translation>Abweichung {:+.4f} mm</translation>
+    </message>
+    <message>
+        <source>ground</source>
+        <translation>geschliffen</translation>
+    </message>
+    <message>
+        <source>in the plane, mm; heights ×{}</source>
+        <translation>in der Ebene, mm; Höhen ×{}</translation>
+    </message>
+    <message>
+        <source>own plane</source>
+        <translation>eigene Ebene</translation>
+    </message>
+    <message>
+        <source>stock</source>
+        <translation>Rohteil</translation>
+    </message>
+    <message>
+        <source>stock {:.4f}, removed {:.4f} mm</source>
+        <translation>Aufmaß {:.4f}, abgetragen {:.4f} mm</translation>
+    </message>
+    <message>
+        <source>tolerance</source>
+        <translation>Toleranz</translation>
+    </message>
+    <message>
+        <source>true shape</source>
+        <translation>wahre Gestalt</translation>
+    </message>
+    <message>
+        <source>uncertainty (1 sd) {:.4f} mm</source>
+        <translation>Unsicherheit (1 σ) {:.4f} mm</translation>
+    </message>
+    <message>
+        <source>unrolled</source>
+        <translation>abgewickelt</translation>
+    </message>
+    <message>
+        <source>{:.2f} mm long, {:.1f} % in tolerance
+deviation {:+.4f} to {:+.4f} mm, mean {:+.4f} mm
+removed {:.4f} mm on the mean</source>
+        <translation>{:.2f} mm lang, {:.1f} % in Toleranz
+Abweichung {:+.4f} bis {:+.4f} mm, Mittel {:+.4f} mm
+im Mittel {:.4f} mm abgetragen</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Belt</name>
+    <message>
+        <source>Belt</source>
+        <translation>Schleifband</translation>
+    </message>
+    <message>
+        <source>Puts a belt on the machine that carries its wear from run to run</source>
+        <translation>Legt ein Band auf, das seinen Verschleiß von Lauf zu Lauf mitnimmt</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_BeltMachine</name>
+    <message>
+        <source>Belt machine</source>
+        <translation>Bandschleifmaschine</translation>
+    </message>
+    <message>
+        <source>Describes contact wheel, belt, force control and cell</source>
+        <translation>Beschreibt Kontaktscheibe, Band, Kraftregelung und Zelle</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Calibrate</name>
+    <message>
+        <source>Calibrate removal law...</source>
+        <translation>Abtragsgesetz kalibrieren...</translation>
+    </message>
+    <message>
+        <source>Fits the law of removal to a table of measured grinds</source>
+        <translation>Passt das Abtragsgesetz an eine Tabelle gemessener Schliffe an</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Cell</name>
+    <message>
+        <source>Cell</source>
+        <translation>Zelle</translation>
+    </message>
+    <message>
+        <source>Says who holds what, and where; shows the wheel at every pose</source>
+        <translation>Legt fest, wer was wo hält; zeigt die Scheibe an jeder Pose</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Contact</name>
+    <message>
+        <source>Contact at a pose...</source>
+        <translation>Kontakt an einer Pose...</translation>
+    </message>
+    <message>
+        <source>Shows the pressure on the wheel&apos;s footprint at any pose</source>
+        <translation>Zeigt den Druck in der Kontaktfläche der Scheibe an jeder Pose</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Deviation</name>
+    <message>
+        <source>Deviation</source>
+        <translation>Abweichung</translation>
+    </message>
+    <message>
+        <source>Lays the deviation from the design over the part in colour</source>
+        <translation>Legt die Abweichung vom Soll farbig über das Werkstück</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ExampleBlade</name>
+    <message>
+        <source>Example: compressor blade</source>
+        <translation>Beispiel: Verdichterschaufel</translation>
+    </message>
+    <message>
+        <source>Makes a document with a blade, its stock and its program</source>
+        <translation>Erstellt ein Dokument mit einer Schaufel, ihrem Aufmaß und ihrem Programm</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ExportJob</name>
+    <message>
+        <source>Export job file...</source>
+        <translation>Auftragsdatei schreiben...</translation>
+    </message>
+    <message>
+        <source>Writes the job as JSON, for beltgrind on another machine</source>
+        <translation>Schreibt den Auftrag als JSON, für beltgrind auf einem anderen Rechner</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ExportProgram</name>
+    <message>
+        <source>Export robot program...</source>
+        <translation>Roboterprogramm schreiben...</translation>
+    </message>
+    <message>
+        <source>Writes the selected robot path as KRL, RAPID, URScript or CSV</source>
+        <translation>Schreibt die gewählte Roboterbahn als KRL, RAPID, URScript oder CSV</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_FollowPath</name>
+    <message>
+        <source>Follow selected path</source>
+        <translation>Gewählter Bahn folgen</translation>
+    </message>
+    <message>
+        <source>Grinds along the selected CAM path or robot trajectory of FreeCAD, and follows its changes</source>
+        <translation>Schleift entlang der gewählten CAM-Bahn oder Roboterbahn von FreeCAD und folgt ihren Änderungen</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ImportProgram</name>
+    <message>
+        <source>Import robot program...</source>
+        <translation>Roboterprogramm einlesen...</translation>
+    </message>
+    <message>
+        <source>Reads a robot program into the job</source>
+        <translation>Liest ein Roboterprogramm in den Auftrag ein</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ImportResult</name>
+    <message>
+        <source>Brings back what beltgrind computed on another machine</source>
+        <translation>Holt zurück, was beltgrind auf einem anderen Rechner berechnet hat</translation>
+    </message>
+    <message>
+        <source>Import result...</source>
+        <translation>Ergebnis einlesen...</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Job</name>
+    <message>
+        <source>Makes a grinding job of the selected faces or part</source>
+        <translation>Erstellt einen Schleifauftrag aus den gewählten Flächen oder dem Werkstück</translation>
+    </message>
+    <message>
+        <source>New job</source>
+        <translation>Neuer Auftrag</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_OpenJob</name>
+    <message>
+        <source>Makes document objects of a job.json</source>
+        <translation>Macht aus einer job.json Objekte im Dokument</translation>
+    </message>
+    <message>
+        <source>Open job file...</source>
+        <translation>Auftragsdatei öffnen...</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_RasterPath</name>
+    <message>
+        <source>Lays contact passes side by side on the selected faces, or on all faces of the job</source>
+        <translation>Legt Kontaktbahnen nebeneinander auf die gewählten Flächen oder auf alle Flächen des Auftrags</translation>
+    </message>
+    <message>
+        <source>Raster path...</source>
+        <translation>Zeilenbahn...</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ReadAgain</name>
+    <message>
+        <source>Read programs again</source>
+        <translation>Programme neu einlesen</translation>
+    </message>
+    <message>
+        <source>Reads the job&apos;s robot programs from their files again</source>
+        <translation>Liest die Roboterprogramme des Auftrags erneut aus ihren Dateien</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Section</name>
+    <message>
+        <source>Cross-section</source>
+        <translation>Querschnitt</translation>
+    </message>
+    <message>
+        <source>Cuts the result: design, stock and ground profile along a plane or between two points</source>
+        <translation>Schneidet das Ergebnis: Soll-, Rohteil- und Schliffprofil entlang einer Ebene oder zwischen zwei Punkten</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Simulate</name>
+    <message>
+        <source>Grinds the job; FreeCAD stays usable</source>
+        <translation>Schleift den Auftrag; FreeCAD bleibt bedienbar</translation>
+    </message>
+    <message>
+        <source>Simulate</source>
+        <translation>Simulieren</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Stock</name>
+    <message>
+        <source>Says what stock lies on the design faces</source>
+        <translation>Legt fest, welches Aufmaß auf den Sollflächen liegt</translation>
+    </message>
+    <message>
+        <source>Stock</source>
+        <translation>Rohteil</translation>
+    </message>
+</context>
+<context>
+    <name>QObject</name>
+    <message>
+        <source>Belt grinding</source>
+        <translation>Bandschleifen</translation>
+    </message>
+</context>
+<context>
+    <name>Workbench</name>
+    <message>
+        <source>&amp;Belt grinding</source>
+        <translation>&amp;Bandschleifen</translation>
+    </message>
+    <message>
+        <source>Belt grinding</source>
+        <translation>Bandschleifen</translation>
+    </message>
+    <message>
+        <source>What a robot&apos;s belt grinding will leave, before any metal is ground</source>
+        <translation>Was das Bandschleifen mit dem Roboter übrig lässt, bevor geschliffen wird</translation>
+    </message>
+</context>
+</TS>

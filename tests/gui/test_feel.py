@@ -1,0 +1,327 @@
+"""Files dropped onto the window, the tree's context menus, preferences, progress, marks at fields."""
+
+PREPARE = """
+import time
+from pathlib import Path
+from support.hands import *
+job = prepare()
+doc, part, machine = job.Document, job.Document.Block, job.Document.BeltMachine
+"""
+
+
+def test_a_dropped_program_goes_into_the_job(freecad):
+    freecad.run(
+        PREPARE
+        + """
+def drop(widget, path):
+    mime = QtCore.QMimeData()
+    mime.setUrls([QtCore.QUrl.fromLocalFile(str(Path(path).absolute()))])
+    at = QtCore.QPointF(widget.width() / 2, widget.height() / 2)
+    none = QtCore.Qt.NoModifier
+    kinds = QtGui.QDragEnterEvent, QtGui.QDropEvent
+    entered = kinds[0](at.toPoint(), QtCore.Qt.CopyAction, mime, QtCore.Qt.LeftButton, none)
+    QtGui.QApplication.sendEvent(widget, entered)
+    assert entered.isAccepted()
+    event = kinds[1](at, QtCore.Qt.CopyAction, mime, QtCore.Qt.LeftButton, none)
+    QtGui.QApplication.sendEvent(widget, event)
+    settle()
+
+frames = "{X %d,Y 20,Z 20,A 0,B 90,C 0}"
+lines = ["DEF dropped()", *(f"LIN {frames % x}" for x in (10, 20, 30)), "END"]
+drawn = next(w for w in window.findChildren(QtGui.QWidget)
+    if w.isVisible() and w.metaObject().className() == "QOpenGLWidget")
+for number, (widget, suffix) in enumerate(((window, ".src"), (drawn, ".SRC"))):
+    path = Path(f"dropped{number}{suffix}")
+    path.write_text("\\n".join(lines) + "\\n")
+    steps, objects = doc.UndoCount, {o.Name for o in doc.Objects}
+    drop(widget, path)
+    made = [o for o in doc.Objects if o.Name not in objects]
+    assert len(made) == 1 and made[0].PoseCount == 3 and made[0] in job.Group, made
+    assert made[0].Machine == machine
+    assert list(FreeCAD.listDocuments()) == [doc.Name]
+    assert doc.UndoCount == steps + 1, (steps, doc.UndoCount)
+    doc.undo()
+    assert {o.Name for o in doc.Objects} == objects and made[0] not in job.Group
+    doc.redo()
+""",
+        window=True,
+    )
+
+
+def test_the_suffixes_are_ours_or_shared(freecad):
+    freecad.run(
+        """
+import FreeCAD
+from support.hands import *
+from beltgrinding.programs import READERS
+ours = "beltgrinding.objects.importer"
+before = {suffix: FreeCAD.getImportType(suffix[1:]) for suffix in READERS}
+for suffix, modules in before.items():
+    # Ours alone, or FreeCAD's alone: nobody is asked before the workbench is opened.
+    assert len(modules) == 1, (suffix, modules)
+start()
+for suffix in READERS:
+    assert ours in FreeCAD.getImportType(suffix[1:]), suffix
+assert before[".src"] == [ours] and before[".nc"] != [ours] and before[".csv"] != [ours]
+""",
+        window=True,
+    )
+
+
+def test_the_tree_has_context_menus(freecad):
+    freecad.run(
+        PREPARE
+        + """
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+menu("Belt")
+press("OK")
+
+def entries(obj):
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(obj)
+    found = QtGui.QMenu()
+    obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, found)
+    texts = [a.text().replace("&", "") for a in found.actions() if a.text()]
+    assert all(not a.icon().isNull() for a in found.actions() if a.text()), texts
+    return found, texts
+
+for obj, wanted in (
+    (job, ["Edit...", "Stock", "Simulate", "Export job file..."]),
+    (doc.Stock, ["Edit..."]),
+    (machine, ["Edit...", "Cell", "Belt"]),
+    (doc.Belt, ["Edit..."]),
+    (doc.RobotPath, ["Edit...", "Read the file again", "Export robot program...", "Simulate"]),
+    (doc.Simulation, ["Show result", "Deviation"]),
+    (doc.Deviation, ["Edit...", "Simulate"]),
+):
+    found, texts = entries(obj)
+    assert [t for t in wanted if t not in texts] == [], (obj.Name, texts)
+    found.actions()[0].trigger()
+    settle()
+    assert Gui.Control.activeDialog(), obj.Name
+    press("Close" if obj == doc.Simulation else "OK")
+    assert not Gui.Control.activeDialog()
+
+def trigger(obj, text):
+    found, _ = entries(obj)
+    next(a for a in found.actions() if a.text().replace("&", "") == text).trigger()
+    settle()
+
+text = Path("pass.csv").read_text()
+Path("pass.csv").write_text("\\n".join(text.splitlines()[:-1]) + "\\n")
+trigger(doc.RobotPath, "Read the file again")
+assert doc.RobotPath.PoseCount == 8
+doc.undo()
+assert len(doc.RobotPath.Poses) == 9
+
+from beltgrinding.programs import read_program
+doc.RobotPath.ForceOverride = "25 N"
+QtGui.QFileDialog.getSaveFileName = staticmethod(lambda *a, **k: ("new.src", "KRL (*.src)"))
+trigger(doc.RobotPath, "Export robot program...")
+arrays = read_program("new.src").path_arrays(1.0)
+before = doc.RobotPath.Proxy.arrays(doc.RobotPath)
+assert abs(arrays["frames"] - before["frames"]).max() < 1e-5
+assert abs(arrays["feeds"] - before["feeds"])[1:].max() < 1e-6  # the first is reached by PTP
+""",
+        window=True,
+    )
+
+
+def test_preferences_take_effect(freecad):
+    freecad.run(
+        """
+import FreeCAD
+from support.hands import *
+from beltgrinding import core
+from beltgrinding.gui.preferences_page import PreferencesPage
+from beltgrinding.objects import preferences
+
+everyone = core.threads()
+page = PreferencesPage()
+page.loadSettings()
+assert page.defaults["DefaultSpacing"].property("rawValue") == preferences.job_default("DefaultSpacing")
+page.saveSettings()
+# What was not changed is not stored: a later default holds.
+assert preferences.parameters().GetFloats() in (None, []) and preferences.colours() is None
+standard = preferences.job_default("DefaultSpacing")
+page.defaults["DefaultSpacing"].setProperty("rawValue", 0.8)
+page.defaults["DefaultToleranceUpper"].setProperty("rawValue", 0.07)
+page.threads.setValue(1)
+page.unit.setCurrentIndex(1)
+page.colours["ColourAbove"].show_colour(0x20A040FF)
+page.saveSettings()
+assert standard != 0.8 and core.threads() == 1
+assert preferences.length_text(0.0123) == "+12 \\u00b5m"
+
+job = prepare()  # types a spacing of its own
+assert abs(job.ToleranceUpper.Value - 0.07) < 1e-12
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+figures = field("statistics", QtGui.QTableWidget)
+texts = [figures.item(i, 1).text() for i in range(figures.rowCount())]
+assert any(t.endswith("\\u00b5m") for t in texts), texts
+press("OK")
+greens = {c for c in doc.Deviation.VertexColors}
+page.colours["ColourAbove"].show_colour(0xA02020FF)
+page.saveSettings()
+assert {c for c in doc.Deviation.VertexColors} != greens  # at once, without a recompute
+page._show_colours(preferences.standard_colours())
+page.threads.setValue(0)
+page.saveSettings()
+assert preferences.colours() is None and core.threads() == everyone
+page.defaults["DefaultToleranceLower"].setProperty("rawValue", 1.0)
+page.saveSettings()  # upside down: refused
+assert preferences.job_default("DefaultToleranceLower") < 0
+""",
+        window=True,
+    )
+
+
+def test_the_page_stands_in_freecads_preferences(freecad):
+    freecad.run(
+        """
+import os
+from support.hands import *
+start()
+seen = []
+def look():
+    dialog = QtGui.QApplication.activeModalWidget()
+    fields = [w for w in dialog.findChildren(QtGui.QWidget) if w.objectName() == "DefaultSpacing"]
+    if fields:
+        page = fields[0].parentWidget().parentWidget()
+        stack = page.parentWidget()
+        while stack is not None and stack is not dialog:
+            if isinstance(stack, QtGui.QStackedWidget):
+                stack.setCurrentWidget(next(c for c in [stack.widget(i) for i in range(stack.count())]
+                    if c is page or c.isAncestorOf(page)))
+            elif isinstance(stack, QtGui.QTabWidget):
+                stack.setCurrentWidget(page)
+            stack = stack.parentWidget()
+        seen.append(float(fields[0].property("rawValue")))
+        if "PICTURES" in os.environ:
+            screenshot(Path(os.environ["PICTURES"], "preferences.png"))
+    else:
+        seen.append(None)
+    dialog.reject()
+QtCore.QTimer.singleShot(1500, look)
+Gui.runCommand("Std_DlgPreferences")
+settle()
+assert seen and seen[0] is not None and seen[0] > 0, seen
+""",
+        window=True,
+    )
+
+
+def test_progress_stands_in_the_status_bar_with_the_time_left(freecad):
+    freecad.run(
+        PREPARE
+        + """
+job.Spacing = 0.03
+doc.recompute()
+menu("Simulate")
+texts = []
+def told():
+    shown = window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")
+    if shown:
+        texts.append(shown[0].text.text())
+    return doc.getObject("Simulation") is not None or any("left" in t for t in texts)
+wait(told)
+assert any("left" in t for t in texts), texts[-3:]
+shown = window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")[0]
+assert shown.isVisible()
+shown.findChild(QtGui.QToolButton).click()
+wait(lambda: "Cancelled" in field("state").text())
+settle()
+assert not [w for w in window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")
+    if w.isVisible()]
+""",
+        window=True,
+    )
+
+
+def test_mistakes_are_marked_at_the_field(freecad):
+    freecad.run(
+        PREPARE
+        + """
+view = job.ViewObject
+view.Proxy.doubleClicked(view)
+settle()
+def marked(name):
+    return bool(field(name).styleSheet())
+for name, bad, good in (
+    ("Spacing", "0 mm", "0.5 mm"),
+    ("LawCoefficient", "-1", "0.07"),
+    ("LawCoefficient", "", "0.07"),
+):
+    tip = field(name).toolTip()
+    type_in(name, bad)
+    assert marked(name) and field(name).toolTip() != tip, (name, bad)
+    before = job.Spacing.Value, job.LawCoefficient
+    press("OK")
+    assert Gui.Control.activeDialog() and field("note").text(), bad  # refused, and said why
+    type_in(name, good)
+    assert not marked(name) and field(name).toolTip() == tip, (name, good)
+for bad in ("nonsense", "1 +"):  # marked as it is typed; FreeCAD takes it back afterwards
+    line = field("Spacing").findChild(QtGui.QLineEdit)
+    line.selectAll()
+    line.insert(bad)
+    assert marked("Spacing") and bad in line.toolTip(), line.toolTip()
+    type_in("Spacing", "0.5 mm")
+    assert not marked("Spacing")
+type_in("ToleranceLower", "1 mm")
+assert marked("ToleranceLower") and marked("ToleranceUpper")
+type_in("ToleranceLower", "-0.05 mm")
+assert not marked("ToleranceLower") and not marked("ToleranceUpper")
+press("OK")
+assert not Gui.Control.activeDialog()
+
+# An object that cannot be computed is marked in the tree.
+job.DesignFaces = []
+doc.recompute()
+assert "Invalid" in job.State, job.State
+job.DesignFaces = [(part, ("Face6",))]
+doc.recompute()
+assert "Invalid" not in job.State, job.State
+doc.Stock.Kind = "solid"
+doc.recompute()
+assert "Invalid" in doc.Stock.State
+""",
+        window=True,
+    )
+
+
+def test_the_faces_of_the_job_are_tinted_while_its_panel_is_open(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.gui import face_tint
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.viewTop()
+view.fitAll()
+scene = view.getSceneGraph()
+doc.RobotPath.ViewObject.Visibility = False
+Gui.Selection.clearSelection()
+def green():
+    settle()
+    view.saveImage("tint.png", 400, 300, "White")
+    image = QtGui.QImage("tint.png")
+    colour = QtGui.QColor(image.pixel(200, 150))
+    return colour.green() - colour.red()
+children, objects, before = scene.getNumChildren(), len(doc.Objects), green()
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+assert green() > before + 25, (green(), before)
+field("faces").setCurrentRow(0)
+field("removeFaces").click()
+assert abs(green() - before) < 10
+press("Cancel")
+assert abs(green() - before) < 10
+assert scene.getNumChildren() == children and len(doc.Objects) == objects
+""",
+        window=True,
+    )

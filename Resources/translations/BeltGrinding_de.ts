@@ -1385,6 +1385,66 @@ removed {:.4f} mm on the mean</source>
 Abweichung {:+.4f} bis {:+.4f} mm, Mittel {:+.4f} mm
 im Mittel {:.4f} mm abgetragen</translation>
     </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Belt grinding: manual</source>
+        <translation>Bandschleifen: Handbuch</translation>
+    </message>
+    <message>
+        <source>Click on the surface</source>
+        <translation>Klick auf die Fläche</translation>
+    </message>
+    <message>
+        <source>Contents</source>
+        <translation>Inhalt</translation>
+    </message>
+    <message>
+        <source>Keep a marker (or Shift+click)</source>
+        <translation>Markierung behalten (oder Umschalt+Klick)</translation>
+    </message>
+    <message>
+        <source>Shows the sample&apos;s deviation and face.</source>
+        <translation>Zeigt Abweichung und Fläche des Abtastpunkts.</translation>
+    </message>
+    <message>
+        <source>The belt-grinding workbench needs the Python package {name}, and this FreeCAD does not have it ({error}). On Debian: apt install python3-{name}. Elsewhere FreeCAD&apos;s Addon Manager can install it: Tools, Addon manager, Python packages.</source>
+        <translation>Der Arbeitsbereich Bandschleifen braucht das Python-Paket {name}, und dieses FreeCAD hat es nicht ({error}). Unter Debian: apt install python3-{name}. Sonst kann es der Addon-Manager von FreeCAD installieren: Werkzeuge, Addon-Manager, Python-Pakete.</translation>
+    </message>
+    <message>
+        <source>cut too deep</source>
+        <translation>zu tief geschliffen</translation>
+    </message>
+    <message>
+        <source>in tolerance</source>
+        <translation>in Toleranz</translation>
+    </message>
+    <message>
+        <source>no stock was met here</source>
+        <translation>hier wurde kein Rohteil getroffen</translation>
+    </message>
+    <message>
+        <source>of</source>
+        <translation>von</translation>
+    </message>
+    <message>
+        <source>removed</source>
+        <translation>abgetragen</translation>
+    </message>
+    <message>
+        <source>sample</source>
+        <translation>Abtastpunkt</translation>
+    </message>
+    <message>
+        <source>segment</source>
+        <translation>Segment</translation>
+    </message>
+    <message>
+        <source>too much left</source>
+        <translation>zu viel Aufmaß</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -1527,6 +1587,17 @@ im Mittel {:.4f} mm abgetragen</translation>
     <message>
         <source>New job</source>
         <translation>Neuer Auftrag</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Manual</name>
+    <message>
+        <source>Help</source>
+        <translation>Hilfe</translation>
+    </message>
+    <message>
+        <source>Opens the manual: tutorial, every panel, troubleshooting</source>
+        <translation>Öffnet das Handbuch: Einführung, alle Fenster, Fehlersuche</translation>
     </message>
 </context>
 <context>

@@ -537,7 +537,7 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     </message>
     <message>
         <source>Motion</source>
-        <translation>Bewegung</translation>
+        <translation>Art</translation>
     </message>
     <message>
         <source>Must be at least {}</source>
@@ -983,7 +983,7 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     </message>
     <message>
         <source>Uniform allowance</source>
-        <translation>Gleichmäßiges Aufmaß</translation>
+        <translation>Gleichmäßig</translation>
     </message>
     <message>
         <source>Unit</source>

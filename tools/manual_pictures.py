@@ -74,6 +74,13 @@ def main():
     take("workbench-section")
     hands.field("BeltGrinding_SectionDock").close()
     doc.Section.ViewObject.Visibility = False
+    hands.menu("Playback")
+    dock = hands.field("BeltGrinding_PlaybackDock")
+    hands.press("Simulate with recording")
+    hands.wait(lambda: dock.scene is not None)
+    hands.field("timeSlider").setValue(55_000)
+    take("workbench-playback")
+    dock.close()
     job = doc.BeltGrindingJob
     job.Law, job.WearModel, job.WearScale = "local", "exponential", 40000
     calibration = {

@@ -38,6 +38,7 @@ class CellView:
         self.machine = machine
         self.poses = np.zeros((0, 4, 4))
         self.pose, self.moving = 0, False
+        self.frame = None  # between two poses
         self.carrier = coin.SoMatrixTransform()
         self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", "base")}
         self.things = {name: coin.SoGroup() for name in (*self.places, "part")}
@@ -65,11 +66,16 @@ class CellView:
 
     def set_path(self, poses):
         """base_from_tcp (n, 4, 4) in mm of the path that is walked."""
-        self.poses, self.pose = np.asarray(poses, dtype=float), 0
+        self.poses, self.pose, self.frame = np.asarray(poses, dtype=float), 0, None
         self.update()
 
     def set_pose(self, index):
-        self.pose = index
+        self.pose, self.frame = index, None
+        self.update()
+
+    def set_frame(self, base_from_tcp):
+        """Shows the tool at a frame (4, 4) in mm that need not be a pose's."""
+        self.frame = base_from_tcp
         self.update()
 
     def set_moving(self, moving):
@@ -97,7 +103,10 @@ class CellView:
 
     def frames(self):
         """{frame: work_from_frame} at the pose."""
-        return frames_at(self.poses[self.pose], self.cell())
+        return frames_at(self.base_from_tcp(), self.cell())
+
+    def base_from_tcp(self):
+        return self.poses[self.pose] if self.frame is None else self.frame
 
     def update(self):
         """Puts everything where it is at the pose."""
@@ -107,7 +116,7 @@ class CellView:
         for name, node in self.places.items():
             set_matrix(node, frames[name])
         set_matrix(self.carrier, self.carried(frames))
-        self.robot.place(frames["base"], self.poses[self.pose], self.pose)
+        self.robot.place(frames["base"], self.base_from_tcp(), self.pose)
 
     def carried(self, frames):
         """How the part has moved in the cell since the first pose; it lies as drawn there."""

@@ -352,6 +352,19 @@ class Section(Command):
             show_section(section)
 
 
+class Playback(Command):
+    NAME = "BeltGrinding_Playback"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Playback", "Playback")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Playback", "Shows the recorded simulation at any moment, under the 3D view"
+    )
+
+    def run(self):
+        from .playback import show
+
+        show(active_job())
+
+
 class Contact(Command):
     NAME = "BeltGrinding_Contact"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Contact", "Contact at a pose...")
@@ -485,7 +498,18 @@ class ReadAgain(Command):
             job.Document.recompute()
 
 
-WORK = (NewJob, Stock, BeltMachine, ImportProgram, RasterPath, Cell, Simulate, Deviation, Section)
+WORK = (
+    NewJob,
+    Stock,
+    BeltMachine,
+    ImportProgram,
+    RasterPath,
+    Cell,
+    Simulate,
+    Deviation,
+    Section,
+    Playback,
+)
 MORE = (
     FollowPath,
     Belt,

@@ -51,17 +51,17 @@ class Runner(Background):
     """One run. The job's data are collected here and now (raises InputError); the document is
     written only in the end, on the window's thread, in one undo transaction.
 
-    progress(share): called while it runs; done(simulation or None, error or None): in the end.
+    recording: an empty core.Recording, or None. progress(share): called while it runs; done(simulation or None, error or None): in the end.
     """
 
-    def __init__(self, job, progress, done):
+    def __init__(self, job, progress, done, recording=None):
         self.document, self.name = job.Document, job.Name
         self.progress, self.ended = progress, done
         self.folder = job_object.scratch_folder()
         self.data = job_object.to_data(job, self.folder.name)
         self.fingerprint = job_object.fingerprint(job)
         self.start = time.monotonic()
-        super().__init__(lambda context: jobs.run(self.data, context), self._finish)
+        super().__init__(lambda context: jobs.run(self.data, context, recording), self._finish)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""

@@ -4,9 +4,10 @@ import hashlib
 import json
 import tempfile
 
+import numpy as np
 import Part
 
-from .. import InputError, job as jobs
+from .. import InputError, core, job as jobs
 from ..poses import list_poses
 from .belt_machine import BeltMachine
 from .deviation import Deviation
@@ -245,6 +246,22 @@ def to_data(job, folder):
         if len(program["poses"]) < 2:
             raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
     return data
+
+
+def tool_paths(job):
+    """core.ToolPath of every program, one after the other as they are run. Raises InputError."""
+    data = _without_geometry(job)
+    machine = child(job, BeltMachine)
+    cell = machine.Proxy.cell(machine)
+    paths = []
+    for path in _paths(job):
+        arrays = dict(path.Proxy.arrays(path))
+        keys = _overrides(path)
+        for name, key in (("feeds", "feed_mm_s"), ("forces", "force_N")):
+            if key in keys:
+                arrays[name] = np.full(len(arrays["lines"]), keys[key])
+        paths.append(core.ToolPath(**arrays, **cell, time_law=jobs.time_law(data["simulation"])))
+    return paths
 
 
 def scratch_folder():

@@ -226,7 +226,8 @@ def test_a_coin_that_was_not_started_is_not_used(freecad):
         """
 import subprocess, sys
 code = "import beltgrinding_coin as b; assert b.register_node() is False"
-import beltgrinding, os
+import os
+from beltgrinding import core
 path = os.pathsep.join(sys.path)
 subprocess.run(["/usr/bin/python3", "-c", code], check=True, env={**os.environ, "PYTHONPATH": path})
 """,

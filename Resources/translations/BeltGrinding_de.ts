@@ -1445,6 +1445,78 @@ im Mittel {:.4f} mm abgetragen</translation>
         <source>too much left</source>
         <translation>zu viel Aufmaß</translation>
     </message>
+    <message>
+        <source>, line {}</source>
+        <translation>, Zeile {}</translation>
+    </message>
+    <message>
+        <source>Cancelled.</source>
+        <translation>Abgebrochen.</translation>
+    </message>
+    <message>
+        <source>Contact area</source>
+        <translation>Kontaktfläche</translation>
+    </message>
+    <message>
+        <source>Next event</source>
+        <translation>Nächstes Ereignis</translation>
+    </message>
+    <message>
+        <source>Out of date: an input has changed since; simulate again.</source>
+        <translation>Veraltet: Eine Eingabe hat sich seitdem geändert; erneut simulieren.</translation>
+    </message>
+    <message>
+        <source>Peak pressure</source>
+        <translation>Höchster Druck</translation>
+    </message>
+    <message>
+        <source>Play or pause</source>
+        <translation>Abspielen oder anhalten</translation>
+    </message>
+    <message>
+        <source>Playback</source>
+        <translation>Wiedergabe</translation>
+    </message>
+    <message>
+        <source>Previous event</source>
+        <translation>Voriges Ereignis</translation>
+    </message>
+    <message>
+        <source>Removal rate</source>
+        <translation>Abtragsrate</translation>
+    </message>
+    <message>
+        <source>Rows</source>
+        <translation>Zeilen</translation>
+    </message>
+    <message>
+        <source>Simulate with recording</source>
+        <translation>Mit Aufzeichnung simulieren</translation>
+    </message>
+    <message>
+        <source>Speed, as a multiple of the real time</source>
+        <translation>Geschwindigkeit, als Vielfaches der Echtzeit</translation>
+    </message>
+    <message>
+        <source>The recording is of another field; simulate again.</source>
+        <translation>Die Aufzeichnung gehört zu einem anderen Feld; erneut simulieren.</translation>
+    </message>
+    <message>
+        <source>There is no result yet.</source>
+        <translation>Es gibt noch kein Ergebnis.</translation>
+    </message>
+    <message>
+        <source>This result was not recorded.</source>
+        <translation>Dieses Ergebnis wurde nicht aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>{:.2f} of {:.2f} s · {}, pose {}</source>
+        <translation>{:.2f} von {:.2f} s · {}, Pose {}</translation>
+    </message>
+    <message>
+        <source>{:.2f} s, pose {}</source>
+        <translation>{:.2f} s, Pose {}</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -1609,6 +1681,17 @@ im Mittel {:.4f} mm abgetragen</translation>
     <message>
         <source>Open job file...</source>
         <translation>Auftragsdatei öffnen...</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Playback</name>
+    <message>
+        <source>Playback</source>
+        <translation>Wiedergabe</translation>
+    </message>
+    <message>
+        <source>Shows the recorded simulation at any moment, under the 3D view</source>
+        <translation>Zeigt die aufgezeichnete Simulation zu jedem Zeitpunkt, unter der 3D-Ansicht</translation>
     </message>
 </context>
 <context>

@@ -4,17 +4,27 @@ import numpy as np
 
 from .compat import QtCore, QtGui, translate
 
-ROWS = (  # column of the steps, text, unit, colour
-    ("force", "Force", "N", "#1f5fa8"),
-    ("contact_area", "Contact area", "mm²", "#2b7a4b"),
-    ("peak_pressure", "Peak pressure", "MPa", "#a63d2f"),
-    ("removal_rate", "Removal rate", "mm³/s", "#7a4fa3"),
+ROWS = (  # column of the steps, unit, colour
+    ("force", "N", "#1f5fa8"),
+    ("contact_area", "mm²", "#2b7a4b"),
+    ("peak_pressure", "MPa", "#a63d2f"),
+    ("removal_rate", "mm³/s", "#7a4fa3"),
 )
 LEFT, RIGHT, EVENTS = 200, 12, 14  # pixels: texts, border, the marks' band on top
 ROW = 34  # pixels, least height of a row
 NEAR = 5  # pixels
 GAP = 1e-6  # s between two steps: nothing is ground there
 MARK, CURSOR = "#d98200", "#d32f2f"
+
+
+def texts():
+    """What the columns are called, in the language of the window."""
+    return {
+        "force": translate("BeltGrinding", "Force"),
+        "contact_area": translate("BeltGrinding", "Contact area"),
+        "peak_pressure": translate("BeltGrinding", "Peak pressure"),
+        "removal_rate": translate("BeltGrinding", "Removal rate"),
+    }
 
 
 class StripChart(QtGui.QWidget):
@@ -29,8 +39,9 @@ class StripChart(QtGui.QWidget):
         self.chosen = lambda time: None
         self.lines = {name: staircase(steps, name) for name, *_ in ROWS}
         self.menu = QtGui.QMenu(self)
-        for name, text, *_ in ROWS:
-            action = self.menu.addAction(translate("BeltGrinding", text))
+        self.texts = texts()
+        for name, *_ in ROWS:
+            action = self.menu.addAction(self.texts[name])
             action.setObjectName(name)
             action.setCheckable(True)
             action.setChecked(True)
@@ -95,7 +106,7 @@ class StripChart(QtGui.QWidget):
         painter.drawLine(x, 0, x, self.height())
         index = self._index()
         height = self._height()
-        for k, (name, _, unit, colour) in enumerate(self.rows()):
+        for k, (name, unit, colour) in enumerate(self.rows()):
             painter.setPen(QtGui.QColor(colour))
             value = f"{self.lines[name][1][index]:.4g} {unit}" if index is not None else ""
             box = QtCore.QRect(6, int(EVENTS + k * height + 0.5 * height), LEFT - 16, 16)
@@ -117,14 +128,14 @@ class StripChart(QtGui.QWidget):
     def _draw(self, painter):
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         width, height = self.width() - LEFT - RIGHT, self._height()
-        for k, (name, text, unit, colour) in enumerate(self.rows()):
+        for k, (name, unit, colour) in enumerate(self.rows()):
             times, values = self.lines[name]
             top, bottom = EVENTS + k * height + 4, EVENTS + (k + 1) * height - 4
             most = float(values.max()) if len(values) else 0.0
             painter.setPen(QtGui.QColor("#dddddd"))
             painter.drawLine(LEFT, round(bottom), LEFT + width, round(bottom))
             painter.setPen(QtGui.QColor("black"))
-            label = f"{translate('BeltGrinding', text)}, 0…{most:.3g} {unit}"
+            label = f"{self.texts[name]}, 0…{most:.3g} {unit}"
             painter.drawText(6, round(EVENTS + k * height + 0.5 * height - 2), label)
             x, y = envelope(times, values, self.duration, width)
             y = bottom - (bottom - top) * y / (most or 1.0)

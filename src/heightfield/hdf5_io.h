@@ -4,9 +4,13 @@
 
 #include <hdf5.h>
 
+#include <filesystem>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <vector>
+
+#include "base/error.h"
 
 namespace beltgrinding::hdf5 {
 
@@ -35,6 +39,23 @@ struct FileFault {
 
 inline void require(bool ok, const std::string& what) {
     if (!ok) throw FileFault{what};
+}
+
+/// Lets `write(temporary)` write a file beside `path`, which it then becomes: whole or not at all.
+/// Throws InputError naming the path and `what` it holds. Call it with the lock held.
+template <class Write>
+void write_whole(const std::string& path, const std::string& what, Write&& write) {
+    const std::string temporary = path + ".part";
+    try {
+        write(temporary);
+        std::error_code error;
+        std::filesystem::rename(temporary, path, error);
+        require(!error, "cannot be written: " + error.message());
+    } catch (const FileFault& fault) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        throw InputError(path + ": " + what + " " + fault.what);
+    }
 }
 
 /// Debian's serial HDF5 is not thread-safe, and prints its errors unless told not to.

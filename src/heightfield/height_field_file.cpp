@@ -70,17 +70,8 @@ void check(const HeightField& f) {
 
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes) {
     const auto lock = hdf5_lock();
-    const std::string temporary = path + ".part";
-    try {
-        write_all(field, temporary, attributes);
-        std::error_code error;
-        std::filesystem::rename(temporary, path, error);
-        require(!error, "cannot be written: " + error.message());
-    } catch (const FileFault& fault) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        throw InputError(path + ": the height field " + fault.what);
-    }
+    write_whole(path, "the height field",
+                [&](const std::string& temporary) { write_all(field, temporary, attributes); });
 }
 
 HeightField read_hdf5(const std::string& path, std::string* attributes) {

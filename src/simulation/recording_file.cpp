@@ -106,17 +106,9 @@ struct RecordingFile {
 void write_hdf5(const Recording& recording, const std::string& path,
                 const std::string& attributes) {
     const auto lock = hdf5_lock();
-    const std::string temporary = path + ".part";
-    try {
+    write_whole(path, "the recording", [&](const std::string& temporary) {
         RecordingFile::write(recording, temporary, attributes);
-        std::error_code error;
-        std::filesystem::rename(temporary, path, error);
-        require(!error, "cannot be written: " + error.message());
-    } catch (const FileFault& fault) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        throw InputError(path + ": the recording " + fault.what);
-    }
+    });
 }
 
 Recording read_recording(const std::string& path, std::string* attributes) {

@@ -125,3 +125,17 @@ def base_from_tcp(
     if holding == "tool_in_hand":
         return base_from_work @ work_from_contact @ np.linalg.inv(tcp_from_contact)
     return base_from_contact @ np.linalg.inv(work_from_contact) @ np.linalg.inv(tcp_from_work)
+
+
+def work_from_frames(
+    base_from_tcp, holding, base_from_work, tcp_from_contact, tcp_from_work, base_from_contact
+):
+    """{frame: (..., 4, 4) work_from_frame} of base, tool (TCP), contact and part (the work itself)
+    with the robot at (..., 4, 4) ``base_from_tcp``: the same equations forwards."""
+    if holding == "tool_in_hand":
+        base = np.linalg.inv(base_from_work)
+        contact = base @ base_from_tcp @ tcp_from_contact
+    else:
+        base = np.linalg.inv(base_from_tcp @ tcp_from_work)
+        contact = base @ base_from_contact
+    return {"base": base, "tool": base @ base_from_tcp, "contact": contact, "part": np.eye(4)}

@@ -24,17 +24,6 @@ def lever(cell, points):
     return float(np.linalg.norm(points @ frame[:3, :3].T + frame[:3, 3], axis=1).max())
 
 
-def base_from_tcp(cell, contacts):
-    """Robot poses (n, 4, 4) at which the contact frame stands at ``contacts`` (n, 4, 4)
-    work_from_contact.
-    """
-    if cell["holding"] == "tool_in_hand":
-        return cell["base_from_work"] @ contacts @ np.linalg.inv(cell["tcp_from_contact"])
-    return (
-        cell["base_from_contact"] @ np.linalg.inv(contacts) @ np.linalg.inv(cell["tcp_from_work"])
-    )
-
-
 def assemble(levels, settings, cell):
     """The whole path. ``levels``: for each level line its pieces, dict(points, normals, tangents
     (n, 3), closed). Returns dict(frames, feeds, forces, rapid, lines, zones, contacts, contact
@@ -61,7 +50,7 @@ def assemble(levels, settings, cell):
     joined["passes"] = passes
     if not parts:
         return joined
-    joined["frames"] = base_from_tcp(cell, joined["contacts"])
+    joined["frames"] = frames.base_from_tcp(joined["contacts"], **cell)
     joined["feeds"] = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
     joined["forces"] = np.full(count, settings["force_N"] or -1.0)
     joined["lines"] = np.zeros(count, dtype=int)

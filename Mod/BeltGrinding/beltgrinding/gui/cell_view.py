@@ -8,6 +8,7 @@ import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
+from ..frames import work_from_frames
 from ..objects.belt_machine import BODIES
 from .robot_view import RobotView
 from .shapes3d import axes, body, separator, set_matrix, unpickable, wheel
@@ -18,17 +19,6 @@ CELL = {
         ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact"), np.eye(4)
     ),
 }
-
-
-def frames_at(base_from_tcp, cell):
-    """{frame: (4, 4) work_from_frame in mm} of base, tool (TCP), contact and part at a pose."""
-    if cell["holding"] == "tool_in_hand":
-        base = np.linalg.inv(cell["base_from_work"])
-        contact = base @ base_from_tcp @ cell["tcp_from_contact"]
-    else:
-        base = np.linalg.inv(base_from_tcp @ cell["tcp_from_work"])
-        contact = base @ cell["base_from_contact"]
-    return {"base": base, "tool": base @ base_from_tcp, "contact": contact, "part": np.eye(4)}
 
 
 class CellView:
@@ -103,7 +93,7 @@ class CellView:
 
     def frames(self):
         """{frame: work_from_frame} at the pose."""
-        return frames_at(self.base_from_tcp(), self.cell())
+        return work_from_frames(self.base_from_tcp(), **self.cell())
 
     def base_from_tcp(self):
         return self.poses[self.pose] if self.frame is None else self.frame
@@ -122,19 +112,13 @@ class CellView:
         """How the part has moved in the cell since the first pose; it lies as drawn there."""
         if not self.moving:
             return np.eye(4)
-        start = frames_at(self.poses[0], self.cell())["base"]
+        start = work_from_frames(self.poses[0], **self.cell())["base"]
         return start @ np.linalg.inv(frames["base"])
 
     def nearest(self, view, position, reach):
         """Index of the pose whose contact point is drawn within ``reach`` pixels of ``position``
         (x, y from the lower left), None if there is none."""
-        cell = self.cell()
-        if cell["holding"] == "tool_in_hand":
-            contacts = np.linalg.inv(cell["base_from_work"]) @ self.poses
-            points = (contacts @ cell["tcp_from_contact"])[:, :3, 3]
-        else:
-            work = np.linalg.inv(self.poses @ cell["tcp_from_work"])
-            points = (work @ cell["base_from_contact"])[:, :3, 3]
+        points = work_from_frames(self.poses, **self.cell())["contact"][:, :3, 3]
         points = np.hstack([points, np.ones((len(points), 1))]) @ self.carried(self.frames()).T
         seen, depth = project(view, points)
         distance = np.linalg.norm(seen - np.asarray(position, dtype=float), axis=1)

@@ -11,7 +11,7 @@ import math
 import re
 from pathlib import Path
 
-from .program import Problem, Program, ProgramError, name_of
+from .program import Problem, Program, ProgramError, bytes_of, name_of
 from .tool_axis import MAX_COORDINATE, Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
@@ -41,12 +41,7 @@ MOVING = set("GOHOME HOME CALLSUB CALL COPY INDEX TRACUT ROTATE ROTABL ORIGIN TR
 def read(path):
     """The Program of an APT file. Raises ProgramError when it cannot be read at all."""
     path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no APT text (it holds zero bytes)")
+    raw = bytes_of(path, "APT")
     reader = _Reader(name_of(path))
     for line, text in reader.statements(re.split(r"\r\n|\n|\r", raw.decode("latin-1"))):
         if len(reader.program.motions) > MAX_MOTIONS:

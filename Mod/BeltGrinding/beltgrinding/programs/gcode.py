@@ -13,7 +13,7 @@ import math
 import re
 from pathlib import Path
 
-from .program import Problem, Program, ProgramError, name_of
+from .program import Problem, Program, ProgramError, bytes_of, name_of
 from .tool_axis import MAX_COORDINATE, Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
@@ -38,12 +38,7 @@ FRAMES = re.compile(r"A?(?:TRANS|ROT|SCALE|MIRROR)S?\b|CYCLE800\b")
 def read(path):
     """The Program of a G-code file. Raises ProgramError when it cannot be read at all."""
     path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no G-code text (it holds zero bytes)")
+    raw = bytes_of(path, "G-code")
     reader = _Reader(name_of(path))
     for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
         if len(reader.program.motions) > MAX_MOTIONS:

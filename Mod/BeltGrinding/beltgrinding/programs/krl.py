@@ -19,9 +19,11 @@ from .program import (
     Problem,
     Program,
     ProgramError,
+    bytes_of,
     joint_angles,
+    name_of,
+    work_of,
 )
-from .program import name_of, work_of
 
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
@@ -85,12 +87,7 @@ def read(path):
 
 def _statements(path):
     """(line number, statement) without comments, folds and header lines."""
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no KRL text (it holds zero bytes)")
+    raw = bytes_of(path, "KRL")
     result = []
     for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
         text = re.sub(r'("[^"]*")|;.*', lambda m: m.group(1) or "", text).strip()

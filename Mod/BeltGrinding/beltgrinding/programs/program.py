@@ -152,6 +152,17 @@ def _finite(zones, frames):
     return np.where(passing, reach, zones)
 
 
+def bytes_of(path, language):
+    """The bytes of a program's text. Raises ProgramError where there are none, or it is no text."""
+    try:
+        raw = Path(path).read_bytes()
+    except OSError as error:
+        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+    if b"\0" in raw:
+        raise ProgramError(f"{path}: is no {language} text (it holds zero bytes); save it as text")
+    return raw
+
+
 def name_of(path):
     """How a program's file is named in messages."""
     return Path(path).name

@@ -7,7 +7,7 @@ Statements end in ';' or a keyword, not at a line's end. A module the controller
 import re
 from pathlib import Path
 
-from .program import ProgramError, name_of
+from .program import ProgramError, bytes_of, name_of
 
 MAX_NESTING = 60
 CLOSED_BY = {
@@ -99,12 +99,7 @@ def _unclosed(node):
 
 
 def _text(path):
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no RAPID text (it holds zero bytes); save it as text")
+    raw = bytes_of(path, "RAPID")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:

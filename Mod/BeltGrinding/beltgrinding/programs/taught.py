@@ -2,12 +2,11 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 
 from .. import frames
-from .program import Motion, Problem, Program, ProgramError, name_of
+from .program import Motion, Problem, Program, ProgramError, bytes_of, name_of
 
 MAX_MOTIONS = 1_000_000
 LARGEST = 1e6  # mm or degrees; beyond it a number is damaged, not taught
@@ -21,12 +20,7 @@ class Unknown(Exception):
 
 def lines_of(path, language):
     """Lines of a text file, whatever ends them. Raises ProgramError."""
-    try:
-        raw = Path(path).read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no {language} text (it holds zero bytes)")
+    raw = bytes_of(path, language)
     # No more than ASCII has meaning; comments come in any code page.
     return re.split(r"\r\n|\n|\r", raw.decode("latin-1"))
 

@@ -22,6 +22,7 @@ from .program import (
     Problem,
     Program,
     ProgramError,
+    bytes_of,
     joint_angles,
     name_of,
     work_of,
@@ -57,12 +58,7 @@ HARMLESS = re.compile(
 def read(path):
     """The Program of a .script file. Raises ProgramError when it cannot be read at all."""
     path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
-    if b"\0" in raw:
-        raise ProgramError(f"{path}: is no URScript text (it holds zero bytes)")
+    raw = bytes_of(path, "URScript")
     text = raw.decode("utf-8-sig", errors="replace")
     interpreter = Interpreter(name_of(path))
     try:

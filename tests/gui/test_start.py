@@ -137,3 +137,19 @@ assert view.toPlainText() == home
 """,
         window=True,
     )
+
+
+def test_freecad_starts_without_the_core(tmp_path):
+    FreeCad(tmp_path).run(
+        """
+import sys
+import FreeCAD
+assert "beltgrinding.gui.workbench" in sys.modules  # the workbench is offered
+assert not any(name.startswith("beltgrinding_core") for name in sys.modules)
+FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/BeltGrinding").SetInt("Threads", 1)
+import beltgrinding.objects.api  # what a button or a macro calls: the preference holds by then
+from beltgrinding import core
+assert core.threads() == 1, core.threads()
+""",
+        window=True,
+    )

@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 
 from .. import resources
 from . import languages
+from .compat import QtGui
 from .icons import icon
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -42,12 +43,23 @@ def fill(workbench):
 
 
 def at_start():
-    """The preferences: they hold from FreeCAD's start."""
-    try:
-        from ..objects import preferences
-        from .preferences_page import PreferencesPage
-    except ImportError:
-        return  # said when the workbench is chosen
-    preferences.apply_threads()
+    """Offers the preferences, without what they need: everyone's FreeCAD starts through here."""
     Gui.addIconPath(str(resources() / "icons"))
-    Gui.addPreferencePage(PreferencesPage, QT_TRANSLATE_NOOP("QObject", "Belt grinding"))
+    Gui.addPreferencePage(Preferences, QT_TRANSLATE_NOOP("QObject", "Belt grinding"))
+
+
+class Preferences:
+    """The page in FreeCAD's preferences; made of what needs the core only when they are opened."""
+
+    def __init__(self, *arguments):
+        try:
+            from .preferences_page import PreferencesPage
+        except ImportError as error:
+            self.form = QtGui.QLabel(str(error))
+            self.form.setWindowTitle(FreeCAD.Qt.translate("BeltGrinding", "General"))
+            self.form.setWordWrap(True)
+            self.loadSettings = self.saveSettings = lambda: None
+            return
+        page = PreferencesPage(*arguments)
+        self.form = page.form
+        self.loadSettings, self.saveSettings = page.loadSettings, page.saveSettings

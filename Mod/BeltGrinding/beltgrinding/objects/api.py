@@ -29,8 +29,12 @@ from . import (
 from . import stock as stocks
 from .geometry import placement_from_job
 from .job_object import child, children
+from .preferences import apply_threads
 from .properties import from_job, set_by_name
 from .proxy import type_of
+
+
+apply_threads()  # before anything computes, whoever calls: a button or a macro
 
 
 def make_job(design, faces=(), **properties):

@@ -22,7 +22,7 @@ class ProgramPanel(Panel):
         super().__init__(obj, title, "BeltGrinding_ImportProgram")
         form = Form(obj, translate("BeltGrinding", "Program"))
         if obj.SourceObject is None:
-            from .commands import programs_filter
+            from .commands.paths import programs_filter
 
             form.add("Source", translate("BeltGrinding", "File"), programs_filter())
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))

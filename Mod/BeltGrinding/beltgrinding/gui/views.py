@@ -124,7 +124,7 @@ class RobotPathView(View):
 
 def read_again(obj):
     """Reads a path's file again, as one undo step."""
-    from .commands import transaction
+    from .commands.base import transaction
 
     with transaction(obj.Document, translate("BeltGrinding", "Read the file again")):
         load_program(obj, obj.Source)

@@ -1,0 +1,73 @@
+"""Fitting the removal law to what was measured, and predicting by it."""
+
+import json
+import sys
+from pathlib import Path
+
+
+def add(commands):
+    """Adds the commands to the parser's ``commands``."""
+    fit = commands.add_parser("calibrate", help="fit the removal law to measured grinds")
+    fit.add_argument("table", help="CSV of the grinds (docs/calibration.md)")
+    fit.add_argument("-o", "--output", required=True, help="file for the law (.json)")
+    fit.add_argument("--report", help="file for the report (.json)")
+    fit.add_argument("--plot", help="file for a plot (.png, .svg, .pdf)")
+    fit.add_argument(
+        "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
+    )
+    fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    fit.set_defaults(do=_calibrate)
+    scan = commands.add_parser(
+        "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
+    )
+    scan.add_argument("result", help="folder that run wrote for the same grind")
+    scan.add_argument("scan", help="mesh of the ground part, where the job's design lies")
+    scan.add_argument("-o", "--output", required=True, help="file for the law (.json)")
+    scan.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
+    scan.add_argument("--offset", action="store_true", help="the scan may lie too high everywhere")
+    scan.set_defaults(do=_calibrate_scan)
+    told = commands.add_parser("predict", help="predict further grinds by a calibrated law")
+    told.add_argument("law", help="what calibrate wrote")
+    told.add_argument("table", help="CSV of the grinds; measured removals are compared")
+    told.add_argument("-o", "--output", help="CSV of the predictions")
+    told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
+    told.set_defaults(do=_predict)
+
+
+def _calibrate(arguments):
+    from .. import calibration, calibration_plot, calibration_report
+
+    result = calibration.fit(arguments.table, arguments.wheel_diameter, arguments.wear_unit)
+    report = result["report"]
+    if arguments.plot:
+        calibration_plot.draw(report, arguments.plot)
+    if arguments.report:
+        calibration.write(report, arguments.report)
+    calibration.write(result["law"], arguments.output)
+    for warning in report["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
+    print(calibration_report.text(report))
+
+
+def _calibrate_scan(arguments):
+    from .. import calibration, calibration_scan
+
+    law, figures = calibration_scan.from_files(
+        arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
+    )
+    calibration.write(law, arguments.output)
+    print(json.dumps(figures))
+
+
+def _predict(arguments):
+    from .. import calibration_law, schemas
+
+    law = schemas.checked(
+        schemas.read_json(Path(arguments.law)), schemas.schema("job")["properties"]["law"], "law"
+    )
+    found = calibration_law.compare(law, arguments.table, arguments.wheel_diameter)
+    if arguments.output:
+        calibration_law.write_predictions(found, arguments.output)
+    for note in found["notes"]:
+        print(f"warning: {note}", file=sys.stderr)
+    print(json.dumps(found["figures"]))

@@ -1,0 +1,47 @@
+"""Looking into a result."""
+
+import json
+from pathlib import Path
+
+
+def add(commands):
+    """Adds the commands to the parser's ``commands``."""
+    cut = commands.add_parser(
+        "section",
+        help="cut a result by a plane: design, stock and ground profile",
+        description="A plane by --point and --normal, or the line on the surface --from one point "
+        "--to another; mm, in the part's frame. Write --normal=-1,0,0 where the first is negative.",
+    )
+    cut.add_argument("result", help="folder that run wrote")
+    cut.add_argument("--point", metavar="X,Y,Z", help="of the plane")
+    cut.add_argument("--normal", metavar="X,Y,Z", help="of the plane")
+    cut.add_argument("--from", dest="start", metavar="X,Y,Z", help="where the line begins")
+    cut.add_argument("--to", dest="end", metavar="X,Y,Z", help="where the line ends")
+    cut.add_argument(
+        "-o", "--output", action="append", default=[], help="file: .csv or .svg; may be repeated"
+    )
+    cut.add_argument("--mode", choices=("unrolled", "shape"), default="unrolled", help="of the SVG")
+    cut.add_argument("--exaggeration", type=float, help="of the heights in the shape's SVG")
+    cut.set_defaults(do=_section)
+
+
+def _section(arguments):
+    from .. import InputError, section
+
+    by_plane = (arguments.point, arguments.normal)
+    by_line = (arguments.start, arguments.end)
+    for path in arguments.output:
+        if Path(path).suffix.lower() not in (".csv", ".svg"):
+            raise InputError(f"{path}: a section is written as .csv or .svg")
+    if all(by_plane) and not any(by_line):
+        found = section.section(arguments.result, *by_plane)
+    elif all(by_line) and not any(by_plane):
+        found = section.between(arguments.result, *by_line)
+    else:
+        raise InputError("section: give --point and --normal, or --from and --to")
+    for path in arguments.output:
+        if Path(path).suffix.lower() == ".svg":
+            section.write_svg(found, path, arguments.mode, arguments.exaggeration)
+        else:
+            section.write_csv(found, path)
+    print(json.dumps(section.summary(found)))

@@ -1,0 +1,73 @@
+"""One contact, and surrogates learnt from many."""
+
+import json
+import sys
+
+
+def add(commands):
+    """Adds the commands to the parser's ``commands``."""
+    contact = commands.add_parser("contact", help="press the wheel on a workpiece, at one place")
+    contact.add_argument("contact", help="contact.json; or a job.json, with --pose")
+    contact.add_argument("--pose", type=int, help="pose of the job's program, from 1")
+    contact.add_argument("--program", type=int, default=1, help="program of the job, from 1")
+    contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
+    contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
+    contact.add_argument("--keep", help="folder for CalculiX's deck and results")
+    contact.set_defaults(do=_contact)
+    learn = commands.add_parser(
+        "surrogate", help="train a surrogate of the contact on a database of solved contacts"
+    )
+    learn.add_argument("contact", nargs="?", help="contact.json: the wheel, the force, the cells")
+    learn.add_argument("-o", "--output", required=True, help="file for the surrogate (.npz)")
+    learn.add_argument("--contacts", type=int, default=2000, help="to solve (default 2000)")
+    learn.add_argument("--source", choices=("wheel_rim", "ccx"), default="wheel_rim")
+    learn.add_argument("--seed", type=int, default=1, help="of the random contacts (default 1)")
+    learn.add_argument("--database", help="file that keeps the database (.npz)")
+    learn.add_argument("--train-on", help="a database of your own in place of a contact.json")
+    learn.set_defaults(do=_surrogate)
+
+
+def _contact(arguments):
+    from .. import contact, job
+
+    if arguments.pose is None:
+        given = contact.load(arguments.contact)
+        result = contact.run(given)
+    else:
+        given = job.load(arguments.contact)
+        result = contact.at_pose(given, arguments.pose, arguments.program)
+    figures, truth = contact.summary(result), None
+    if arguments.reference:
+        from .. import reference
+
+        truth = reference.solve(result, contact.rim(given), arguments.keep)
+        figures.update(reference.compare(result, truth))
+    if arguments.output:
+        contact.write_csv(result, arguments.output, truth)
+    print(json.dumps(figures))
+
+
+def _surrogate(arguments):
+    from .. import InputError, contact, surrogate
+
+    if (arguments.contact is None) == (arguments.train_on is None):
+        raise InputError("give either a contact.json or --train-on with a database")
+
+    def tell(done, count):
+        print(f"\r{done} of {count} contacts", end="", file=sys.stderr, flush=True)
+
+    if arguments.train_on:
+        database = surrogate.load_database(arguments.train_on)
+    else:
+        database = surrogate.make_database(
+            contact.load(arguments.contact),
+            arguments.contacts,
+            arguments.source,
+            arguments.seed,
+            tell if sys.stderr.isatty() else None,
+        )
+        if arguments.database:
+            surrogate.save_database(database, arguments.database)
+    trained, report = surrogate.train(database, arguments.seed)
+    surrogate.save(trained, arguments.output)
+    print(json.dumps(report))

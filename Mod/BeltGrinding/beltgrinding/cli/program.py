@@ -1,0 +1,114 @@
+"""Robot programs: read, changed, converted, laid out, reached."""
+
+import json
+import sys
+from pathlib import Path
+
+
+def add(commands):
+    """Adds the commands to the parser's ``commands``."""
+    program = commands.add_parser(
+        "program",
+        help="read a robot program, write changes back into it, or convert it",
+        usage="beltgrind program FILE [-o POSES.csv]\n"
+        "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.csv",
+        description="Says what is in a robot program. write: changed speeds, forces and offsets "
+        "go back into the original, nothing else changes. convert: writes it in another language.",
+    )
+    program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
+    program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
+    program.set_defaults(do=_program)
+    raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
+    raster.add_argument("job", help="job.json; it need not have a program yet")
+    raster.add_argument(
+        "-o", "--output", required=True, help="program: .csv, .src, .mod or .script"
+    )
+    raster.add_argument("--settings", help="JSON file of the settings")
+    raster.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
+    )
+    raster.set_defaults(do=_raster)
+    reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
+    reach.add_argument("job", help="job.json")
+    reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
+    reach.set_defaults(do=_reach)
+
+
+def _program(arguments):
+    from .. import InputError
+    from ..programs import ProgramError, patch_program, read_program, table, write_program
+    from ..result import write_whole
+
+    action, *files = arguments.program
+    counts = {"write": 2, "convert": 1}
+    if action not in counts:
+        action, files = "read", arguments.program
+    if len(files) != counts.get(action, 1):
+        raise InputError(f"program {action}: {len(files)} files; see beltgrind program --help")
+    if action != "read" and not arguments.output:
+        raise InputError(f"program {action}: say by -o what file to write")
+    try:
+        if action == "write":
+            changed = patch_program(*files, arguments.output)
+            print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
+            return
+        program = read_program(files[0])
+        if action == "convert":
+            write_program(arguments.output, None, program)
+        elif arguments.output:
+            write_whole(Path(arguments.output), table.poses_csv(program).encode())
+    except ProgramError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+    print(json.dumps(table.summary(program), indent=2))
+
+
+def _raster(arguments):
+    from .. import InputError, raster, schemas
+    from ..programs import ProgramError, write_program
+
+    settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
+    if not isinstance(settings, dict):
+        raise InputError(f"{arguments.settings}: the settings are no object of keys")
+    for one in arguments.set:
+        key, equals, value = one.partition("=")
+        if not equals:
+            raise InputError(f"--set {one}: write KEY=VALUE")
+        try:
+            settings[key] = json.loads(value)
+        except ValueError:
+            settings[key] = value
+    found = raster.raster(raster.load_job(arguments.job), settings)
+    try:
+        write_program(arguments.output, None, raster.program(found))
+    except ProgramError as error:
+        raise InputError(str(error)) from None
+    except OSError as error:
+        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+    for warning in found["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
+    print(json.dumps(raster.summary(found)))
+
+
+def _reach(arguments):
+    from .. import InputError, job, robot
+    from ..result import write_whole
+
+    given = job.load(arguments.job)
+    if not robot.given(given["robot"]):
+        raise InputError(f"{arguments.job}: the job names no robot; give it the key 'robot'")
+    warnings = []
+    paths = [job.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
+    found = robot.job_reach(given, paths)
+    if arguments.output:
+        text = robot.joints_csv(found, [path.lines() for path in paths])
+        try:
+            write_whole(Path(arguments.output), text.encode())
+        except OSError as error:
+            raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+    for warning in warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    events = [{"program": i, **event} for i, one in enumerate(found) for event in one["events"]]
+    print(json.dumps({**robot.summary(given["robot"], found), "events": events}, indent=2))

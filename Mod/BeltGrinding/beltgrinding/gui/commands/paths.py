@@ -1,0 +1,141 @@
+"""Robot programs, in and out, and paths made here."""
+
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ... import InputError
+from ...objects import api, freecad_path, robot_path
+from ...objects.proxy import type_of
+from ...programs import file_pattern
+from ..compat import QtGui, translate
+from ..panel import edit
+from .base import Command, active_job, transaction
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+
+def programs_filter():
+    """What a file dialog for robot programs offers."""
+    return translate("BeltGrinding", "Robot programs") + f" ({file_pattern()})"
+
+
+class ImportProgram(Command):
+    NAME = "BeltGrinding_ImportProgram"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Import robot program...")
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_ImportProgram", "Reads a robot program into the job")
+
+    def run(self):
+        title = translate("BeltGrinding", "Import robot program")
+        path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", programs_filter())[
+            0
+        ]
+        if path:
+            import_program(active_job(), path)
+
+
+def import_program(job, path):
+    """Imports a program's file into the job in a transaction and opens its panel."""
+    with transaction(
+        job.Document, translate("BeltGrinding", "Import robot program"), panel=True
+    ) as step:
+        program = api.import_program(job, path)
+    if not step.failed:
+        edit(program)
+
+
+class FollowPath(Command):
+    NAME = "BeltGrinding_FollowPath"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_FollowPath", "Follow selected path")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_FollowPath",
+        "Grinds along the selected CAM path or robot trajectory of FreeCAD, and follows its changes",
+    )
+
+    def run(self):
+        job = active_job()
+        sources = [
+            obj
+            for obj in Gui.Selection.getSelection(job.Document.Name)
+            if freecad_path.is_path(obj) and type_of(obj) != robot_path.RobotPath.TYPE
+        ]
+        if len(sources) != 1:
+            raise InputError(
+                translate(
+                    "BeltGrinding", "Select one CAM path or robot trajectory in the tree first."
+                )
+            )
+        with transaction(
+            job.Document, translate("BeltGrinding", "Follow selected path"), panel=True
+        ) as step:
+            program = api.follow_path(job, sources[0])
+        if not step.failed:
+            edit(program)
+
+
+class RasterPath(Command):
+    NAME = "BeltGrinding_RasterPath"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_RasterPath", "Raster path...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_RasterPath",
+        "Lays contact passes side by side on the selected faces, or on all faces of the job",
+    )
+
+    def run(self):
+        job = active_job()
+        faces = [
+            (one.Object, [s for s in one.SubElementNames if s.startswith("Face")])
+            for one in Gui.Selection.getSelectionEx(job.Document.Name)
+            if hasattr(one.Object, "Shape")
+            and any(s.startswith("Face") for s in one.SubElementNames)
+        ]
+        with transaction(
+            job.Document, translate("BeltGrinding", "Raster path"), panel=True
+        ) as step:
+            path = api.make_raster(job, faces, compute=False)
+        if not step.failed:
+            edit(path)
+
+
+class ReadAgain(Command):
+    NAME = "BeltGrinding_ReadAgain"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ReadAgain", "Read programs again")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ReadAgain", "Reads the job's robot programs from their files again"
+    )
+
+    def run(self):
+        job = active_job()
+        with transaction(job.Document, translate("BeltGrinding", "Read programs again")):
+            for path in job.Group:
+                if type_of(path) == robot_path.RobotPath.TYPE and path.Source:
+                    robot_path.load_program(path, path.Source)
+            job.Document.recompute()
+
+
+class ExportProgram(Command):
+    NAME = "BeltGrinding_ExportProgram"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExportProgram", "Export robot program...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExportProgram",
+        "Writes the selected robot path as KRL, RAPID, URScript or CSV",
+    )
+
+    def run(self):
+        job = active_job()
+        paths = [o for o in job.Group if type_of(o) == robot_path.RobotPath.TYPE]
+        selected = [o for o in Gui.Selection.getSelection(job.Document.Name) if o in paths] or paths
+        if len(selected) != 1:
+            raise InputError(
+                translate("BeltGrinding", "Select the robot path that is to be written.")
+            )
+        title = translate("BeltGrinding", "Export robot program")
+        kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;CSV (*.csv)"
+        path, kind = QtGui.QFileDialog.getSaveFileName(
+            Gui.getMainWindow(), title, f"{selected[0].Label}.src", kinds
+        )
+        if path:
+            suffix = kind.rpartition("*")[2].rstrip(")")
+            path = path if Path(path).suffix else path + suffix
+            api.export_program(selected[0], path)

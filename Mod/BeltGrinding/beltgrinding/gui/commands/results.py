@@ -1,0 +1,95 @@
+"""The simulation, and what it shows."""
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...objects import api, deviation, simulation
+from ...objects.job_object import child
+from ..compat import translate
+from ..panel import edit
+from .base import Command, active_job, transaction
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+
+class Simulate(Command):
+    NAME = "BeltGrinding_Simulate"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Simulate")
+    TIP = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Grinds the job; FreeCAD stays usable")
+
+    def run(self):
+        from ..simulation_panel import SimulationPanel
+
+        Gui.Control.showDialog(SimulationPanel(active_job(), True))
+
+
+class Deviation(Command):
+    NAME = "BeltGrinding_Deviation"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Deviation", "Deviation")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Deviation", "Lays the deviation from the design over the part in colour"
+    )
+
+    def IsActive(self):
+        return super().IsActive() and child(active_job(), simulation.Simulation) is not None
+
+    def run(self):
+        job = active_job()
+        found = child(job, deviation.Deviation)
+        if found is None:
+            with transaction(
+                job.Document, translate("BeltGrinding", "Deviation"), panel=True
+            ) as step:
+                found = api.make_deviation(job)
+                for part in {obj for obj, _ in job.DesignFaces}:
+                    part.ViewObject.Visibility = False
+            if step.failed:
+                return
+        edit(found)
+
+
+class Section(Command):
+    NAME = "BeltGrinding_Section"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Section", "Cross-section")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Section",
+        "Cuts the result: design, stock and ground profile along a plane or between two points",
+    )
+
+    def IsActive(self):
+        return super().IsActive() and child(active_job(), simulation.Simulation) is not None
+
+    def run(self):
+        from ..section_dock import show_section
+
+        job = active_job()
+        with transaction(job.Document, "Cross-section") as step:
+            section = api.make_section(job)
+        if not step.failed:
+            show_section(section)
+
+
+class Playback(Command):
+    NAME = "BeltGrinding_Playback"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Playback", "Playback")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Playback", "Shows the recorded simulation at any moment, under the 3D view"
+    )
+
+    def run(self):
+        from ..playback import show
+
+        show(active_job())
+
+
+class Contact(Command):
+    NAME = "BeltGrinding_Contact"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Contact", "Contact at a pose...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Contact", "Shows the pressure on the wheel's footprint at any pose"
+    )
+
+    def run(self):
+        from ..contact_panel import ContactPanel
+
+        Gui.Control.showDialog(ContactPanel(active_job()))

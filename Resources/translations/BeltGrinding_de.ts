@@ -1306,10 +1306,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>quer zu {}</translation>
     </message>
     <message>
-        <source>arc length, mm; upright: height above the design, mm</source>
-        <translation>Bogenlänge, mm; senkrecht: Höhe über dem Soll, mm</translation>
-    </message>
-    <message>
         <source>at</source>
         <translation>bei</translation>
     </message>
@@ -1338,10 +1334,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Soll</translation>
     </message>
     <message>
-        <source>deviation {:+.4f} mm</source>
-        <translation>Abweichung {:+.4f} mm</translation>
-    </message>
-    <message>
         <source>ground</source>
         <translation>geschliffen</translation>
     </message>
@@ -1358,10 +1350,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Rohteil</translation>
     </message>
     <message>
-        <source>stock {:.4f}, removed {:.4f} mm</source>
-        <translation>Aufmaß {:.4f}, abgetragen {:.4f} mm</translation>
-    </message>
-    <message>
         <source>tolerance</source>
         <translation>Toleranz</translation>
     </message>
@@ -1370,20 +1358,8 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>wahre Gestalt</translation>
     </message>
     <message>
-        <source>uncertainty (1 sd) {:.4f} mm</source>
-        <translation>Unsicherheit (1 σ) {:.4f} mm</translation>
-    </message>
-    <message>
         <source>unrolled</source>
         <translation>abgewickelt</translation>
-    </message>
-    <message>
-        <source>{:.2f} mm long, {:.1f} % in tolerance
-deviation {:+.4f} to {:+.4f} mm, mean {:+.4f} mm
-removed {:.4f} mm on the mean</source>
-        <translation>{:.2f} mm lang, {:.1f} % in Toleranz
-Abweichung {:+.4f} bis {:+.4f} mm, Mittel {:+.4f} mm
-im Mittel {:.4f} mm abgetragen</translation>
     </message>
     <message>
         <source>Back</source>
@@ -1516,6 +1492,34 @@ im Mittel {:.4f} mm abgetragen</translation>
     <message>
         <source>{:.2f} s, pose {}</source>
         <translation>{:.2f} s, Pose {}</translation>
+    </message>
+    <message>
+        <source>Show the plot</source>
+        <translation>Diagramm zeigen</translation>
+    </message>
+    <message>
+        <source>arc length, mm; upright: height above the design, {}</source>
+        <translation>Bogenlänge, mm; senkrecht: Höhe über dem Soll, {}</translation>
+    </message>
+    <message>
+        <source>deviation {}</source>
+        <translation>Abweichung {}</translation>
+    </message>
+    <message>
+        <source>stock {}, removed {}</source>
+        <translation>Aufmaß {}, abgetragen {}</translation>
+    </message>
+    <message>
+        <source>uncertainty (1 sd) {}</source>
+        <translation>Unsicherheit (1 σ) {}</translation>
+    </message>
+    <message>
+        <source>{:.2f} mm long, {:.1f} % in tolerance
+deviation {} to {}, mean {}
+removed {} on the mean</source>
+        <translation>{:.2f} mm lang, {:.1f} % in Toleranz
+Abweichung {} bis {}, Mittel {}
+im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>

@@ -80,12 +80,14 @@ void bind_inspection(py::module_& m) {
     m.def(
         "height_colours",
         [](const Array<double>& heights, const Array<std::uint8_t>& flags, double lower,
-           double upper, double limit) {
+           double upper, double limit, int bands, const Choice& colours) {
             return own(deviation_colours(values_of(heights), values_of(flags),
-                                         scale_of(lower, upper, limit)));
+                                         scale_of(lower, upper, limit, bands, colours)));
         },
         py::arg("heights"), py::arg("flags"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
-        "(n,) uint32, 0xRRGGBBAA of deviations in mm; on all threads.");
+        py::arg("bands") = 0, py::arg("colours") = py::none(),
+        "(n,) uint32, 0xRRGGBBAA of deviations in mm; on all threads. bands and colours as for "
+        "deviation_colours.");
     m.def(
         "magnitude_colours",
         [](const Array<double>& values, const Array<std::uint8_t>& flags, double limit) {

@@ -60,7 +60,7 @@ walks, init = [], pose_walk.PoseWalk.__init__
 def watched(self, *arguments):
     init(self, *arguments)
     walks.append(self)
-pose_walk.PoseWalk.__init__ = watched
+patch(pose_walk.PoseWalk, "__init__", watched)
 
 gripper = doc.addObject("Part::Box", "Gripper")
 gripper.Placement.Base = (0, 0, -50)
@@ -137,7 +137,7 @@ walks, init = [], pose_walk.PoseWalk.__init__
 def watched(self, *arguments):
     init(self, *arguments)
     walks.append(self)
-pose_walk.PoseWalk.__init__ = watched
+patch(pose_walk.PoseWalk, "__init__", watched)
 
 machine.BaseFromRobot.Base = (-500, 20, -300)
 menu("Cell")
@@ -187,7 +187,7 @@ asked = []
 def answer(*arguments, **keywords):
     asked.append(arguments)
     return "out", "ABB RAPID (*.mod)"
-QtGui.QFileDialog.getSaveFileName = staticmethod(answer)
+patch(QtGui.QFileDialog, "getSaveFileName", staticmethod(answer))
 menu("Export robot program...")
 assert asked and Path("out.mod").exists()
 program = read_program("out.mod")

@@ -65,6 +65,7 @@ for suffix in READERS:
 assert before[".src"] == [ours] and before[".nc"] != [ours] and before[".csv"] != [ours]
 """,
         window=True,
+        fresh=True,
     )
 
 
@@ -78,6 +79,8 @@ press("Deviation")
 press("OK")
 menu("Belt")
 press("OK")
+menu("Cross-section")
+dock = field("BeltGrinding_SectionDock")
 
 def entries(obj):
     Gui.Selection.clearSelection()
@@ -110,6 +113,18 @@ def trigger(obj, text):
     next(a for a in found.actions() if a.text().replace("&", "") == text).trigger()
     settle()
 
+dock.close()
+_, texts = entries(doc.Section)
+assert texts[:3] == ["Show the plot", "Export CSV...", "Export SVG..."], texts
+trigger(doc.Section, "Show the plot")
+assert dock.isVisible() and dock.obj == doc.Section and not Gui.Control.activeDialog()
+for kind in ("csv", "svg"):
+    dock.close()
+    name_file(f"cut.{kind}")
+    trigger(doc.Section, f"Export {kind.upper()}...")
+    assert Path(f"cut.{kind}").stat().st_size > 500 and "Written" in field("sectionFigures").text()
+dock.close()
+
 text = Path("pass.csv").read_text()
 Path("pass.csv").write_text("\\n".join(text.splitlines()[:-1]) + "\\n")
 trigger(doc.RobotPath, "Read the file again")
@@ -119,7 +134,7 @@ assert len(doc.RobotPath.Poses) == 9
 
 from beltgrinding.programs import read_program
 doc.RobotPath.ForceOverride = "25 N"
-QtGui.QFileDialog.getSaveFileName = staticmethod(lambda *a, **k: ("new.src", "KRL (*.src)"))
+name_file("new.src", "KRL (*.src)")
 trigger(doc.RobotPath, "Export robot program...")
 arrays = read_program("new.src").path_arrays(1.0)
 before = doc.RobotPath.Proxy.arrays(doc.RobotPath)
@@ -156,6 +171,14 @@ page.saveSettings()
 assert standard != 0.8 and core.threads() == 1
 assert preferences.length_text(0.0123) == "+12 \\u00b5m"
 
+def middle():
+    view = Gui.ActiveDocument.ActiveView
+    view.setAnimationEnabled(False)
+    view.viewTop()
+    view.fitAll()
+    settle()
+    return view.getPointOnScreen(FreeCAD.Vector(30, 20, 20.1))
+
 job = prepare()  # types a spacing of its own
 assert abs(job.ToleranceUpper.Value - 0.07) < 1e-12
 doc = job.Document
@@ -165,7 +188,22 @@ press("Deviation")
 figures = field("statistics", QtGui.QTableWidget)
 texts = [figures.item(i, 1).text() for i in range(figures.rowCount())]
 assert any(t.endswith("\\u00b5m") for t in texts), texts
+settle()
+click_at(*middle())
+assert "\u00b5m: " in field("reading").text(), field("reading").text()
+assert "mm" not in field("reading").text().split("(")[0]
 press("OK")
+menu("Cross-section")
+plot, figures = field("sectionPlot"), field("sectionFigures")
+assert "\u00b5m" in figures.text() and "\u00b5m" in plot.value_text(0, 3), figures.text()
+assert plot.height_unit() == 1e-3 and "\u00b5m" in plot._x_label()
+page.unit.setCurrentIndex(0)
+page.saveSettings()
+assert "\u00b5m" not in figures.text() and plot.height_unit() == 1  # at once
+page.unit.setCurrentIndex(1)
+page.saveSettings()
+field("BeltGrinding_SectionDock").close()
+doc.Section.ViewObject.Visibility = False
 greens = {c for c in doc.Deviation.VertexColors}
 page.colours["ColourAbove"].show_colour(0xA02020FF)
 page.saveSettings()
@@ -290,6 +328,29 @@ assert "Invalid" not in job.State, job.State
 doc.Stock.Kind = "solid"
 doc.recompute()
 assert "Invalid" in doc.Stock.State
+doc.Stock.Kind = "allowance"
+doc.recompute()
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Close")
+assert not doc.Simulation.OutOfDate
+doc.Stock.Kind = "solid"
+doc.recompute()
+assert doc.Simulation.OutOfDate
+doc.Stock.Kind = "allowance"
+doc.recompute()
+assert not doc.Simulation.OutOfDate
+for name, bad in (("PoissonsRatio", 0.7), ("WheelRadius", 0), ("BeltWear", -1)):
+    before = getattr(machine, name)
+    setattr(machine, name, bad)
+    doc.recompute()
+    assert "Invalid" in machine.State, (name, machine.State)
+    assert doc.Simulation.OutOfDate, name  # the result is not this machine's
+    setattr(machine, name, before)
+    doc.recompute()
+    assert "Invalid" not in machine.State and not doc.Simulation.OutOfDate, (name, machine.State)
+report = window.findChild(QtGui.QTextEdit, "Report view")
+wait(lambda: "PoissonsRatio is 0.7; it must be" in report.toPlainText(), 10)
 """,
         window=True,
     )

@@ -50,4 +50,4 @@ if "PICTURES" in os.environ:
 
 def test_german(freecad):
     freecad.run(LANGUAGE)
-    freecad.run(GERMAN, window=True)
+    freecad.run(GERMAN, window=True, fresh=True)

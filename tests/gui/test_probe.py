@@ -33,7 +33,7 @@ from beltgrinding.objects.reading import Reader
 reader = Reader(doc.Deviation)
 text = click(2, 2)  # beside the pass: all the stock is left
 assert "+0.2000 mm: too much left" in text and "removed 0.0000 mm of 0.2000 mm" in text, text
-assert "Block.Face6" in text and "segment -1.000 ... +0.2000 mm" in text, text
+assert "Block.Face6" in text and "segment -1.0000 mm ... +0.2000 mm" in text, text
 assert window.statusBar().currentMessage().startswith("+0.2000 mm")
 assert field("readingAtCursor").text() == text
 

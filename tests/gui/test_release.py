@@ -41,6 +41,7 @@ menu("Help")
 assert "tutorial" in field("BeltGrinding_ManualView").toPlainText().lower()
 """,
         window=True,
+        fresh=True,
     )
 
 

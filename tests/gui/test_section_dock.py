@@ -98,7 +98,7 @@ wait(lambda: not field("sectionPick").isChecked())
 
 files = {kind: Path(f"section.{kind}").resolve() for kind in ("csv", "svg")}
 for kind, path in files.items():
-    QtGui.QFileDialog.getSaveFileName = staticmethod(lambda *a, **k: (str(path), ""))
+    name_file(path)
     press(f"Export {kind.upper()}")
     assert str(path) in field("sectionFigures").text()
 rows = list(csv.DictReader(files["csv"].open()))

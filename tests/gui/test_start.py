@@ -29,7 +29,12 @@ def release(tmp_path):
 def chosen(release, body, **variables):
     freecad, folder = release
     freecad.run(
-        CHOOSE + body, window=True, PYTHONPATH=str(folder), BELTGRINDING_BUILD="", **variables
+        CHOOSE + body,
+        window=True,
+        fresh=True,
+        PYTHONPATH=str(folder),
+        BELTGRINDING_BUILD="",
+        **variables,
     )
 
 
@@ -152,4 +157,5 @@ from beltgrinding import core
 assert core.threads() == 1, core.threads()
 """,
         window=True,
+        fresh=True,
     )

@@ -170,7 +170,7 @@ def watched(*arguments):
         return whole(*arguments)
     finally:
         runs.append("ended")
-jobs.run = watched
+patch(jobs, "run", watched)
 
 job.Spacing = 0.05
 doc.recompute()

@@ -1,6 +1,7 @@
 """Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
 
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import Part
 from PySide import QtCore, QtGui
 
 window = Gui.getMainWindow()
+_patched = []  # (holder, name, what it was)
 
 
 def settle():
@@ -85,9 +87,43 @@ def click_at(x, y):
     settle()
 
 
+def patch(holder, name, value):
+    """Replaces an attribute until the test's end."""
+    _patched.append((holder, name, vars(holder).get(name, getattr(holder, name))))
+    setattr(holder, name, value)
+
+
 def choose(path):
     """Makes the next file dialog answer with ``path``."""
-    QtGui.QFileDialog.getOpenFileName = staticmethod(lambda *a, **k: (str(path), ""))
+    patch(QtGui.QFileDialog, "getOpenFileName", staticmethod(lambda *a, **k: (str(path), "")))
+
+
+def name_file(path, kind=""):
+    """Makes the next dialog for a file to be written answer with ``path`` and the filter ``kind``."""
+    patch(QtGui.QFileDialog, "getSaveFileName", staticmethod(lambda *a, **k: (str(path), kind)))
+
+
+def reset():
+    """Puts the window back for the next test: no document, panel, dock, message or preference."""
+    Gui.Control.closeDialog()
+    settle()
+    for dock in window.findChildren(QtGui.QDockWidget):
+        if dock.objectName().startswith("BeltGrinding_"):
+            dock.close()
+    for box in window.findChildren(QtGui.QMessageBox):
+        box.close()
+        box.deleteLater()
+    Gui.Selection.clearSelection()
+    for name in list(FreeCAD.listDocuments()):
+        FreeCAD.closeDocument(name)
+    while _patched:
+        setattr(*_patched.pop())
+    preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/BeltGrinding")
+    preferences.Clear()
+    if "beltgrinding.objects.preferences" in sys.modules:
+        sys.modules["beltgrinding.objects.preferences"].apply_threads()
+    window.statusBar().clearMessage()
+    settle()
 
 
 def screenshot(path):

@@ -138,8 +138,8 @@ class FieldView:
     def colour_by(self, mode, *limits, values=None):
         """Colours by one of MODES.
 
-        deviation: ``limits`` are lower and upper limit and the end of the ramps, mm. removed depth,
-        uncertainty: the end of the ramp, mm. face: none. pressure (MPa), contact (a mask or a share):
+        deviation: ``limits`` are lower and upper limit and the end of the ramps, mm; then, if not
+        the usual ones, bands and colours as core.deviation_colours has them. removed depth, uncertainty: the end of the ramp, mm. face: none. pressure (MPa), contact (a mask or a share):
         ``values`` (n,), and the end of the ramp (contact: 1 if not given). ``values`` replaces what
         the field knows in the other modes too.
         """

@@ -5,29 +5,19 @@ import traceback
 
 import FreeCAD
 import FreeCADGui as Gui
-import numpy as np
-from pivy import coin
 
 from .. import Cancelled, InputError, core
 from ..objects import job_object
-from ..objects.belt_machine import BeltMachine
-from ..objects.deviation import Deviation
-from ..objects.robot_path import RobotPath
 from ..objects.simulation import Simulation
-from ..result import colour_scale
-from . import legend
-from .cell_view import CellView
 from .compat import QtCore, QtGui, translate
-from .part_context import rest_of_part
-from .field_view import DEVIATION, FieldView
+from .playback_scene import SAME, Scene
 from .runner import Runner
-from .shapes3d import separator
 from .strip_chart import StripChart
 
 SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # of the real time
 TICK = 40  # ms between two pictures
 PARTS = 100_000  # of the slider
-SAME = 1e-9  # s
+SCALE = ("ToleranceLower", "ToleranceUpper", "ColourLimit", "Bands", "Shown")  # of a Deviation
 
 
 class Playback(QtGui.QDockWidget):
@@ -38,7 +28,8 @@ class Playback(QtGui.QDockWidget):
         self.setObjectName("BeltGrinding_PlaybackDock")
         self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         self.document, self.name = job.Document, job.Name
-        self.scene = self.runner = None
+        self.scene = self.runner = self.stale = None
+        self.waiting = set()  # what is to be done once FreeCAD has done its own
         self.clock = QtCore.QTimer(self)
         self.clock.setInterval(TICK)
         self.clock.timeout.connect(self._tick)
@@ -57,12 +48,20 @@ class Playback(QtGui.QDockWidget):
         """Shows the job's recording, or offers to make one."""
         self._clear()
         job = self.job()
+        if job is None:
+            self.close()
+            return
         simulation = job_object.child(job, Simulation)
         found = simulation.Proxy.recording(simulation) if simulation is not None else None
         if found is None:
             self.setWidget(self._offer(simulation))
             return
-        self.scene = Scene(job, simulation, found[0])
+        try:
+            self.scene = Scene(job, simulation, found[0])
+        except InputError as error:
+            self.setWidget(self._offer(simulation))
+            self.state.setText(str(error))
+            return
         self.setWidget(self._controls(simulation, found[1]))
         self.go(0.0)
 
@@ -120,7 +119,8 @@ class Playback(QtGui.QDockWidget):
                 lines = traceback.format_exception(type(error), error, error.__traceback__)
                 FreeCAD.Console.PrintError("".join(lines))
             self.setWidget(self._offer(job_object.child(self.job(), Simulation)))
-            self.state.setText(str(error) or translate("BeltGrinding", "Cancelled."))
+            cancelled = isinstance(error, Cancelled)
+            self.state.setText(translate("BeltGrinding", "Cancelled.") if cancelled else str(error))
 
     def _controls(self, simulation, steps):
         panel = QtGui.QWidget()
@@ -173,13 +173,12 @@ class Playback(QtGui.QDockWidget):
         choice.setPopupMode(QtGui.QToolButton.InstantPopup)
         row.addWidget(choice)
         body.addLayout(row)
-        if simulation.OutOfDate:
-            text = translate(
-                "BeltGrinding", "Out of date: an input has changed since; simulate again."
-            )
-            stale = QtGui.QLabel(text)
-            stale.setStyleSheet("color: #b3261e; font-weight: bold;")
-            body.addWidget(stale)
+        text = translate("BeltGrinding", "Out of date: an input has changed since; simulate again.")
+        self.stale = QtGui.QLabel(text)
+        self.stale.setObjectName("playbackOutOfDate")
+        self.stale.setStyleSheet("color: #b3261e; font-weight: bold;")
+        self.stale.setVisible(simulation.OutOfDate)
+        body.addWidget(self.stale)
         body.addWidget(self.chart, 1)
         return panel
 
@@ -242,6 +241,44 @@ class Playback(QtGui.QDockWidget):
         if moment >= self.scene.duration:
             self.pause()
 
+    def slotChangedObject(self, obj, name):
+        """FreeCAD changes a property: by hand, by undo, by another run."""
+        if self.scene is None:
+            return
+        if obj == self.scene.simulation:
+            if name == "OutOfDate":
+                self.stale.setVisible(obj.OutOfDate)
+            elif name in ("Recording", "HeightField", "Fingerprint"):
+                self._later(self.show_result)
+        elif obj == self.scene.deviation and name in SCALE:
+            self._later(self.recolour)
+
+    def slotDeletedObject(self, obj):
+        """FreeCAD removes an object."""
+        if self.scene is not None and any(obj == one for one in self.scene.needed):
+            self.pause()
+            self._later(self.show_result)
+
+    def _later(self, work):
+        """Calls ``work`` once, when FreeCAD is through with what it does."""
+        if work.__name__ not in self.waiting:
+            self.waiting.add(work.__name__)
+            QtCore.QTimer.singleShot(0, lambda: self._now(work))
+
+    def _now(self, work):
+        self.waiting.discard(work.__name__)
+        if self.watching:
+            work()
+
+    def preferences_changed(self):
+        """The colours, or the legend's unit, are others."""
+        self._later(self.recolour)
+
+    def recolour(self):
+        """Follows the bounds, steps and colours of the job's Deviation."""
+        if self.scene is not None and self.job() is not None:
+            self.scene.recolour(self.job())
+
     def slotDeletedDocument(self, document):
         """FreeCAD closes a document."""
         if document is self.document or self.job() is None:
@@ -262,81 +299,6 @@ class Playback(QtGui.QDockWidget):
             self.runner = None
         self._clear()
         super().closeEvent(event)
-
-
-class Scene:
-    """What is drawn: the field at a moment, the wheel on it, the rest of the part."""
-
-    def __init__(self, job, simulation, recording):
-        self.recording = recording
-        self.paths = job_object.tool_paths(job)
-        programs = job_object.children(job, RobotPath)
-        self.labels = [program.Label for program in programs]
-        self.lines = [path.lines() for path in self.paths]
-        self.ends = np.cumsum([path.duration() for path in self.paths])
-        self.duration = recording.duration
-        deviation = job_object.child(job, Deviation)
-        self.scale = colour_scale({"inspection": job_object.inspection(job)})
-        if deviation is not None and deviation.ColourLimit.Value > 0:  # as it is drawn there
-            names = ("ToleranceLower", "ToleranceUpper", "ColourLimit")
-            self.scale = tuple(getattr(deviation, name).Value for name in names)
-        field = simulation.Proxy.field(simulation)
-        if field is None or field.size != recording.samples:
-            text = translate("BeltGrinding", "The recording is of another field; simulate again.")
-            raise InputError(text)
-        self.field = FieldView(field)
-        self.frame, self.heights = 0, recording.heights_at(0)
-        self._draw()
-        self.time = 0.0
-        self.cell = CellView(job.Document, job_object.child(job, BeltMachine))
-        self.cell.set_path(programs[0].Proxy.arrays(programs[0])["frames"])
-        self.cell.root.addChild(self.field.node)
-        # The carrier would move the legend with the part.
-        self.cell.root.addChild(separator(coin.SoResetTransform(), legend.node(*self.scale)))
-        if deviation is None or not deviation.ViewObject.Visibility:
-            self.cell.root.addChild(rest_of_part(job))  # else the deviation draws it
-        self.hidden = []  # (view, switch, what it showed)
-        for obj in {part for part, _ in job.DesignFaces}:
-            self._hide(obj.ViewObject, obj.ViewObject.SwitchNode)
-        if deviation is not None:
-            self._hide(deviation.ViewObject, deviation.ViewObject.SwitchNode)
-            self._hide(deviation.ViewObject, deviation.ViewObject.Proxy.legend)
-
-    def _hide(self, view, switch):
-        """Turns a switch of the scene off: the property Visibility would change the document."""
-        self.hidden.append((view, switch, switch.whichChild.getValue()))
-        switch.whichChild = coin.SO_SWITCH_NONE
-
-    def go(self, moment):
-        """Shows a moment, s."""
-        self.time = min(max(moment, 0.0), self.duration)
-        frame = self.recording.frame_at(self.time + SAME)
-        if frame != self.frame:
-            samples, heights = self.recording.advance(self.frame, frame)
-            self.heights[samples] = heights
-            self.frame = frame
-            if len(samples):
-                self._draw()
-        k = min(int(np.searchsorted(self.ends, self.time)), len(self.paths) - 1)
-        begin = self.ends[k - 1] if k else 0.0
-        base_from_tcp, pose = self.paths[k].frame_at(self.time - begin)
-        self.cell.set_frame(base_from_tcp)
-        self.place = (self.labels[k], pose, int(self.lines[k][pose]))
-
-    def _draw(self):
-        self.field.set_heights(self.heights)
-        self.field.colour_by(DEVIATION, *self.scale)
-
-    def close(self):
-        """Leaves the 3D views as they were. The switches alone were turned, no property."""
-        self.cell.close()
-        for view, switch, child in self.hidden:
-            try:
-                if view.Visibility:
-                    switch.whichChild = child
-            except (ReferenceError, RuntimeError):
-                pass  # the object is gone
-        self.hidden = []
 
 
 def show(job):

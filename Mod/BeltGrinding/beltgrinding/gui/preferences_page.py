@@ -1,6 +1,7 @@
 """The page in FreeCAD's preferences: defaults of new jobs, threads, colours, unit of deviations."""
 
 import FreeCAD
+import FreeCADGui as Gui
 from FreeCAD import Units
 
 from .. import InputError
@@ -160,8 +161,11 @@ class ColourButton(QtGui.QPushButton):
 
 
 def take_effect():
-    """Lets the preferences hold: the threads, and the colours of all deviations that are open."""
+    """Lets the preferences hold: the threads, and what is shown of all deviations that are open."""
     preferences.apply_threads()
+    for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget):
+        if dock.objectName() in ("BeltGrinding_SectionDock", "BeltGrinding_PlaybackDock"):
+            dock.preferences_changed()
     for document in FreeCAD.listDocuments().values():
         for obj in document.Objects:
             if type_of(obj) != Deviation.TYPE:

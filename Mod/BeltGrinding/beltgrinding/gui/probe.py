@@ -5,7 +5,7 @@ import FreeCADGui as Gui
 from pivy import coin
 
 from .. import InputError
-from ..objects import reading as readings
+from ..objects import preferences, reading as readings
 from . import field_view
 from .compat import QtCore, QtGui, translate
 
@@ -129,18 +129,25 @@ def describe(reading):
     where = ", ".join(part for part in (reading["face"], sample) if part)
     if reading["deviation"] is None:
         return [verdict, where, place]
-    known = "" if reading["uncertainty"] is None else f" ± {reading['uncertainty']:.4f}"
+    deviation = told(reading["deviation"])
+    if reading["uncertainty"] is not None:
+        deviation += f" ± {told(reading['uncertainty'], sign='')}"
     low, high = reading["segment"]
     return [
-        f"{reading['deviation']:+.4f}{known} mm: {verdict}",
+        f"{deviation}: {verdict}",
         translate("BeltGrinding", "removed")
-        + f" {reading['removed']:.4f} mm "
+        + f" {told(reading['removed'], sign='')} "
         + translate("BeltGrinding", "of")
-        + f" {reading['stock']:.4f} mm",
+        + f" {told(reading['stock'], sign='')}",
         where,
-        translate("BeltGrinding", "segment") + f" {low:+.3f} ... {high:+.4f} mm",
+        translate("BeltGrinding", "segment") + f" {told(low)} ... {told(high)}",
         place,
     ]
+
+
+def told(value, sign="+"):
+    """A height in mm, in the unit of the preferences."""
+    return preferences.length_text(value, 1, sign)
 
 
 def _dot():

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from .. import section_plot
+from ..objects.preferences import deviation_unit, length_text
 from .compat import QtCore, QtGui, translate
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot
@@ -116,9 +117,11 @@ class SectionChart(QtGui.QWidget):
             painter.setPen(dark)
             box = QtCore.QRectF(at - 40, area.bottom() + 3, 80, 16)
             painter.drawText(box, QtCore.Qt.AlignCenter, f"{value + 0.0:.{decimals}f}")
-        values, decimals = section_plot.ticks(y0, y0 + height, max(int(area.height() / 45), 2))
+        size = self.height_unit()
+        low, high = y0 / size, (y0 + height) / size
+        values, decimals = section_plot.ticks(low, high, max(int(area.height() / 45), 2))
         for value in values:
-            at = area.bottom() - (value - y0) * y
+            at = area.bottom() - (value * size - y0) * y
             painter.setPen(grey)
             painter.drawLine(QtCore.QPointF(area.left(), at), QtCore.QPointF(area.right(), at))
             painter.setPen(dark)
@@ -132,9 +135,14 @@ class SectionChart(QtGui.QWidget):
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
 
+    def height_unit(self):
+        """What the upright axis counts in, mm: the outline's true shape stays in mm."""
+        return deviation_unit().size if self.plot["mode"] == section_plot.UNROLLED else 1.0
+
     def _x_label(self):
         if self.plot["mode"] == section_plot.UNROLLED:
-            return translate("BeltGrinding", "arc length, mm; upright: height above the design, mm")
+            text = translate("BeltGrinding", "arc length, mm; upright: height above the design, {}")
+            return text.format(deviation_unit().symbol)
         factor = f"{self.plot['exaggeration']:g}"
         return translate("BeltGrinding", "in the plane, mm; heights ×{}").format(factor)
 
@@ -182,14 +190,15 @@ class SectionChart(QtGui.QWidget):
                 one["face"] + 1, one["s"][k]
             ),
             f"({x:.2f}, {y:.2f}, {z:.2f})",
-            translate("BeltGrinding", "deviation {:+.4f} mm").format(one["height"][k]),
-            translate("BeltGrinding", "stock {:.4f}, removed {:.4f} mm").format(
-                one["stock_height"][k], one["stock_height"][k] - one["height"][k]
+            translate("BeltGrinding", "deviation {}").format(length_text(one["height"][k], 1)),
+            translate("BeltGrinding", "stock {}, removed {}").format(
+                length_text(one["stock_height"][k], 1, ""),
+                length_text(one["stock_height"][k] - one["height"][k], 1, ""),
             ),
         ]
         if "height_sd" in one:
-            text = translate("BeltGrinding", "uncertainty (1 sd) {:.4f} mm")
-            lines.append(text.format(one["height_sd"][k]))
+            text = translate("BeltGrinding", "uncertainty (1 sd) {}")
+            lines.append(text.format(length_text(one["height_sd"][k], 1, "")))
         return "\n".join(lines)
 
     # Mouse

@@ -5,7 +5,7 @@ import FreeCADGui as Gui
 import numpy as np
 
 from .. import InputError, section as sections, section_plot
-from ..objects import section as objects
+from ..objects import preferences, section as objects
 from ..objects.proxy import type_of
 from .compat import QtCore, QtGui, translate
 from .section_chart import SectionChart
@@ -166,6 +166,11 @@ class SectionDock(QtGui.QDockWidget):
         self.chart.show_plot(section, plot)
         self._say(self.figures_text(obj), False)
 
+    def preferences_changed(self):
+        """The unit of the figures is another one."""
+        if self.isVisible():
+            self.refresh()
+
     def exaggeration(self):
         """The factor of the heights, None: chosen by the plot."""
         shape = self.mode.currentIndex() == 1
@@ -175,15 +180,13 @@ class SectionDock(QtGui.QDockWidget):
         """The section's figures in words."""
         text = translate(
             "BeltGrinding",
-            "{:.2f} mm long, {:.1f} % in tolerance\ndeviation {:+.4f} to {:+.4f} mm, "
-            "mean {:+.4f} mm\nremoved {:.4f} mm on the mean",
+            "{:.2f} mm long, {:.1f} % in tolerance\ndeviation {} to {}, mean {}\n"
+            "removed {} on the mean",
         ).format(
             obj.Length.Value,
             obj.InTolerance,
-            obj.Minimum.Value,
-            obj.Maximum.Value,
-            obj.Mean.Value,
-            obj.RemovedMean.Value,
+            *(preferences.length_text(v.Value, 1) for v in (obj.Minimum, obj.Maximum, obj.Mean)),
+            preferences.length_text(obj.RemovedMean.Value, 1, ""),
         )
         if obj.OutOfDate:
             text += "\n" + translate("BeltGrinding", "Out of date: simulate again.")

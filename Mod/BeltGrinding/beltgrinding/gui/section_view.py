@@ -2,6 +2,8 @@
 
 from pivy import coin
 
+from .compat import QtGui, translate
+from .icons import icon
 from .shapes3d import separator, unpickable
 from .view import View
 
@@ -13,6 +15,7 @@ class SectionView(View):
     """A line; a double click opens the plot."""
 
     ICON = "BeltGrinding_Section"
+    COMMANDS = ("BeltGrinding_Section", "BeltGrinding_Simulate")
 
     def attach(self, view):
         super().attach(view)
@@ -53,6 +56,24 @@ class SectionView(View):
 
         show_section(view.Object)
         return True
+
+    def verb(self):
+        return translate("BeltGrinding", "Show the plot")
+
+    def own_entries(self, obj, menu):
+        for kind in ("CSV", "SVG"):
+            text = translate("BeltGrinding", "Export {}").format(f"{kind}...")
+            menu.addAction(
+                QtGui.QIcon(icon("BeltGrinding_ExportJob")),
+                text,
+                lambda kind=kind.lower(): self.export(obj, kind),
+            )
+
+    def export(self, obj, kind):
+        """Asks for a file and writes the section as "csv" or "svg"; its dock says what came of it."""
+        from .section_dock import show_section
+
+        show_section(obj).export(kind)
 
     def setEdit(self, view, mode=0):
         return None

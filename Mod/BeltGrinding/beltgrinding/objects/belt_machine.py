@@ -2,8 +2,8 @@
 
 from .belt import Belt
 from .geometry import matrix, placement_to_job
-from .properties import Key, add_keys, to_job
-from .proxy import Proxy, type_of
+from .properties import Key, add_keys, check_limits, to_job
+from .proxy import Proxy, checking, type_of
 
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
@@ -73,6 +73,11 @@ class BeltMachine(Proxy):
         for name, (_, text) in ROBOT_FRAMES.items():
             if name not in obj.PropertiesList:
                 obj.addProperty("App::PropertyPlacement", name, "Robot", text)
+
+    def execute(self, obj):
+        """Raises InputError for a machine that cannot be; the tree shows it there."""
+        with checking(obj):
+            check_limits(obj, KEYS)
 
     def to_job(self, obj):
         """The parts of a job under 'belt_machine', 'cell' and 'robot'."""

@@ -1,6 +1,10 @@
 """What every document object of the workbench has in common."""
 
+from contextlib import contextmanager
+
 import FreeCAD
+
+from .. import InputError
 
 
 class Stateless:
@@ -50,6 +54,21 @@ class Proxy(Stateless):
 
     def execute(self, obj):
         """Nothing by default."""
+
+
+@contextmanager
+def checking(obj):
+    """Around the checks of an input of a job: if they fail, the job's results are out of date. The job
+    does not say so itself, for FreeCAD recomputes nothing that depends on a failure.
+    """
+    try:
+        yield
+    except InputError:
+        group = obj.getParentGroup()
+        for one in getattr(group, "Group", ()):
+            if "OutOfDate" in one.PropertiesList and not one.OutOfDate:
+                one.OutOfDate = True
+        raise
 
 
 def type_of(obj):

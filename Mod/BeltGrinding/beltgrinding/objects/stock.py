@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import InputError
 from .geometry import faces_digest, placed_shape, placement_to_job
 from .properties import Key, add_keys, check_limits, get_value
-from .proxy import Proxy
+from .proxy import Proxy, checking
 
 KEYS = (
     Key("Kind", "Enumeration", "Stock", "stock.kind"),
@@ -43,11 +43,12 @@ class Stock(Proxy):
 
     def execute(self, obj):
         """Raises InputError for a stock that cannot be; the tree shows it there."""
-        check_limits(obj, [key for key in KEYS if key.name in USED[obj.Kind]])
-        if obj.Kind == "solid":
-            _require_solid(obj)
-        elif obj.Kind == "mesh":
-            _require_mesh(obj)
+        with checking(obj):
+            check_limits(obj, [key for key in KEYS if key.name in USED[obj.Kind]])
+            if obj.Kind == "solid":
+                _require_solid(obj)
+            elif obj.Kind == "mesh":
+                _require_mesh(obj)
 
     def settings(self, obj):
         """The part of a job under 'stock' that needs no geometry."""

@@ -122,10 +122,28 @@ class ExportProgram(Command):
         "Writes the selected robot path as KRL, RAPID, URScript or CSV",
     )
 
+    NEEDS_JOB = False
+
+    def candidates(self):
+        """What could be meant: the selected paths, or those of the job, or those of the document."""
+        document, job = FreeCAD.ActiveDocument, active_job()
+        if document is None:
+            return []
+        for group in (
+            Gui.Selection.getSelection(document.Name),
+            [] if job is None else job.Group,
+            document.Objects,
+        ):
+            found = [obj for obj in group if type_of(obj) == robot_path.RobotPath.TYPE]
+            if found:
+                return found
+        return []
+
+    def IsActive(self):
+        return super().IsActive() and bool(self.candidates())
+
     def run(self):
-        job = active_job()
-        paths = [o for o in job.Group if type_of(o) == robot_path.RobotPath.TYPE]
-        selected = [o for o in Gui.Selection.getSelection(job.Document.Name) if o in paths] or paths
+        selected = self.candidates()
         if len(selected) != 1:
             raise InputError(
                 translate("BeltGrinding", "Select the robot path that is to be written.")

@@ -1,0 +1,32 @@
+"""Run inside FreeCAD with a window: runs the scripts that stdin names, one after the other, and says on
+the pipe ANSWERS whether each passed. See tests/support/freecad.py.
+"""
+
+import json
+import os
+import runpy
+import sys
+import traceback
+
+answers = int(os.environ.pop("ANSWERS"))
+environment = dict(os.environ)
+folder, path = os.getcwd(), list(sys.path)
+for line in open(0, "rb", closefd=False):  # sys.stdin is FreeCAD's own
+    task = json.loads(line)
+    os.environ.update(task["variables"])
+    answer = b"failed\n"
+    try:
+        runpy.run_path(task["script"], run_name="script")
+        from support import hands
+
+        hands.reset()
+        answer = b"passed\n"
+    except BaseException:
+        traceback.print_exc()
+    os.environ.clear()
+    os.environ.update(environment)
+    os.chdir(folder)
+    sys.path[:] = path
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.write(answers, answer)

@@ -75,8 +75,10 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                          const SamplingOptions& options, const RunContext& context = {},
                          SamplingReport* report = nullptr);
 
-/// Triangulates the whole shape to a chord error of `deflection` mm; outward orientation.
-TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context = {});
+/// Triangulates `faces` (from 0; the whole shape if empty) to a chord error of `deflection` mm;
+/// outward orientation. Throws InputError naming the face that does not exist.
+TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context = {},
+                         const std::vector<std::size_t>& faces = {});
 
 /// A faceted shell of planar faces from a mesh that came without a B-rep (an STL design), sewn,
 /// optionally merging coplanar neighbours. Throws InputError for a mesh without a sound triangle.

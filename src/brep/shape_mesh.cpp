@@ -11,6 +11,7 @@
 #include <ShapeUpgrade_UnifySameDomain.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 #include <TopoDS_Wire.hxx>
@@ -146,11 +147,24 @@ TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative
     }
 }
 
-TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context) {
+TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context,
+                         const std::vector<std::size_t>& faces) {
     if (!(deflection > 0) || !std::isfinite(deflection))
         throw InputError("deflection must be above 0 mm, not " + std::to_string(deflection));
     const Shape::Impl& impl = shape.impl();
-    TriangleMesh mesh = mesh_of(impl.shape, deflection, false, context);
+    TopoDS_Shape whole = impl.shape;
+    if (!faces.empty()) {
+        BRep_Builder builder;
+        TopoDS_Compound some;
+        builder.MakeCompound(some);
+        for (const std::size_t face : faces) {
+            if (face >= shape.face_count())
+                throw InputError(impl.name + ": there is no face " + std::to_string(face + 1));
+            builder.Add(some, impl.face(face));
+        }
+        whole = some;
+    }
+    TriangleMesh mesh = mesh_of(whole, deflection, false, context);
     if (mesh.triangles.empty())
         throw InputError(impl.name + ": triangulation gives no triangle; repair the shape");
     return mesh;

@@ -66,11 +66,15 @@ void bind_geometry(py::module_& m) {
           py::call_guard<py::gil_scoped_release>(), "A faceted shell from a mesh.");
     m.def(
         "triangulate",
-        [](const Shape& shape, double deflection, const RunContext* context) {
+        [](const Shape& shape, double deflection, const RunContext* context,
+           const std::vector<std::size_t>& faces) {
             const py::gil_scoped_release release;
-            return triangulate(shape, deflection, context != nullptr ? *context : RunContext());
+            return triangulate(shape, deflection, context != nullptr ? *context : RunContext(),
+                               faces);
         },
-        py::arg("shape"), py::arg("deflection"), py::arg("context") = nullptr);
+        py::arg("shape"), py::arg("deflection"), py::arg("context") = nullptr,
+        py::arg("faces") = std::vector<std::size_t>(),
+        "Triangles of faces (from 0; all if empty) to a chord error of deflection mm.");
     m.def(
         "sample_faces",
         [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing,

@@ -85,6 +85,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_simulation(m);
     bind_inspection(m);
     bind_section(m);
+    bind_picture(m);
     bind_robot(m);
     bind_toolpath(m);
 }

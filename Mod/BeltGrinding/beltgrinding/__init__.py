@@ -41,6 +41,13 @@ def run(job, context=None, recording=None):
     return jobs.run(job, context, recording)
 
 
+def report(result, output=None, pdf=None, language="en", title=None, context=None):
+    """Writes the report of a result as one HTML file; see ``reporting.report``."""
+    from . import reporting
+
+    return reporting.report(result, output, pdf, language, title, context)
+
+
 # What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).
 DOCUMENT_FUNCTIONS = (
     "make_job",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, law as laws, robot as robots, schemas
+from . import InputError, core, frames, inputs, law as laws, robot as robots, schemas
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -92,6 +92,8 @@ def run(job, context=None, recording=None):
 
 def _run(job, context, warnings, recording):
     phases = _Phases()
+    digests = inputs.digests(job)
+    phases.end("hash")
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     phases.end("programs")
     reached = robots.job_reach(job, paths, context.part(0.0, 0.0))
@@ -137,6 +139,7 @@ def _run(job, context, warnings, recording):
         process_time_s=process_time,
         wall_time_s=phases.seconds,
         warnings=warnings,
+        inputs=digests,
         models=models,
         belt={
             **laws.job_belt(options["belt"]),

@@ -14,8 +14,12 @@ from . import InputError, core
 class Result:
     """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events`` (lists and dicts
     as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
-    ``recording`` (core.Recording of the heights, or None).
+    ``recording`` (core.Recording of the heights, or None), ``convergence`` (dict as in
+    convergence.json, or None).
     """
+
+    bins = None  # the time series of a document's result, as ``reporting.charts.binned`` makes it
+    convergence = None
 
     def __init__(self, job, field, summary, events, steps, recording=None):
         self.job = job
@@ -46,7 +50,7 @@ class Result:
 
     @classmethod
     def read(cls, folder):
-        """The result that ``write`` left in ``folder``; without steps. Raises InputError."""
+        """The result that ``write`` left in ``folder``. Raises InputError."""
         folder = Path(folder)
         data = {}
         for name in ("summary.json", "events.json"):
@@ -63,7 +67,7 @@ class Result:
             raise InputError(
                 f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
             ) from None
-        return cls(job, field, data["summary.json"], data["events.json"], None)
+        return cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
 
 
 def colour_scale(job):
@@ -104,6 +108,24 @@ def _table(steps):
     text = io.StringIO()
     np.savetxt(text, rows, "%.9g", ",", header=",".join(STEP_COLUMNS.values()), comments="")
     return text.getvalue().encode()
+
+
+def _read_table(folder):
+    """The steps that ``_table`` wrote; None where there are none."""
+    path = folder / "steps.csv"
+    if not path.is_file():
+        return None
+    try:
+        with open(path, encoding="utf-8") as file:
+            names = file.readline().strip().split(",")
+            rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: no table of steps: {error}") from None
+    found = dict(zip(names, rows.T))
+    missing = [name for name in STEP_COLUMNS.values() if name not in found]
+    if missing:
+        raise InputError(f"{path}: the column {missing[0]} is missing")
+    return {name: found[column] for name, column in STEP_COLUMNS.items()}
 
 
 def _json(data):

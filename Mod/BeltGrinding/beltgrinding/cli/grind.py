@@ -1,10 +1,9 @@
 """Grinding a job."""
 
 import sys
-import threading
 from pathlib import Path
 
-CANCEL_TIME = 5.0  # s
+from . import background
 
 
 def add(commands):
@@ -17,49 +16,18 @@ def add(commands):
     run.set_defaults(do=_run)
 
 
-def _show_progress(context, done):
-    while not done.wait(0.2):
-        print(f"\r{100 * context.progress:3.0f} %", end="", file=sys.stderr, flush=True)
-    print("\r     \r", end="", file=sys.stderr, flush=True)
-
-
 def _run(arguments):
-    from .. import core, job, law
+    from .. import job, law
 
     given = job.load(arguments.job)
     if arguments.belt and Path(arguments.belt).exists():
         given["belt_machine"]["belt"] = law.read_belt(arguments.belt)
-    context = core.RunContext()
-    outcome = {}
-    done = threading.Event()
-
-    def work():
-        try:
-            outcome["result"] = job.run(given, context)
-        except BaseException as error:  # handed on to the main thread
-            outcome["error"] = error
-
-    # In a thread of its own, so that Ctrl-C reaches the main thread while C++ computes.
-    worker = threading.Thread(target=work, daemon=True)
-    worker.start()
-    if sys.stderr.isatty() and not arguments.quiet:
-        threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
-    try:
-        while worker.is_alive():
-            worker.join(0.1)
-    except KeyboardInterrupt:
-        context.cancel()
-        worker.join(CANCEL_TIME)  # a library that reads a damaged file may never come back
-        raise
-    finally:
-        done.set()
-    if "error" in outcome:
-        raise outcome["error"]
-    outcome["result"].write(arguments.output)
+    result = background.run(lambda context: job.run(given, context), arguments.quiet)
+    result.write(arguments.output)
     if arguments.belt:
-        law.write_belt(arguments.belt, outcome["result"].summary["belt"])
+        law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
-        _report(outcome["result"].summary, arguments.output)
+        _report(result.summary, arguments.output)
 
 
 def _report(summary, output):

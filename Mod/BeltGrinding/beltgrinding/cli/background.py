@@ -1,0 +1,44 @@
+"""Long work of a command: progress on a terminal, and Ctrl-C that is heard."""
+
+import sys
+import threading
+
+CANCEL_TIME = 5.0  # s
+
+
+def run(work, quiet=False):
+    """``work(context)``'s result. It runs in a thread of its own, so that Ctrl-C reaches the main
+    thread while C++ computes; then the context is cancelled. Raises what the work raises.
+    """
+    from .. import core
+
+    context, outcome, done = core.RunContext(), {}, threading.Event()
+
+    def guarded():
+        try:
+            outcome["result"] = work(context)
+        except BaseException as error:  # handed on to the main thread
+            outcome["error"] = error
+
+    worker = threading.Thread(target=guarded, daemon=True)
+    worker.start()
+    if sys.stderr.isatty() and not quiet:
+        threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
+    try:
+        while worker.is_alive():
+            worker.join(0.1)
+    except KeyboardInterrupt:
+        context.cancel()
+        worker.join(CANCEL_TIME)  # a library that reads a damaged file may never come back
+        raise
+    finally:
+        done.set()
+    if "error" in outcome:
+        raise outcome["error"]
+    return outcome["result"]
+
+
+def _show_progress(context, done):
+    while not done.wait(0.2):
+        print(f"\r{100 * context.progress:3.0f} %", end="", file=sys.stderr, flush=True)
+    print("\r     \r", end="", file=sys.stderr, flush=True)

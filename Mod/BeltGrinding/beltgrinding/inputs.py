@@ -1,0 +1,79 @@
+"""What a job's result depends on, by SHA-256, so that a result can be traced to its inputs."""
+
+import hashlib
+import json
+from pathlib import Path
+
+BESIDE = (".dat", ".dtx", ".pgx", ".pjx")  # files of a robot program's name that are read with it
+CHUNK = 1 << 20  # bytes
+
+
+def digests(job):
+    """List of dicts, one an input of a validated job: ``what`` (the job's key), ``file`` (its path, or
+    None for what the job itself holds), ``bytes`` and ``sha256`` (None where there is no such file).
+    The job itself comes first, as its JSON with sorted keys and without blanks.
+    """
+    found = [_held("job", job)]
+    for key in ("design", "stock"):
+        if "file" in job[key]:
+            found.append(_file(key, Path(job[key]["file"])))
+        elif "brep" in job[key]:
+            found.append(_text(f"{key}.brep", job[key]["brep"]))
+    for i, program in enumerate(job["programs"]):
+        if "file" in program:
+            found += [_file(f"programs[{i}]", path) for path in _program_files(program["file"])]
+        else:
+            found.append(_held(f"programs[{i}].poses", program["poses"]))
+    surrogate = job["belt_machine"]["compliance"]["surrogate_file"]
+    if surrogate:
+        found.append(_file("belt_machine.compliance.surrogate_file", Path(surrogate)))
+    return found
+
+
+def _program_files(path):
+    path = Path(path)
+    try:
+        near = sorted(path.parent.iterdir())
+    except OSError:
+        near = []
+    stem = path.stem.lower()
+    return [path] + [
+        p
+        for p in near
+        if p != path and p.stem.lower() == stem and p.suffix.lower() in BESIDE and p.is_file()
+    ]
+
+
+def canonical(data):
+    """The bytes of plain data that its hash is taken of."""
+    return json.dumps(data, sort_keys=True, separators=(",", ":")).encode()
+
+
+def _held(what, data):
+    return _digest(what, None, canonical(data))
+
+
+def _text(what, text):
+    return _digest(what, None, text.encode())
+
+
+def _digest(what, file, data):
+    return {
+        "what": what,
+        "file": file,
+        "bytes": len(data),
+        "sha256": hashlib.sha256(data).hexdigest(),
+    }
+
+
+def _file(what, path):
+    found = hashlib.sha256()
+    size = 0
+    try:
+        with open(path, "rb") as file:
+            while data := file.read(CHUNK):
+                found.update(data)
+                size += len(data)
+    except OSError:
+        return {"what": what, "file": str(path), "bytes": None, "sha256": None}
+    return {"what": what, "file": str(path), "bytes": size, "sha256": found.hexdigest()}

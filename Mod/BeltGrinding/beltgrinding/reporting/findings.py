@@ -1,0 +1,329 @@
+"""The sections of a report that judge: verdict, tolerances, events, and how sure all that is."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from .. import core
+from ..poses import program_name
+from . import charts, facts
+from .layout import section, table
+from .markup import e
+
+MOST_EVENTS = 2000  # rows of the full table
+MOST_CLUSTERS = 20
+SEVERITIES = ("error", "warning", "info")
+
+
+def passed(content):
+    """True, False, or None where it cannot be told."""
+    verdict, summary = content.verdict, content.result.summary
+    if verdict and verdict.get("overall") in ("pass", "fail"):
+        return verdict["overall"] == "pass"
+    out = summary["above_tolerance_area_share"] + summary["below_tolerance_area_share"]
+    if out > 0.0:
+        return False
+    return None if summary["missed_rays"] else True
+
+
+def head(content, words, scale):
+    """Title, verdict in one glance, and the figures that matter."""
+    summary, (lower, upper, _) = content.result.summary, scale
+    deviation = summary["deviation_mm"]
+    good = passed(content)
+    state, text = {
+        True: ("pass", words("In tolerance")),
+        False: ("fail", words("Not in tolerance")),
+        None: ("open", words("Cannot be told")),
+    }[good]
+    above, below = (summary[f"{side}_tolerance_area_share"] for side in ("above", "below"))
+    said = [
+        words(
+            "After this grind {share} of the ground area lies within {band} of the design.",
+            share=words.percent(summary["in_tolerance_area_share"]),
+            band=words.band(lower, upper),
+        )
+    ]
+    if above > 0.0:
+        said.append(
+            words(
+                "On {share} too much is left, at most {most} mm above the design.",
+                share=words.percent(above),
+                most=words.number(deviation["max"]),
+            )
+        )
+    if below > 0.0:
+        said.append(
+            words(
+                "On {share} it is cut too deep, at most {most} mm below the design.",
+                share=words.percent(below),
+                most=words.number(-deviation["min"]),
+            )
+        )
+    if good is None:
+        said.append(words("Over some of the area no stock was found, so nothing is known there."))
+    tiles = [
+        (words.percent(summary["in_tolerance_area_share"]), words("of the area in tolerance")),
+        (f"{words.number(deviation['max'], 3, True)} mm", words("highest above the design")),
+        (f"{words.number(deviation['min'], 3, True)} mm", words("deepest below the design")),
+        (f"{words.number(summary['removed_volume_mm3'], 0)} mm³", words("removed")),
+        (words.seconds(summary.get("process_time_s")), words("of robot time")),
+        (words.whole(len(content.result.events)), words("events on the way")),
+    ]
+    return e(
+        "header",
+        e("p", words("Belt grinding report"), class_="kind"),
+        e("h1", content.title),
+        e("div", e("strong", text), e("p", " ".join(said)), class_=f"verdict {state}"),
+        [e("p", note, class_="note") for note in content.notes],
+        e(
+            "div",
+            [e("div", e("b", value), e("span", label), class_="tile") for value, label in tiles],
+            class_="tiles",
+        ),
+    )
+
+
+def spot(found, words):
+    """One sentence for a worst spot."""
+    beyond = f"{words.number(abs(found['beyond']))} mm"
+    if found["deviation"] > 0:
+        text = words("{mm} mm, {beyond} too high", mm=words.number(found["deviation"], 3, True), beyond=beyond)  # fmt: skip
+    else:
+        text = words("{mm} mm, {beyond} too deep", mm=words.number(found["deviation"], 3, True), beyond=beyond)  # fmt: skip
+    place = ", ".join(words.number(value, 1) for value in found["point"])
+    return f"{text}; Face{found['face']}, ({place}) mm"
+
+
+def tolerance(content, words, scale):
+    """Tolerances per face or zone, clusters, and the histogram."""
+    chart = charts.histogram(content.result.field, scale, words)
+    caption = words(
+        "How much of the ground area lies how far from the design. Green bars are in tolerance. The "
+        "scale upwards is that of the square root, so that small shares are seen."
+    )
+    return section(
+        words("Tolerance"),
+        *_by_face(content, words, scale),
+        e("figure", chart, e("figcaption", caption), class_="wide") if chart else None,
+    )
+
+
+def _by_face(content, words, scale):
+    """The table of faces."""
+    lower, upper, _ = scale
+    found = faces_of(content.result.field, lower, upper)
+    rows = [
+        (
+            f"Face{one['face']}",
+            words.band(lower, upper),
+            words.number(one["area"], 1),
+            words.percent(one["in"]),
+            words.percent(one["above"]),
+            words.percent(one["below"]),
+            words.number(one["max"], 3, True),
+            words.number(one["min"], 3, True),
+            _mark(one["in"] == 1.0 and not one["missed"], words),
+        )
+        for one in found
+    ]
+    heads = [
+        (words("Face"), ""),
+        (words("Tolerance"), "number"),
+        (words("Area, mm²"), "number"),
+        (words("good"), "number"),
+        (words("too high"), "number"),
+        (words("too deep"), "number"),
+        (words("highest, mm"), "number"),
+        (words("deepest, mm"), "number"),
+        (words("Verdict"), ""),
+    ]
+    return [table(heads, rows, "list faces")]
+
+
+def _mark(good, words):
+    text = words("pass") if good else words("fail")
+    return e("span", text, class_=f"mark {'pass' if good else 'fail'}")
+
+
+def faces_of(field, lower, upper):
+    """List of dicts, one a face of the field: ``face`` (from 1), ``area`` (mm2), shares ``in``,
+    ``above``, ``below`` of what was inspected, ``min`` and ``max`` (mm; None: nothing inspected),
+    ``missed`` (samples).
+    """
+    found, areas = [], field.areas.astype(float)
+    seen = (field.flags & core.MISSED) == 0
+    for face in np.unique(field.faces):
+        of = field.faces == face
+        height, area = field.height[of & seen], areas[of & seen]
+        whole = area.sum()
+        above = float(area[height > upper].sum() / whole) if whole > 0.0 else None
+        below = float(area[height < lower].sum() / whole) if whole > 0.0 else None
+        bad = bool(len(height)) and bool(((height > upper) | (height < lower)).any())
+        share = None if above is None else (1.0 - above - below if bad else 1.0)
+        found.append(
+            {
+                "face": int(face) + 1,
+                "area": float(areas[of].sum()),
+                "in": share,
+                "above": above,
+                "below": below,
+                "min": float(height.min()) if len(height) else None,
+                "max": float(height.max()) if len(height) else None,
+                "missed": int((of & ~seen).sum()),
+            }
+        )
+    return found
+
+
+def events(content, words):
+    """What happens on the way, by kind; the first of each."""
+    found = content.result.events
+    if not found:
+        text = words("Nothing out of the ordinary happens on the way.")
+        return section(words("Events"), e("p", text))
+    counts = Counter(event["kind"] for event in found)
+    first = {}
+    for event in found:
+        first.setdefault(event["kind"], event)
+    order = sorted(counts, key=lambda kind: (_rank(first[kind]), -counts[kind], kind))
+    rows = [
+        (
+            [_severity(first[kind], words), e("b", words(kind_text(kind)))],
+            words.whole(counts[kind]),
+            where(first[kind], content.result.job, words),
+            [first[kind]["message"], _advice(first[kind], words)],
+        )
+        for kind in order
+    ]
+    heads = [
+        (words("What"), ""),
+        (words("How often"), "number"),
+        (words("First at"), ""),
+        (words("The first of them"), ""),
+    ]
+    return section(words("Events"), table(heads, rows, "list events"))
+
+
+def kind_text(kind):
+    """An event's code in words: "force_not_reached" is "Force not reached"."""
+    return kind.replace("_", " ").capitalize()
+
+
+def _rank(event):
+    severity = event.get("severity", "warning")
+    return SEVERITIES.index(severity) if severity in SEVERITIES else len(SEVERITIES)
+
+
+def _severity(event, words):
+    """A dot in the severity's colour, told in words as well; nothing where it is not known."""
+    severity = event.get("severity")
+    if severity not in SEVERITIES:
+        return None
+    text = {"error": words("error"), "warning": words("warning"), "info": words("note")}[severity]
+    return [e("span", text, class_=f"severity {severity}"), " "]
+
+
+def _advice(event, words):
+    return e("p", words(event["advice"]), class_="advice") if event.get("advice") else None
+
+
+def where(event, job, words):
+    """Program, pose, line and time of an event."""
+    parts = []
+    if len(job["programs"]) > 1:
+        parts.append(Path(program_name(job, event["program"])).name)
+    if event.get("line"):
+        parts.append(words("line {line}", line=event["line"]))
+    parts.append(words("pose {pose}", pose=event["pose"] + 1))
+    parts.append(f"{words.number(event['time'], 2)} s")
+    return ", ".join(parts)
+
+
+def all_events(content, words):
+    """The table of all events, at the report's end."""
+    found = content.result.events
+    if not found:
+        return None
+    rows = [
+        (
+            words.number(event["time"], 2),
+            words.number(event.get("duration"), 2),
+            words(kind_text(event["kind"])),
+            where_short(event, content.result.job, words),
+            event["message"],
+        )
+        for event in found[:MOST_EVENTS]
+    ]
+    heads = [
+        (words("Time, s"), "number"),
+        (words("Lasts, s"), "number"),
+        (words("What"), ""),
+        (words("Where in the program"), ""),
+        (words("Message"), ""),
+    ]
+    left = len(found) - len(rows)
+    note = words("{count} more stand in events.json.", count=words.whole(left)) if left else None
+    return section(
+        words("All events"),
+        table(heads, rows, "list events"),
+        e("p", note) if note else None,
+        class_="all",
+    )
+
+
+def where_short(event, job, words):
+    """As ``where``, without the time."""
+    return where(event, job, words).rpartition(", ")[0]
+
+
+def trust(content, words):
+    """How sure the result is: doubtful things, uncertainty, convergence, warnings."""
+    result = content.result
+    rows = [
+        (
+            e("b", words.whole(count), class_="bad" if count else "good"),
+            what,
+            meaning if count or count is None else "",
+        )
+        for what, count, meaning in facts.doubts(
+            result.job, result.summary, result.events, content.verdict, words
+        )
+    ]
+    heads = [(words("Count"), "number"), (words("Doubtful"), ""), (words("What it means"), "")]
+    warnings = result.summary.get("warnings", [])
+    return section(
+        words("How sure is that?"),
+        e("p", words("Everything that weakens the result is counted here, also where it is zero.")),
+        table(heads, rows, "list doubts"),
+        e("ul", [e("li", text) for text in warnings], class_="warnings") if warnings else None,
+        _uncertainty(result.summary, words),
+        _convergence(content.convergence, words),
+    )
+
+
+def _uncertainty(summary, words):
+    if "deviation_sd_mm" not in summary:
+        text = words(
+            "How far the true deviation may differ is not known: the law was not calibrated."
+        )
+        return e("p", text, class_="unknown")
+    sd = summary["deviation_sd_mm"]
+    text = words(
+        "By the calibration's scatter the deviation has a standard deviation of {mean} mm on average; "
+        "95 % of the area are surer than {p95} mm. Weighed by that, {share} of the area is expected in "
+        "tolerance.",
+        mean=words.number(sd["mean"]),
+        p95=words.number(sd["p95"]),
+        share=words.percent(summary["expected_in_tolerance_area_share"]),
+    )
+    return e("p", text)
+
+
+def _convergence(convergence, words):
+    head = e("h3", words("Are the settings fine enough?"))
+    if convergence is None:
+        text = words("This was not checked.")
+        return [head, e("p", text, class_="unknown")]
+    return None

@@ -1,0 +1,76 @@
+"""A report's words and numbers in the reader's language."""
+
+import json
+import math
+from functools import lru_cache
+
+from .. import InputError, resources
+
+LANGUAGES = ("en", "de")
+POINTS = {"en": ".", "de": ","}
+MINUS = "\N{MINUS SIGN}"
+DASH = "\N{EN DASH}"  # where a number is not known
+
+
+@lru_cache(maxsize=None)
+def _texts(language):
+    """English text: text in another language."""
+    path = resources() / "report" / f"{language}.json"
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+class Language:
+    """``words("English text {name}", name=value)`` is the text in the language."""
+
+    def __init__(self, code="en"):
+        if code not in LANGUAGES:
+            raise InputError(f"report: no language '{code}'; choose {' or '.join(LANGUAGES)}")
+        self.code = code
+        self.texts = {} if code == "en" else _texts(code)
+
+    def __call__(self, text, **values):
+        return self.texts.get(text, text).format(**values) if values else self.texts.get(text, text)
+
+    def number(self, value, decimals=3, sign=False):
+        """A number with fixed decimals; a dash for None and what is not finite."""
+        if value is None or not math.isfinite(value):
+            return DASH
+        text = f"{round(value, decimals) + 0.0:{'+' if sign else ''}.{decimals}f}"
+        return text.replace("-", MINUS).replace(".", POINTS[self.code])
+
+    def figures(self, value, count=4):
+        """A number with so many figures, as large or small as it may be."""
+        if value is None or not math.isfinite(value):
+            return DASH
+        text = f"{value:.{count}g}"
+        mantissa, e, power = text.partition("e")
+        mantissa = mantissa.replace("-", MINUS).replace(".", POINTS[self.code])
+        if not e:
+            return mantissa
+        raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        return f"{mantissa} · 10{raised}"
+
+    def whole(self, value):
+        """A count, in groups of three digits."""
+        return DASH if value is None else f"{value:,}".replace(",", "\N{NARROW NO-BREAK SPACE}")
+
+    def percent(self, share, decimals=1):
+        """A share as percent. What is not quite all, or not quite nothing, does not look so."""
+        if share is None:
+            return DASH
+        value, step = 100.0 * share, 10.0**-decimals
+        if 0.0 < value < step:
+            return f"< {self.number(step, decimals)} %"
+        if 100.0 - step < value < 100.0:
+            return f"> {self.number(100.0 - step, decimals)} %"
+        return f"{self.number(value, decimals)} %"
+
+    def band(self, lower, upper):
+        """A tolerance band, mm."""
+        return f"{self.number(lower, 3, True)} … {self.number(upper, 3, True)} mm"
+
+    def seconds(self, value):
+        """A duration: seconds, or minutes and seconds."""
+        if value is None or value < 60.0:
+            return f"{self.number(value, 1)} s"
+        return f"{int(value // 60)} min {self.number(value % 60, 0)} s"

@@ -1,0 +1,57 @@
+"""HTML and SVG from elements, in which no text of a user can become markup."""
+
+import base64
+from html import escape
+
+VOID = {"meta", "link", "br", "img", "col"}  # HTML: elements without an end
+
+
+class Markup(str):
+    """Text that is markup already."""
+
+
+def e(tag, *children, **attributes):
+    """An element. Children: text (escaped), ``Markup``, None (left out), or lists of them.
+
+    An underscore at an attribute's end is dropped (``class_``), others become hyphens; one that is
+    None or False is left out, one that is True has no value.
+    """
+    names = []
+    for name, value in attributes.items():
+        if value is None or value is False:
+            continue
+        name = name.rstrip("_").replace("_", "-")
+        names.append(f" {name}" if value is True else f' {name}="{escape(_text(value))}"')
+    start = f"<{tag}{''.join(names)}>"
+    return Markup(start if tag in VOID else f"{start}{join(children)}</{tag}>")
+
+
+def join(children):
+    """The markup of children one after the other."""
+    parts = []
+    for child in children:
+        if isinstance(child, Markup):
+            parts.append(child)
+        elif isinstance(child, (list, tuple)):
+            parts.append(join(child))
+        elif child is not None:
+            parts.append(escape(_text(child), quote=False))
+    return Markup("".join(parts))
+
+
+def _text(value):
+    """Without what no document may hold: control characters, halves of surrogate pairs."""
+    text = f"{value:.2f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
+    return "".join(
+        c if c in "\t\n" or c >= " " and not "\x7f" <= c <= "\x9f" and not _outside(c) else "\ufffd"
+        for c in text
+    )
+
+
+def _outside(c):
+    return "\ud800" <= c <= "\udfff" or c in "\ufffe\uffff"
+
+
+def data_uri(data, kind):
+    """``data`` (bytes) as an address that holds it; ``kind``: its media type."""
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"

@@ -1,0 +1,49 @@
+"""The worst spots of a result: where a report looks closer."""
+
+import numpy as np
+
+from .. import core
+
+MOST = 6
+APART = 0.25  # of the field's extents: what lies nearer belongs to the same spot
+
+
+def worst(field, tolerance, verdict=None):
+    """List of dicts, worst first: ``point``, ``normal`` (mm, work), ``deviation`` and ``beyond`` (mm
+    past the limit), ``face`` (from 1), ``extent`` (mm; 0: not known) and, of a verdict's cluster,
+    ``cluster`` (the cluster's dict). At most ``MOST``; none where all is in tolerance.
+    """
+    if verdict and verdict.get("clusters"):
+        return [_of_cluster(one, field) for one in verdict["clusters"][:MOST]]
+    lower, upper = tolerance
+    beyond = np.maximum(field.height - upper, lower - field.height)
+    beyond[(field.flags & core.MISSED) != 0] = 0.0
+    apart = APART * float(np.linalg.norm(np.ptp(field.points, axis=0)))
+    found = []
+    while len(found) < MOST:
+        k = int(np.argmax(beyond))
+        if not beyond[k] > 0.0:
+            break
+        found.append(_spot(field, k, float(field.height[k]), float(beyond[k])))
+        # A lane of excess is one spot, however long; a gouge beside it is another.
+        same = np.sign(field.height) == np.sign(field.height[k])
+        near = np.linalg.norm(field.points - field.points[k], axis=1) < apart
+        beyond[near & same] = 0.0
+    return found
+
+
+def _spot(field, k, deviation, beyond, extent=0.0):
+    return {
+        "point": field.points[k].tolist(),
+        "normal": field.normals[k].astype(float).tolist(),
+        "deviation": deviation,
+        "beyond": beyond,
+        "face": int(field.faces[k]) + 1,
+        "extent": extent,
+    }
+
+
+def _of_cluster(cluster, field):
+    k = int(cluster["worst"]["sample"])
+    spot = _spot(field, k, cluster["worst"]["value_mm"], cluster["worst"]["beyond_mm"])
+    return {**spot, "extent": float(cluster.get("extent_mm") or 0.0), "cluster": cluster}

@@ -1,0 +1,278 @@
+#include "picture/picture.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr std::size_t kMostPixels = 8192;  // a side
+constexpr std::size_t kRays = 2;           // a pixel, in both directions
+constexpr std::size_t kRowsOfTask = 8;     // pixels
+constexpr float kAmbient = 0.5F;           // share of the light that comes from everywhere
+constexpr float kCreaseCosine = 0.82F;  // 35 degrees: beyond the facets of a smooth triangulation
+constexpr float kDepthJump = 6.0F;      // rays' distances that a surface leaps at an outline
+constexpr float kOutline = 0.35F;       // what an outline leaves of the colour
+constexpr float kBackground = 255.0F;
+
+struct DeviceDeleter {
+    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+};
+
+void validate(const ColouredSurface& surface) {
+    for (const Vec3& v : surface.vertices) {
+        if (!v.allFinite()) throw InputError("picture: a vertex is not finite");
+    }
+    for (const Triangle& t : surface.triangles) {
+        for (const std::uint32_t v : t) {
+            if (v >= surface.vertices.size()) {
+                throw InputError("picture: a triangle names a vertex that is not there");
+            }
+        }
+    }
+    if (surface.colours.size() != 1 && surface.colours.size() != surface.vertices.size()) {
+        throw InputError("picture: " + std::to_string(surface.colours.size()) + " colours for " +
+                         std::to_string(surface.vertices.size()) + " vertices");
+    }
+    if (!surface.normals.empty() && surface.normals.size() != surface.vertices.size()) {
+        throw InputError("picture: " + std::to_string(surface.normals.size()) + " normals for " +
+                         std::to_string(surface.vertices.size()) + " vertices");
+    }
+}
+
+Vec3f rgb_of(std::uint32_t packed) {
+    return {static_cast<float>(packed >> 24U & 255U), static_cast<float>(packed >> 16U & 255U),
+            static_cast<float>(packed >> 8U & 255U)};
+}
+
+/// What one ray met.
+struct Spot {
+    float depth = std::numeric_limits<float>::quiet_NaN();  // mm beyond the target's plane
+    Vec3f normal = Vec3f::Zero();                           // of the facet, towards the camera
+    Vec3f colour = Vec3f::Constant(kBackground);            // lit
+    bool met() const { return !std::isnan(depth); }
+};
+
+/// The camera's axes, in single precision: right, down and into the picture.
+struct View {
+    Vec3f right, down, into, light;
+    Vec3f origin;     // of the ray through the picture's upper left corner
+    float step = 0;   // mm between neighbouring rays
+    float start = 0;  // mm from the target's plane back to the rays' origins
+};
+
+/// True if an outline runs between neighbouring rays, `side` (right or down) apart.
+bool outlined(const Spot& a, const Spot& b, const Vec3f& side, const View& view) {
+    if (!a.met() || !b.met()) return a.met() != b.met();
+    if (a.normal.dot(b.normal) < kCreaseCosine) return true;
+    const auto slope = [&](const Spot& s) {  // depth gained on the way to the neighbour, at most
+        const float facing = std::max(-s.normal.dot(view.into), 0.05F);
+        return std::abs(s.normal.dot(side)) / facing;
+    };
+    const float leap = std::abs(a.depth - b.depth) / view.step;
+    return leap > kDepthJump + 2.0F * std::max(slope(a), slope(b));
+}
+
+}  // namespace
+
+struct Renderer::Scene {
+    std::vector<ColouredSurface> surfaces;
+    Vec3 origin = Vec3::Zero();  // of the rays' single precision
+    Box extents;
+    std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
+    std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+
+    void build();
+    Spot spot(const View& view, float x, float y) const;
+    View view_of(const Camera& camera, std::size_t width, std::size_t height) const;
+};
+
+void Renderer::Scene::build() {
+    device.reset(rtcNewDevice("threads=0"));
+    if (!device) throw InputError("Embree could not be started; is the processor without SSE2?");
+    scene.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbours
+    for (const ColouredSurface& surface : surfaces) {
+        if (surface.triangles.empty()) continue;
+        RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* vertices = static_cast<Vec3f*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Vec3f), surface.vertices.size()));
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    sizeof(Triangle), surface.triangles.size());
+        if (vertices == nullptr || indices == nullptr) {
+            rtcReleaseGeometry(geometry);
+            throw InputError("picture: the triangles do not fit in memory");
+        }
+        for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+            vertices[i] = (surface.vertices[i] - origin).cast<float>();
+        }
+        std::memcpy(indices, surface.triangles.data(), surface.triangles.size() * sizeof(Triangle));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene.get(), geometry,
+                              static_cast<unsigned>(&surface - surfaces.data()));
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(scene.get());
+}
+
+View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size_t height) const {
+    if (width == 0 || height == 0 || width > kMostPixels || height > kMostPixels) {
+        throw InputError("picture: a side has 1 to " + std::to_string(kMostPixels) + " pixels");
+    }
+    const Vec3 right = camera.direction.cross(camera.up);
+    if (!camera.target.allFinite() || !right.allFinite() ||
+        !(right.norm() > 1e-9 * camera.direction.norm() * camera.up.norm()) ||
+        !(camera.height > 0.0) || !std::isfinite(camera.height) || std::isnan(camera.near)) {
+        throw InputError(
+            "picture: a camera needs a direction, another one that is up, and a height above 0 mm");
+    }
+    View view;
+    const Vec3 into = camera.direction.normalized(), across = right.normalized();
+    const Vec3 down = into.cross(across);
+    view.into = into.cast<float>();
+    view.right = across.cast<float>();
+    view.down = down.cast<float>();
+    view.light = (-into - 0.35 * across - 0.5 * down).normalized().cast<float>();
+    const double step = camera.height / static_cast<double>(height * kRays);
+    // The rays begin in front of everything.
+    const double start = std::min(
+        camera.near, (extents.center() - camera.target).norm() + extents.diagonal().norm());
+    const Vec3 corner = camera.target - origin - start * into -
+                        0.5 * step * static_cast<double>(width * kRays) * across -
+                        0.5 * step * static_cast<double>(height * kRays) * down;
+    view.origin = corner.cast<float>();
+    view.step = static_cast<float>(step);
+    view.start = static_cast<float>(start);
+    return view;
+}
+
+Spot Renderer::Scene::spot(const View& view, float x, float y) const {
+    const Vec3f from = view.origin + x * view.step * view.right + y * view.step * view.down;
+    RTCRayHit ray{};
+    ray.ray.org_x = from.x();
+    ray.ray.org_y = from.y();
+    ray.ray.org_z = from.z();
+    ray.ray.dir_x = view.into.x();
+    ray.ray.dir_y = view.into.y();
+    ray.ray.dir_z = view.into.z();
+    ray.ray.tfar = std::numeric_limits<float>::infinity();
+    ray.ray.mask = ~0U;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect1(scene.get(), &ray, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect1(scene.get(), &context, &ray);
+#endif
+    Spot spot;
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return spot;
+    const ColouredSurface& surface = surfaces[ray.hit.geomID];
+    const Triangle& t = surface.triangles[ray.hit.primID];
+    const float u = ray.hit.u, v = ray.hit.v, w = 1.0F - u - v;
+    spot.depth = ray.ray.tfar - view.start;
+    spot.normal = Vec3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
+    if (spot.normal.dot(view.into) > 0.0F) spot.normal = -spot.normal;
+    Vec3f lit = spot.normal;
+    if (!surface.normals.empty()) {
+        lit = w * surface.normals[t[0]] + u * surface.normals[t[1]] + v * surface.normals[t[2]];
+        lit = lit.norm() > 1e-6F ? Vec3f(lit.normalized()) : spot.normal;
+        if (lit.dot(view.into) > 0.0F) lit = -lit;
+    }
+    const bool one = surface.colours.size() == 1;
+    const Vec3f colour =
+        one ? rgb_of(surface.colours[0])
+            : Vec3f(w * rgb_of(surface.colours[t[0]]) + u * rgb_of(surface.colours[t[1]]) +
+                    v * rgb_of(surface.colours[t[2]]));
+    spot.colour = (kAmbient + (1.0F - kAmbient) * std::max(lit.dot(view.light), 0.0F)) * colour;
+    return spot;
+}
+
+Renderer::Renderer(std::vector<ColouredSurface> surfaces, const RunContext& context)
+    : scene_(std::make_unique<Scene>()) {
+    bool any = false;
+    for (const ColouredSurface& surface : surfaces) {
+        validate(surface);
+        any = any || !surface.triangles.empty();
+        for (const Vec3& v : surface.vertices) scene_->extents.extend(v);
+    }
+    if (!any) throw InputError("picture: there is nothing to be drawn");
+    scene_->surfaces = std::move(surfaces);
+    scene_->origin = scene_->extents.center();
+    context.throw_if_cancelled();
+    scene_->build();
+    context.throw_if_cancelled();
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const Box& Renderer::extents() const {
+    return scene_->extents;
+}
+
+Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t height,
+                         const RunContext& context) const {
+    const View view = scene_->view_of(camera, width, height);
+    Picture picture{width, height, std::vector<std::uint8_t>(3 * width * height),
+                    std::vector<float>(width * height)};
+    const std::size_t columns = width * kRays + 1;  // one more, for the outlines
+    parallel_blocks(height, kRowsOfTask, context, [&](std::size_t begin, std::size_t end) {
+        const std::size_t rows = (end - begin) * kRays + 1;
+        std::vector<Spot> spots(rows * columns);
+        for (std::size_t r = 0; r < rows; ++r) {
+            if (context.cancelled()) return;
+            for (std::size_t c = 0; c < columns; ++c) {
+                spots[r * columns + c] = scene_->spot(view, static_cast<float>(c) + 0.5F,
+                                                      static_cast<float>(begin * kRays + r) + 0.5F);
+            }
+        }
+        for (std::size_t y = begin; y < end; ++y) {
+            for (std::size_t x = 0; x < width; ++x) {
+                Vec3f sum = Vec3f::Zero();
+                float depth = std::numeric_limits<float>::quiet_NaN();
+                for (std::size_t k = 0; k < kRays * kRays; ++k) {
+                    const std::size_t at =
+                        ((y - begin) * kRays + k / kRays) * columns + x * kRays + k % kRays;
+                    const Spot& spot = spots[at];
+                    const bool line = outlined(spot, spots[at + 1], view.right, view) ||
+                                      outlined(spot, spots[at + columns], view.down, view);
+                    sum += line ? Vec3f(kOutline * spot.colour) : spot.colour;
+                    if (spot.met() && !(depth < spot.depth)) depth = spot.depth;
+                }
+                const std::size_t pixel = y * width + x;
+                picture.depth[pixel] = depth;
+                for (int k = 0; k < 3; ++k) {
+                    const float mean = sum[k] / static_cast<float>(kRays * kRays);
+                    picture.rgb[3 * pixel + static_cast<std::size_t>(k)] =
+                        static_cast<std::uint8_t>(std::lround(std::clamp(mean, 0.0F, 255.0F)));
+                }
+            }
+        }
+    });
+    return picture;
+}
+
+}  // namespace beltgrinding

@@ -181,6 +181,15 @@ void GapMap::spread(const Eigen::ArrayXd& rate, double duration,
     }
 }
 
+void GapMap::raise(const Eigen::ArrayXd& values, std::span<float> largest) const {
+    for (const Footprint& f : footprints_) {
+        if (!f.nearest) continue;
+        double value = 0.0;
+        for_cells(f, [&](int cell, float weight, double) { value += weight * values[cell]; });
+        largest[f.sample] = std::max(largest[f.sample], static_cast<float>(value));
+    }
+}
+
 Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
                         const ContactGrid& to) {
     if (from == to) return values;

@@ -56,6 +56,10 @@ class GapMap {
     void spread(const Eigen::ArrayXd& rate, double duration,
                 Eigen::Ref<Eigen::ArrayXd> amounts) const;
 
+    /// Raises `largest` (one per sample of the field) to what `values` (one per cell) are at each
+    /// sample, where that is more.
+    void raise(const Eigen::ArrayXd& values, std::span<float> largest) const;
+
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();
 

@@ -2,6 +2,19 @@
 
 namespace beltgrinding {
 
+void RemovalTrace::reset(std::size_t n) {
+    first.assign(n, kNever);
+    last.assign(n, kNever);
+    dominant.assign(n, kNever);
+    dominant_depth.assign(n, 0.0F);
+    peak_pressure.assign(n, 0.0F);
+}
+
+std::size_t RemovalTrace::bytes() const {
+    return (first.capacity() + last.capacity() + dominant.capacity()) * sizeof(std::uint32_t) +
+           (dominant_depth.capacity() + peak_pressure.capacity()) * sizeof(float);
+}
+
 void HeightField::resize(std::size_t n) {
     point.resize(n, Vec3::Zero());
     normal.resize(n, Vec3f::UnitZ());
@@ -16,7 +29,8 @@ std::size_t HeightField::bytes() const {
     return point.capacity() * sizeof(Vec3) + normal.capacity() * sizeof(Vec3f) +
            area.capacity() * sizeof(float) + stock_height.capacity() * sizeof(float) +
            height.capacity() * sizeof(double) + face.capacity() * sizeof(std::uint32_t) +
-           flags.capacity() + triangles.capacity() * sizeof(Triangle);
+           flags.capacity() + height_sd.capacity() * sizeof(float) + trace.bytes() +
+           triangles.capacity() * sizeof(Triangle);
 }
 
 }  // namespace beltgrinding

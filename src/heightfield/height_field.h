@@ -17,6 +17,28 @@ enum SampleFlag : std::uint8_t {
     kDegenerate = 8,  ///< the surface has no normal here (pole); a neighbouring one is used
 };
 
+/// Which motions removed from each sample. A *motion* is that to a programmed pose, numbered from 0
+/// through all programs of a job in order: the pose's number plus those of the programs before.
+/// All arrays have one value per sample, or are empty: then nothing is known.
+struct RemovalTrace {
+    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no motion removed from the sample
+
+    std::vector<std::uint32_t> first;     ///< motion that removed first, or kNever
+    std::vector<std::uint32_t> last;      ///< motion that removed last, or kNever
+    std::vector<std::uint32_t> dominant;  ///< motion that removed most (the first such), or kNever
+    std::vector<float> dominant_depth;    ///< mm along the normal that the dominant one removed
+    std::vector<float> peak_pressure;     ///< MPa, largest that the sample saw; 0: none
+
+    bool empty() const { return first.empty(); }
+    /// Makes room for n samples that nothing has touched yet.
+    void reset(std::size_t n);
+    void clear() { *this = {}; }
+    /// Whether the wheel ever touched sample i, even without removing anything.
+    bool touched(std::size_t i) const { return peak_pressure[i] > 0.0F || first[i] != kNever; }
+    /// Bytes held by all arrays.
+    std::size_t bytes() const;
+};
+
 /// The discrete height field: samples of the design surface, each with the segment of its normal
 /// ray that is still material, as a structure of arrays. Frame: work (the part's own). Lengths in
 /// mm.
@@ -35,6 +57,7 @@ struct HeightField {
     std::vector<std::uint32_t> face;  ///< index of the sample's face in the shape, from 0
     std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
     std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
+    RemovalTrace trace;               ///< what the simulation did where; empty: not known
     std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm

@@ -27,7 +27,18 @@ void each_array(Field& f, Visit&& visit) {
     visit("triangles", f.triangles, H5T_NATIVE_UINT32, hsize_t{3});
 }
 
-constexpr const char* kHeightSd = "height_sd_mm";  // where a calibrated law gave it
+/// As `each_array`, of the removal trace.
+template <class Trace, class Visit>
+void each_trace_array(Trace& t, Visit&& visit) {
+    visit("trace_first_motion", t.first, H5T_NATIVE_UINT32);
+    visit("trace_last_motion", t.last, H5T_NATIVE_UINT32);
+    visit("trace_dominant_motion", t.dominant, H5T_NATIVE_UINT32);
+    visit("trace_dominant_depth_mm", t.dominant_depth, H5T_NATIVE_FLOAT);
+    visit("trace_peak_pressure_MPa", t.peak_pressure, H5T_NATIVE_FLOAT);
+}
+
+constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
+constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
 
 void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
     const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
@@ -41,8 +52,29 @@ void write_all(const HeightField& field, const std::string& path, const std::str
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
     }
+    if (!field.trace.empty()) {
+        each_trace_array(field.trace, [&](const char* name, const auto& data, hid_t type) {
+            write_array(file, name, data, type, 1);
+        });
+    }
     write_text(file, "attributes", attributes);
     require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot be written; is the disk full?");
+}
+
+void check(const RemovalTrace& t, std::size_t n) {
+    if (t.empty()) return;
+    require(t.first.size() == n && t.last.size() == n && t.dominant.size() == n &&
+                t.dominant_depth.size() == n && t.peak_pressure.size() == n,
+            "its arrays differ in length");
+    constexpr std::uint32_t kNever = RemovalTrace::kNever;
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool never = t.first[i] == kNever;
+        const float depth = t.dominant_depth[i], pressure = t.peak_pressure[i];
+        require((t.last[i] == kNever) == never && (t.dominant[i] == kNever) == never &&
+                    std::isfinite(depth) && depth >= 0.0F && std::isfinite(pressure) &&
+                    pressure >= 0.0F,
+                "the trace of sample " + std::to_string(i) + " makes no sense");
+    }
 }
 
 void check(const HeightField& f) {
@@ -95,7 +127,13 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
         if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
             read_array(file, bytes, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
         }
+        if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
+            each_trace_array(field.trace, [&](const char* name, auto& data, hid_t type) {
+                read_array(file, bytes, name, data, type, 1);
+            });
+        }
         check(field);
+        check(field.trace, field.size());
         if (attributes != nullptr) {
             std::vector<char> text;
             read_array(file, bytes, "attributes", text, H5T_NATIVE_CHAR, 1);

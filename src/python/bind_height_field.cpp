@@ -17,6 +17,7 @@ py::dict to_dict(const StockReport& report) {
 }  // namespace
 
 void bind_height_field(py::module_& m) {
+    m.attr("NEVER") = RemovalTrace::kNever;
     m.attr("ON_BOUNDARY") = static_cast<int>(kOnBoundary);
     m.attr("MISSED") = static_cast<int>(kMissed);
     m.attr("DEFECTIVE") = static_cast<int>(kDefective);
@@ -42,6 +43,23 @@ void bind_height_field(py::module_& m) {
         .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
         .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
         .BELTGRINDING_VIEW("triangles", triangles, std::uint32_t, 3)
+        .def_property_readonly(
+            "trace",
+            [](const py::object& self) -> py::object {
+                const RemovalTrace& trace = self.cast<const HeightField&>().trace;
+                if (trace.empty()) return py::none();
+                py::dict d;
+                d["first"] = view<std::uint32_t>(trace.first, 1, self);
+                d["last"] = view<std::uint32_t>(trace.last, 1, self);
+                d["dominant"] = view<std::uint32_t>(trace.dominant, 1, self);
+                d["dominant_depth"] = view<float>(trace.dominant_depth, 1, self);
+                d["peak_pressure"] = view<float>(trace.peak_pressure, 1, self);
+                return d;
+            },
+            "Which motions removed from each sample: a dict of (n,) arrays first, last, dominant "
+            "(numbers of motions through all programs from 0; NEVER: none), dominant_depth (mm "
+            "that the dominant one removed), peak_pressure (MPa, largest that the sample saw); "
+            "None where it was not kept.")
         .def("copy", [](const HeightField& field) { return HeightField(field); })
         .def(
             "set_height",

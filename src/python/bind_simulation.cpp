@@ -99,6 +99,8 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.contact_tolerance = take(d, "contact_tolerance", o.contact_tolerance);
     o.stepping.max_travel = take(d, "max_travel", o.stepping.max_travel);
     o.stepping.max_angle = take(d, "max_angle", o.stepping.max_angle);
+    o.trace = take(d, "trace", o.trace);
+    o.first_motion = take(d, "first_motion", o.first_motion);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
     return o;
@@ -153,6 +155,7 @@ py::dict to_dict(const SimulationResult& result) {
     wall["contact"] = result.contact_s;
     wall["removal"] = result.removal_s;
     wall["refit"] = result.refit_s;
+    wall["trace"] = result.trace_s;
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;

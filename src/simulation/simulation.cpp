@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "heightfield/kdop_tree.h"
 #include "simulation/pressing.h"
+#include "simulation/trace_keeper.h"
 #include "toolpath/event_log.h"
 
 namespace beltgrinding {
@@ -96,8 +98,8 @@ class RecordingGuard {
 /// Removes what the law says for the pressed wheel during one step, in as many parts as the
 /// pressure needs to follow. Returns the volume, mm3.
 double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, const PathStep& step,
-             const SimulationOptions& options, std::vector<std::uint32_t>& changed,
-             SimulationResult& result) {
+             const SimulationOptions& options, TraceKeeper* trace,
+             std::vector<std::uint32_t>& changed, SimulationResult& result) {
     double volume = 0.0;
     double left = step.duration;
     Eigen::ArrayXd rate, shifted;
@@ -110,6 +112,10 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
     }
     while (left > 0.0) {
         double part = left;
+        if (trace != nullptr) {
+            const Stopwatch watch(result.trace_s);
+            trace->press(pressing.map(), pressing.solution().pressure);
+        }
         {
             const Stopwatch watch(result.removal_s);
             const ContactSolution& contact = pressing.solution();
@@ -196,6 +202,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     RecordingGuard recording_guard(options.recording);
     if (options.recording != nullptr) options.recording->begin(field, path.duration());
     EventLog events(path);
+    std::optional<TraceKeeper> trace;
+    if (options.trace) trace.emplace(field);
     std::unique_ptr<SegmentTree> tree;
     {
         const Stopwatch watch(result.build_s);
@@ -246,7 +254,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
                 }
             }
             note_process(contact, law, step, i, options, result, events);
-            const double volume = grind(field, pressing, law, step, options, changed, result);
+            const double volume = grind(field, pressing, law, step, options,
+                                        trace ? &*trace : nullptr, changed, result);
             record.removal_rate = static_cast<float>(volume / step.duration);
             const Stopwatch watch(result.refit_s);
             std::sort(changed.begin(), changed.end());
@@ -261,6 +270,10 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
                             false);
             }
             tree->refit(field, changed);
+        }
+        if (trace && !changed.empty()) {
+            const Stopwatch watch(result.trace_s);
+            trace->remove(field, changed, options.first_motion + step.pose);
         }
         if (options.recording != nullptr) {
             options.recording->add_step(field, changed, step.time + 0.5 * step.duration);
@@ -279,6 +292,11 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     context.report(1.0);
     result.events = events.take();
     if (options.recording != nullptr) options.recording->end(field);
+    if (trace) {
+        trace->keep(field);
+    } else {
+        field.trace.clear();
+    }
     guard.keep();
     recording_guard.keep();
     return result;

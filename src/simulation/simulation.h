@@ -47,6 +47,8 @@ struct SimulationOptions {
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
     double contact_tolerance = 1e-3;  ///< relative error of the pressure field
     bool must_touch = true;           ///< a path that never touches the stock is an error
+    bool trace = true;                ///< keep `field.trace`; without, what it holds is dropped
+    std::uint32_t first_motion = 0;   ///< number of the motion to the path's first pose
     SteppingOptions stepping;
     Recording* recording = nullptr;  ///< goes on with this path; cleared on cancel or error
 };
@@ -62,11 +64,13 @@ struct SimulationResult {
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     /// s of wall time by phase
-    double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0;
+    double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0,
+           trace_s = 0;
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
-/// `field.height` changes. On cancel or error the field is left as it was before the call.
+/// `field.height` and `field.trace` change; a trace goes on with what is there. On cancel or error
+/// the field is left as it was before the call.
 /// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
 /// path, bad options) and Cancelled.
 SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,

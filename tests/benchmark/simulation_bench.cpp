@@ -3,6 +3,9 @@
 // the contact costs, so they should hardly change with the size of the field.
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <ctime>
+
 #include "contact/wheel_rim.h"
 #include "simulation/simulation.h"
 #include "support/synthetic_field.h"
@@ -60,6 +63,48 @@ BENCHMARK(step_cost)
     ->ArgsProduct({{250'000, 1'000'000, 4'000'000}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
+
+// The removal trace: the same path with and without it, in turns in one run, on a million samples.
+// Counters: the ratio of the processor times, which other work on the machine does not disturb, and
+// memory in bytes a sample.
+void trace_cost(benchmark::State& state) {
+    const double side = kSpacing * 1000.0;
+    const HeightField before = testing::plate(side, side, kSpacing, 0.3);
+    ElasticFoundation foundation(0.5);
+    const LocalLaw law({1e-5});
+    SimulationOptions options;
+    options.wheel = {100.0, 50.0, 0.0};
+    options.force = 100.0;
+    std::vector<PathPose> poses;
+    for (int k = 0; k < 8; ++k) {  // to and fro, neighbouring passes overlap
+        PathPose pose;
+        pose.base_from_tcp = Eigen::Translation3d((k / 2 + k) % 2 == 0 ? 20.0 : side - 20.0,
+                                                  40.0 + 30.0 * (k / 2), 0.3) *
+                             Eigen::AngleAxisd(M_PI, Vec3::UnitX());
+        poses.push_back(pose);
+    }
+    const ToolPath path(poses, {});
+    std::array<double, 2> seconds{};
+    double kept = 0.0, steps = 0.0;
+    for (auto _ : state) {
+        for (const bool trace : {false, true}) {
+            HeightField field = before;
+            options.trace = trace;
+            const std::clock_t start = std::clock();
+            const SimulationResult result = simulate(field, path, foundation, law, options);
+            const auto clocks = static_cast<double>(std::clock() - start);
+            seconds[trace ? 1 : 0] += clocks / CLOCKS_PER_SEC;
+            kept += result.trace_s;
+            steps += static_cast<double>(trace ? result.steps.size() : 0);
+            state.counters["bytes_a_sample"] =
+                static_cast<double>(field.trace.bytes()) / static_cast<double>(field.size());
+        }
+    }
+    state.counters["ratio"] = seconds[1] / seconds[0];
+    state.counters["trace_us"] = 1e6 * kept / steps;
+    state.counters["step_us"] = 1e6 * seconds[1] / steps;
+}
+BENCHMARK(trace_cost)->Unit(benchmark::kMillisecond)->Iterations(3);
 
 }  // namespace
 }  // namespace beltgrinding

@@ -46,6 +46,31 @@ def plate_job():
     }
 
 
+def test_every_sample_knows_its_motions_through_all_programs(tmp_path):
+    job = plate_job()
+    beside = copy.deepcopy(job["programs"][0])
+    for pose in beside["poses"]:
+        pose["y_mm"] = 32
+    job["programs"].append(beside)
+    result = beltgrinding.run(job)
+    result.write(tmp_path)
+    field = core.HeightField.from_hdf5(str(tmp_path / "heightfield.h5"))[0]
+    trace, y = field.trace, field.points[:, 1]
+    middle = abs(field.points[:, 0] - 30) < 15
+    only_first, only_second, none = (
+        middle & band for band in (abs(y - 16) < 3, abs(y - 35) < 3, y < 10)
+    )
+    for name in ("first", "last", "dominant"):
+        assert (trace[name][only_first] == 1).all()
+        assert (trace[name][only_second] == 3).all()  # two poses of the program before
+        assert (trace[name][none] == core.NEVER).all()
+    both = middle & (abs(y - 26) < 1)
+    assert (trace["first"][both] == 1).all() and (trace["last"][both] == 3).all()
+    assert (trace["dominant_depth"] <= 0.2 - field.height + 1e-6).all()
+    assert (trace["peak_pressure"][only_first] > 0).all() and not trace["peak_pressure"][none].any()
+    assert trace["first"].dtype == np.uint32 and not trace["first"].flags.writeable
+
+
 def test_a_recording_follows_all_programs_of_a_job(tmp_path):
     job = plate_job()
     job["programs"] *= 2

@@ -101,7 +101,7 @@ def at_pose(job, pose, program=1, context=None):
     if pose > 1:
         before.append(jobs.tool_path(job, program - 1, warnings, pose))
     for ground in before:
-        without = {**options, "must_touch": False, "shifted_laws": []}
+        without = {**options, "must_touch": False, "shifted_laws": [], "trace": False}
         if ground.grinds():
             done = core.simulate(field, ground, wheel, compliance, law, without, context)
             options["belt"] = done["belt"]

@@ -107,6 +107,7 @@ def _run(job, context, warnings, recording):
     phases.end("stock")
 
     wheel, compliance, law, options = engine_arguments(job)
+    options["first_motion"] = 0
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
     events, steps, process_time, models = [], None, 0.0, {}
     for i, path in enumerate(paths):
@@ -125,6 +126,7 @@ def _run(job, context, warnings, recording):
         steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
         process_time += result["process_time"]
         options["belt"] = result["belt"]
+        options["first_motion"] += len(path)
         shifts += result["shifts"]
         models = {key: result[key] for key in ("compliance", "law")}
         for name, seconds in result["wall"].items():

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -55,6 +56,34 @@ TEST_F(HeightFieldFile, ComesBackAsItWas) {
     EXPECT_EQ(back.triangles, field.triangles);
     EXPECT_EQ(back.spacing, field.spacing);
     EXPECT_EQ(back.depth, field.depth);
+}
+
+TEST_F(HeightFieldFile, TheTraceComesBackAndAFileWithoutOpens) {
+    HeightField field = testing::plate(3.0, 2.0, 1.0, 0.2);
+    write_hdf5(field, path_, "");
+    EXPECT_TRUE(read_hdf5(path_).trace.empty());
+    field.trace.reset(field.size());
+    field.trace.first[2] = 1;
+    field.trace.dominant[2] = 4;
+    field.trace.last[2] = 9;
+    field.trace.dominant_depth[2] = 0.125F;
+    field.trace.peak_pressure[3] = 0.5F;
+    write_hdf5(field, path_, "");
+    const RemovalTrace back = read_hdf5(path_).trace;
+    EXPECT_EQ(back.first, field.trace.first);
+    EXPECT_EQ(back.last, field.trace.last);
+    EXPECT_EQ(back.dominant, field.trace.dominant);
+    EXPECT_EQ(back.dominant_depth, field.trace.dominant_depth);
+    EXPECT_EQ(back.peak_pressure, field.trace.peak_pressure);
+    for (const auto& spoil : {+[](RemovalTrace& t) { t.last[2] = RemovalTrace::kNever; },
+                              +[](RemovalTrace& t) { t.dominant_depth[2] = NAN; },
+                              +[](RemovalTrace& t) { t.peak_pressure[2] = -1.0F; },
+                              +[](RemovalTrace& t) { t.dominant.pop_back(); }}) {
+        HeightField bad = field;
+        spoil(bad.trace);
+        write_hdf5(bad, path_, "");
+        EXPECT_THROW(read_hdf5(path_), InputError);
+    }
 }
 
 TEST_F(HeightFieldFile, AFailedWriteNamesThePathAndLeavesTheOldFile) {

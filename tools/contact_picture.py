@@ -1,4 +1,4 @@
-"""Takes the picture of docs/contact.md anew: a footprint, and CalculiX's beside it.
+"""Takes the picture of docs/contact.md anew: a footprint, and CalculiX's beside it; some minutes.
 
 source tools/setup.sh && "$python" tools/contact_picture.py
 """

@@ -1,6 +1,7 @@
 """The coloured deviation in FreeCAD's window: it is drawn, and survives save, close and reopen."""
 
 import pytest
+from support import pictures
 from support.freecad import ROOT
 from support.picture import coloured
 
@@ -30,6 +31,8 @@ def demo(freecad, tmp_path_factory):
 def test_the_picture_shows_both_ramps(demo):
     brown, blue = coloured(demo / "deviation.png")
     assert brown > 30000 and blue > 20000
+    pictures.keep("blade-deviation", (demo / "deviation.png").read_bytes())
+    pictures.check(pictures.RELEASE, ["blade-deviation"])
 
 
 def test_the_colours_survive_reopening(freecad, demo):

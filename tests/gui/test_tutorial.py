@@ -3,6 +3,7 @@
 import json
 import re
 
+from support import pictures
 from support.freecad import ROOT
 
 
@@ -11,16 +12,16 @@ def test_the_tutorial_can_be_walked_and_its_figures_are_right(freecad):
         """
 import json
 from pathlib import Path
-from support import tutorial
-pictures = []
-figures = tutorial.walk(pictures.append)
-Path("walked.json").write_text(json.dumps([figures, pictures]))
+from support import hands, tutorial
+figures = tutorial.walk()
+Path("walked.json").write_text(json.dumps([figures, *hands.walked()]))
 """,
         window=True,
     )
-    figures, pictures = json.loads((freecad.folder / "walked.json").read_text())
+    figures, release, names = json.loads((freecad.folder / "walked.json").read_text())
     page = (ROOT / "docs" / "tutorial.md").read_text()
-    assert re.findall(r"images/(\S+)\.png", page) == pictures
+    assert re.findall(r"images/(\S+)\.png", page) == names
+    pictures.check(release, names)
     rows = dict(re.findall(r"^\| (.+?) \| (.+?) \|$", page, re.M))
     del rows["row"], rows["---"]
     assert len(rows) == 4

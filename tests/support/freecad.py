@@ -17,7 +17,7 @@ MOD = ROOT / "Mod" / "BeltGrinding"
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 TIME_LIMIT = 240  # s
 SHOWN = 8000  # characters of FreeCAD's output that a failure shows
-SCREEN = "-screen 0 1600x1000x24"
+SCREEN = "-screen 0 1400x900x24"
 
 
 class FreeCad:

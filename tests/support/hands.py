@@ -12,6 +12,8 @@ from PySide import QtCore, QtGui
 
 window = Gui.getMainWindow()
 _patched = []  # (holder, name, what it was)
+_taken = []  # names of pictures
+PICTURES = Path(__file__).resolve().parents[2] / "build" / "pictures"
 
 
 def settle():
@@ -130,6 +132,19 @@ def screenshot(path):
     """The whole screen as a PNG."""
     settle()
     subprocess.run(["import", "-window", "root", "-strip", str(path)], check=True)
+
+
+def picture(name):
+    """A picture of the manual: the whole screen, to build/pictures."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    screenshot(PICTURES / f"{name}.png")
+    _taken.append(name)
+
+
+def walked():
+    """([FreeCAD's major and minor release], names of the pictures taken since it was asked last)."""
+    names, _taken[:] = list(_taken), []
+    return [int(part) for part in FreeCAD.Version()[:2]], names
 
 
 def start():

@@ -1,7 +1,6 @@
 """The steps of docs/tutorial.md, as a person does them; imported inside FreeCAD.
 
-tests/gui/test_tutorial.py walks them and compares the page's figures; tools/tutorial_pictures.py walks
-them and takes its pictures.
+tests/gui/test_tutorial.py walks them and compares the page's figures and pictures.
 """
 
 import FreeCAD
@@ -10,10 +9,8 @@ import FreeCADGui as Gui
 from support import hands
 
 
-def walk(take):
-    """Walks the tutorial; calls ``take(name)`` where it has a picture. Returns its figures, as the
-    page writes them.
-    """
+def walk():
+    """Walks the tutorial and takes its pictures. Returns its figures, as the page writes them."""
     figures = {}
     Gui.activateWorkbench("BeltGrindingWorkbench")
     hands.window.showMaximized()
@@ -23,19 +20,19 @@ def walk(take):
     view.setAnimationEnabled(False)
     view.viewFront()
     view.fitAll()
-    take("tutorial-blade")
+    hands.picture("tutorial-blade")
 
     open_panel(doc.RobotPath)
     hands.field("poseNumber").setValue(100)
-    take("tutorial-pose")
+    hands.picture("tutorial-pose")
     hands.press("Cancel")
 
     hands.menu("Simulate")
     hands.wait(lambda: doc.getObject("Simulation") is not None, 200)
-    take("tutorial-simulation")
+    hands.picture("tutorial-simulation")
     hands.press("Deviation")
     doc.RobotPath.ViewObject.Visibility = False
-    take("tutorial-deviation")
+    hands.picture("tutorial-deviation")
     figures.update(statistics())
     hands.press("OK")
 
@@ -43,9 +40,9 @@ def walk(take):
     hands.type_in("Force", "36 N")
     hands.press("OK")
     assert doc.Simulation.OutOfDate
-    take("tutorial-out-of-date")
+    hands.picture("tutorial-out-of-date")
     figures["36 N"] = again(doc)
-    take("tutorial-more-force")
+    hands.picture("tutorial-more-force")
 
     hands.menu("Belt machine")
     hands.type_in("Force", "30 N")

@@ -1,5 +1,6 @@
 """What a job gave, and the files that it is kept in."""
 
+import copy
 import io
 import json
 import os
@@ -8,7 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core
+from . import InputError, core, schemas
+
+
+# What summary.json has had since belts wear and robots are followed: here nothing of either is known.
+LATER = {
+    "belt": {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0, "remaining_cut": 1.0},
+    "robot": {},
+}
 
 
 class Result:
@@ -50,7 +58,9 @@ class Result:
 
     @classmethod
     def read(cls, folder):
-        """The result that ``write`` left in ``folder``. Raises InputError."""
+        """The result that ``write`` left in ``folder``. An older version's gets what has come since, by
+        its default. Raises InputError.
+        """
         folder = Path(folder)
         data = {}
         for name in ("summary.json", "events.json"):
@@ -62,11 +72,12 @@ class Result:
                 raise InputError(f"{folder / name}: no JSON: {error}") from None
         field, attributes = core.HeightField.from_hdf5(str(folder / "heightfield.h5"))
         try:
-            job = json.loads(attributes)
+            job = schemas.filled(json.loads(attributes), schemas.schema("job"))
         except ValueError:
             raise InputError(
                 f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
             ) from None
+        data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
         return cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
 
 

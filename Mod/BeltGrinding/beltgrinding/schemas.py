@@ -46,10 +46,18 @@ def checked(data, rules, what):
     """
     for _, sentence in problems(data, rules, what):
         raise InputError(sentence)
-    data = copy.deepcopy(data)
-    _fill(data, rules)
+    data = filled(data, rules)
     if not all(math.isfinite(value) for value in _numbers(data)):
         raise InputError(f"the {what} holds a number that is not finite")
+    return data
+
+
+def filled(data, rules):
+    """A copy of ``data`` with the schema's defaults filled in, unchecked: of data that a version of this
+    program wrote.
+    """
+    data = copy.deepcopy(data)
+    _fill(data, rules)
     return data
 
 

@@ -27,11 +27,12 @@ program = api.import_program(job, "pass.csv")
 program.Label = "pass"
 program.Source = ""  # the place where this was made is nobody's concern
 if hasattr(api, "make_belt"):
-    job.LawCoefficient, job.WearModel, job.WearScale = 5e-5, "exponential", 500.0
+    job.LawCoefficient, job.WearModel, job.WearScale = 1e-4, "exponential", 5000.0
     api.make_belt(job, RemovedVolume=3.0)
 if hasattr(api, "make_raster"):
     raster = api.make_raster(job, StepOver="4 mm")
     raster.Label = "raster"
+    job.LawCoefficient = 3e-5  # it is ground twice
     job.Timing = "trapezoidal"
     job.PathAcceleration = 800
 if hasattr(api, "make_section"):

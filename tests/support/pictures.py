@@ -1,0 +1,79 @@
+"""The pictures of the manual: which there are, who makes them, and whether they still show the truth."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from .freecad import ROOT
+
+MADE = ROOT / "build" / "pictures"  # where tests put them; tools/pictures takes them from there
+IMAGES = ROOT / "docs" / "images"
+APART = {"contact-reference": "tools/contact_picture.py"}  # CalculiX takes minutes
+RELEASE = [
+    0,
+    20,
+]  # of FreeCAD that the kept pictures are of; others draw their own frames and icons
+COARSE = (80, 50)  # pixels to which pictures are shrunk before they are compared
+SAME = 0.05  # of 255: mean difference of coarse pictures taken twice
+ALIKE = (
+    4.0  # of 255: the same step; a toolbar may have got a button since, a panel is another picture
+)
+
+
+def referenced():
+    """{name of a picture: the pages that show it}."""
+    found = {}
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))):
+        for name in re.findall(r"images/([\w-]+)\.png", page.read_text(encoding="utf-8")):
+            found.setdefault(name, []).append(page.name)
+    return found
+
+
+def made_by():
+    """{name of a picture: the files under tests/, or the one apart, that make it}."""
+    found = {}
+    for name, file in APART.items():
+        if f"{name}.png" in (ROOT / file).read_text(encoding="utf-8"):
+            found[name] = [file]
+    for path in sorted((ROOT / "tests").rglob("*.py")):
+        for name in re.findall(r"\b(?:picture|keep)\(\"([\w-]+)\"", path.read_text("utf-8")):
+            found.setdefault(name, []).append(path.name)
+    return found
+
+
+def difference(one, other):
+    """Mean difference of two pictures, 0 to 255, after shrinking both to ``COARSE``."""
+    shrunk = []
+    for path in (one, other):
+        image = Image.open(path).convert("RGB")
+        shrunk.append(np.asarray(image.resize(COARSE, Image.BOX)).astype(float))
+    return float(np.abs(shrunk[0] - shrunk[1]).max(axis=2).mean())
+
+
+def keep(name, picture):
+    """Takes a picture (bytes of a PNG) to those that tests made."""
+    MADE.mkdir(parents=True, exist_ok=True)
+    (MADE / f"{name}.png").write_bytes(picture)
+
+
+def check(release, names):
+    """Fails if one of the pictures just made looks other than the manual's; of ``RELEASE`` alone."""
+    if release == RELEASE:
+        wrong = stale(names)
+        assert not wrong, "; ".join(wrong) + "; look at build/pictures, then run tools/pictures"
+
+
+def stale(names):
+    """Sentences on those of the manual's pictures that no longer look like what was just made."""
+    wrong = []
+    for name in names:
+        kept, made = IMAGES / f"{name}.png", MADE / f"{name}.png"
+        if not kept.exists():
+            wrong.append(f"{name} is not in docs/images")
+            continue
+        away = difference(kept, made)
+        if away > ALIKE:
+            wrong.append(f"{name} shows something else now ({away:.1f} of {ALIKE:.1f} allowed)")
+    return wrong

@@ -2,6 +2,801 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE" sourcelanguage="en">
 <context>
+    <name>App::Property</name>
+    <message>
+        <source>5 % of the area lie below</source>
+        <translation>5 % der Fläche liegen darunter</translation>
+    </message>
+    <message>
+        <source>95 % of the area are surer than that</source>
+        <translation>95 % der Fläche sind sicherer als das</translation>
+    </message>
+    <message>
+        <source>95 % of the area lie below</source>
+        <translation>95 % der Fläche liegen darunter</translation>
+    </message>
+    <message>
+        <source>A robot of your own: six revolute joints in series.</source>
+        <translation>Ein eigener Roboter: sechs Drehgelenke in Reihe.</translation>
+    </message>
+    <message>
+        <source>How sure the law is, as `beltgrind calibrate` writes it; empty: not known.</source>
+        <translation>Wie sicher das Gesetz ist, wie es `beltgrind calibrate` schreibt; leer: nicht bekannt.</translation>
+    </message>
+    <message>
+        <source>J or mm3 in which the wearing share falls to 1/e</source>
+        <translation>J oder mm³, in denen der verschleißende Anteil auf 1/e fällt</translation>
+    </message>
+    <message>
+        <source>K = C_A K_A, mm2/N</source>
+        <translation>K = C_A K_A, mm²/N</translation>
+    </message>
+    <message>
+        <source>Poisson&apos;s ratio of the rim&apos;s rubber, up to 0.499</source>
+        <translation>Querkontraktionszahl des Gummibelags, bis 0,499</translation>
+    </message>
+    <message>
+        <source>W: the work of the pressing force at belt speed, J; or the removed volume, mm3</source>
+        <translation>W: die Arbeit der Anpresskraft bei Bandgeschwindigkeit, J; oder das abgetragene Volumen, mm³</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus of the rim&apos;s rubber, MPa</source>
+        <translation>Elastizitätsmodul des Gummibelags, MPa</translation>
+    </message>
+    <message>
+        <source>a mesh&apos;s file (STL, PLY, OBJ) in place of an object</source>
+        <translation>die Datei eines Netzes (STL, PLY, OBJ) statt eines Objekts</translation>
+    </message>
+    <message>
+        <source>a pass ends at an edge where the normal turns by more, degrees</source>
+        <translation>eine Bahn endet an einer Kante, an der sich die Normale um mehr dreht, Grad</translation>
+    </message>
+    <message>
+        <source>a plane, or the line on the surface from Start to End</source>
+        <translation>eine Ebene, oder die Linie auf der Oberfläche von Start bis End</translation>
+    </message>
+    <message>
+        <source>a rim turned to a profile: points [y, drop] mm across the whole width, y ascending, the drop below radius_mm; straight lines between them; empty: none</source>
+        <translation>ein auf Profil gedrehter Belag: Punkte [y, Tiefe] mm über die ganze Breite, y aufsteigend, die Tiefe unter radius_mm; dazwischen Geraden; leer: keiner</translation>
+    </message>
+    <message>
+        <source>a robot by the id that `beltgrind presets robots` lists; empty: none, or the model</source>
+        <translation>ein Roboter mit der Kennung, die `beltgrind presets robots` nennt; leer: keiner, oder das Modell</translation>
+    </message>
+    <message>
+        <source>allowance: uniform; solid: another B-rep; mesh: a scan</source>
+        <translation>allowance: gleichmäßig; solid: ein anderer Körper; mesh: ein Scan</translation>
+    </message>
+    <message>
+        <source>an event where a joint turns further within a step of the simulation, degrees</source>
+        <translation>ein Ereignis, wo ein Gelenk in einem Schritt der Simulation weiter dreht, Grad</translation>
+    </message>
+    <message>
+        <source>an event where the robot is nearer to a singularity, degrees</source>
+        <translation>ein Ereignis, wo der Roboter einer Singularität näher ist, Grad</translation>
+    </message>
+    <message>
+        <source>an input has changed since; simulate again</source>
+        <translation>eine Eingabe hat sich seither geändert; neu simulieren</translation>
+    </message>
+    <message>
+        <source>an input of the simulation has changed since</source>
+        <translation>eine Eingabe der Simulation hat sich seither geändert</translation>
+    </message>
+    <message>
+        <source>angle of the belt&apos;s travel against the pass, about the contact&apos;s z, degrees; 0: along it, 90: the wheel&apos;s axis lies along the pass</source>
+        <translation>Winkel des Bandlaufs gegen die Bahn, um z des Kontakts, Grad; 0: längs, 90: die Achse der Scheibe liegt längs der Bahn</translation>
+    </message>
+    <message>
+        <source>belt speed V_b, m/s</source>
+        <translation>Bandgeschwindigkeit V_b, m/s</translation>
+    </message>
+    <message>
+        <source>bending stiffness of the belt on the rim, E t^3 / 12 (1 - nu^2), N mm (wheel_rim only)</source>
+        <translation>Biegesteifigkeit des Bandes auf dem Belag, E t^3 / 12 (1 - nu^2), N mm (nur wheel_rim)</translation>
+    </message>
+    <message>
+        <source>between neighbouring poses of a pass, degrees</source>
+        <translation>zwischen benachbarten Posen einer Bahn, Grad</translation>
+    </message>
+    <message>
+        <source>between neighbouring poses of a pass, mm</source>
+        <translation>zwischen benachbarten Posen einer Bahn, mm</translation>
+    </message>
+    <message>
+        <source>between the robot&apos;s way from pose to pose and the pass, mm</source>
+        <translation>zwischen dem Weg des Roboters von Pose zu Pose und der Bahn, mm</translation>
+    </message>
+    <message>
+        <source>by percentile: so much of the area lies between the ends, %</source>
+        <translation>by percentile: so viel der Fläche liegt zwischen den Enden, %</translation>
+    </message>
+    <message>
+        <source>by tolerance: the ramps end at so many times the wider limit</source>
+        <translation>by tolerance: die Farbverläufe enden beim Sovielfachen der weiteren Grenze</translation>
+    </message>
+    <message>
+        <source>cell of the wheel&apos;s contact grid, mm; never finer than 1.5 samples</source>
+        <translation>Zelle im Kontaktraster der Scheibe, mm; nie feiner als 1,5 Abtastpunkte</translation>
+    </message>
+    <message>
+        <source>chord error of the solid&apos;s triangles, mm</source>
+        <translation>Sehnenfehler der Dreiecke des Körpers, mm</translation>
+    </message>
+    <message>
+        <source>compliance of the wheel</source>
+        <translation>Nachgiebigkeit der Scheibe</translation>
+    </message>
+    <message>
+        <source>constant_feed: the programmed feed everywhere, sharp corners; trapezoidal: the robot speeds up and slows down, stands still at exact stops and rounds corners within their zones</source>
+        <translation>constant_feed: überall der programmierte Vorschub, scharfe Ecken; trapezoidal: der Roboter beschleunigt und bremst, steht bei Genauhalt still und rundet Ecken in ihren Zonen</translation>
+    </message>
+    <message>
+        <source>contact&apos;s width across the pass; 0: not asked for</source>
+        <translation>Breite des Kontakts quer zur Bahn; 0: nicht gefragt</translation>
+    </message>
+    <message>
+        <source>curve: [J or mm3, share of a fresh belt&apos;s cut]; points ascending in the first; empty: none</source>
+        <translation>curve: [J oder mm³, Anteil des Abtrags eines frischen Bandes]; Punkte aufsteigend im ersten; leer: keine</translation>
+    </message>
+    <message>
+        <source>depth removed, by length</source>
+        <translation>abgetragene Tiefe, nach Länge</translation>
+    </message>
+    <message>
+        <source>deviation at which the colour ramps end</source>
+        <translation>Abweichung, bei der die Farbverläufe enden</translation>
+    </message>
+    <message>
+        <source>deviation at which the colour ramps end, mm</source>
+        <translation>Abweichung, bei der die Farbverläufe enden, mm</translation>
+    </message>
+    <message>
+        <source>direction: the way of the passes, in the design&apos;s coordinates</source>
+        <translation>direction: die Richtung der Bahnen, in den Koordinaten des Solls</translation>
+    </message>
+    <message>
+        <source>distance between neighbouring samples, mm</source>
+        <translation>Abstand benachbarter Abtastpunkte, mm</translation>
+    </message>
+    <message>
+        <source>distance of neighbouring passes on the surface, at most, mm; 0: step_over_share of the contact&apos;s width</source>
+        <translation>Abstand benachbarter Bahnen auf der Oberfläche, höchstens, mm; 0: step_over_share der Kontaktbreite</translation>
+    </message>
+    <message>
+        <source>distance of neighbouring passes, at most</source>
+        <translation>Abstand benachbarter Bahnen, höchstens</translation>
+    </message>
+    <message>
+        <source>draw the part&apos;s other faces in grey</source>
+        <translation>die anderen Flächen des Teils grau zeichnen</translation>
+    </message>
+    <message>
+        <source>elasticity of the wheel. wheel_rim: rubber rim of finite width on a rigid core; bonded_layer: the same without side faces; half_space: for contacts far smaller than the rim; elastic_foundation: independent springs (Winkler); surrogate: predicted by a regression trained on solved contacts (beltgrind surrogate); geometric: a rigid tool that cuts all it meets (control position)</source>
+        <translation>Elastizität der Scheibe. wheel_rim: Gummibelag endlicher Breite auf starrem Kern; bonded_layer: dasselbe ohne Seitenflächen; half_space: für Kontakte viel kleiner als der Belag; elastic_foundation: unabhängige Federn (Winkler); surrogate: vorhergesagt durch eine Regression über gelöste Kontakte (beltgrind surrogate); geometric: ein starres Werkzeug, das alles abträgt, was es trifft (Regelung position)</translation>
+    </message>
+    <message>
+        <source>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); curve: measured</source>
+        <translation>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); curve: gemessen</translation>
+    </message>
+    <message>
+        <source>feed of approach and retract, mm/s</source>
+        <translation>Vorschub beim An- und Abfahren, mm/s</translation>
+    </message>
+    <message>
+        <source>feed of the contact along the passes, mm/s; the program&apos;s feeds are those of the tool centre point that give it</source>
+        <translation>Vorschub des Kontakts längs der Bahnen, mm/s; die Vorschübe des Programms sind die des TCP, die ihn ergeben</translation>
+    </message>
+    <message>
+        <source>feed of the tool centre point, at most, mm/s: where the part turns fast under a slow contact</source>
+        <translation>Vorschub des TCP, höchstens, mm/s: wo sich das Teil unter einem langsamen Kontakt schnell dreht</translation>
+    </message>
+    <message>
+        <source>force: the robot presses with force_N; position: it keeps to the poses</source>
+        <translation>force: der Roboter drückt mit force_N; position: er hält die Posen ein</translation>
+    </message>
+    <message>
+        <source>gaps in a pass (holes) up to this length are crossed in contact, mm; over longer ones the robot retracts</source>
+        <translation>Lücken in einer Bahn (Löcher) bis zu dieser Länge werden im Kontakt überquert, mm; über längeren hebt der Roboter ab</translation>
+    </message>
+    <message>
+        <source>half of the area lies below</source>
+        <translation>die halbe Fläche liegt darunter</translation>
+    </message>
+    <message>
+        <source>hash of the inputs</source>
+        <translation>Hash der Eingaben</translation>
+    </message>
+    <message>
+        <source>hash of what the passes were laid from</source>
+        <translation>Hash dessen, woraus die Bahnen gelegt wurden</translation>
+    </message>
+    <message>
+        <source>height above the surface at which the robot goes from pass to pass, along the normal, mm</source>
+        <translation>Höhe über der Oberfläche, in der der Roboter von Bahn zu Bahn geht, längs der Normalen, mm</translation>
+    </message>
+    <message>
+        <source>how deep the undeformed wheel may reach into the faces beside the contact before it is warned of, mm</source>
+        <translation>wie tief die unverformte Scheibe neben dem Kontakt in die Flächen reichen darf, bevor davor gewarnt wird, mm</translation>
+    </message>
+    <message>
+        <source>how far above the design surface the contact is programmed, mm; for position control</source>
+        <translation>wie weit über der Solloberfläche der Kontakt programmiert wird, mm; für Positionsregelung</translation>
+    </message>
+    <message>
+        <source>how far below the design a height segment begins, mm</source>
+        <translation>wie weit unter dem Soll ein Höhensegment beginnt, mm</translation>
+    </message>
+    <message>
+        <source>how far inward, mm</source>
+        <translation>wie weit nach innen, mm</translation>
+    </message>
+    <message>
+        <source>how far outward from the design the stock is searched, mm</source>
+        <translation>wie weit nach außen vom Soll das Rohteil gesucht wird, mm</translation>
+    </message>
+    <message>
+        <source>how far passes go straight on beyond the border, mm; negative: they end so far before it</source>
+        <translation>wie weit Bahnen über den Rand geradeaus weitergehen, mm; negativ: so weit davor enden sie</translation>
+    </message>
+    <message>
+        <source>how far the contact moves in a step at most, mm</source>
+        <translation>wie weit der Kontakt in einem Schritt höchstens wandert, mm</translation>
+    </message>
+    <message>
+        <source>how far the force control moves the wheel from the programmed pose, along the pressing direction, both ways, mm</source>
+        <translation>wie weit die Kraftregelung die Scheibe aus der programmierten Pose bewegt, längs der Anpressrichtung, nach beiden Seiten, mm</translation>
+    </message>
+    <message>
+        <source>how far the wheel turns against the work in a step at most, degrees</source>
+        <translation>wie weit sich die Scheibe in einem Schritt höchstens gegen das Werkstück dreht, Grad</translation>
+    </message>
+    <message>
+        <source>how stiff the robot is along the pressing direction under position control, N/mm; 0: rigid</source>
+        <translation>wie steif der Roboter längs der Anpressrichtung bei Positionsregelung ist, N/mm; 0: starr</translation>
+    </message>
+    <message>
+        <source>how the wheel comes to the surface and leaves it. plunge: along the normal; arc: on a quarter of a circle, tangential at the surface</source>
+        <translation>wie die Scheibe an die Oberfläche kommt und sie verlässt. plunge: längs der Normalen; arc: auf einem Viertelkreis, an der Oberfläche tangential</translation>
+    </message>
+    <message>
+        <source>in contact, h</source>
+        <translation>im Kontakt, h</translation>
+    </message>
+    <message>
+        <source>k_t of the belt as it comes; law.wear lowers it further with use</source>
+        <translation>k_t des Bandes, wie es kommt; law.wear senkt es mit dem Gebrauch weiter</translation>
+    </message>
+    <message>
+        <source>language of the source</source>
+        <translation>Sprache der Quelle</translation>
+    </message>
+    <message>
+        <source>largest pressure times belt speed without a risk of burning, MPa m/s; 0: none</source>
+        <translation>größter Druck mal Bandgeschwindigkeit ohne Gefahr von Schleifbrand, MPa m/s; 0: keine Grenze</translation>
+    </message>
+    <message>
+        <source>law of removal</source>
+        <translation>Abtragsgesetz</translation>
+    </message>
+    <message>
+        <source>length of all passes</source>
+        <translation>Länge aller Bahnen</translation>
+    </message>
+    <message>
+        <source>length of pass over which the normal is averaged, mm: turns at edges between faces are spread over it; 0: the surface&apos;s own</source>
+        <translation>Bahnlänge, über die die Normale gemittelt wird, mm: Drehungen an Kanten zwischen Flächen werden darauf verteilt; 0: die der Oberfläche selbst</translation>
+    </message>
+    <message>
+        <source>length of the plunge or radius of the arc, mm</source>
+        <translation>Länge des Eintauchens oder Radius des Bogens, mm</translation>
+    </message>
+    <message>
+        <source>length of the way of the tool centre point</source>
+        <translation>Länge des Wegs des TCP</translation>
+    </message>
+    <message>
+        <source>lines of the source</source>
+        <translation>Zeilen der Quelle</translation>
+    </message>
+    <message>
+        <source>lines: the passes are those lines or cuts themselves, the step-over kept where neighbours are farthest apart; even: only the middle pass is, the others keep an equal distance on the surface</source>
+        <translation>lines: die Bahnen sind jene Linien oder Schnitte selbst, der Bahnabstand gilt, wo Nachbarn am weitesten auseinander liegen; even: nur die mittlere Bahn ist es, die anderen halten auf der Oberfläche gleichen Abstand</translation>
+    </message>
+    <message>
+        <source>local: alpha, exponent of the pressure</source>
+        <translation>local: alpha, Exponent des Drucks</translation>
+    </message>
+    <message>
+        <source>local: below it nothing is cut, MPa</source>
+        <translation>local: darunter wird nichts abgetragen, MPa</translation>
+    </message>
+    <message>
+        <source>local: belt speed at which beta has no effect, m/s</source>
+        <translation>local: Bandgeschwindigkeit, bei der beta nicht wirkt, m/s</translation>
+    </message>
+    <message>
+        <source>local: beta, exponent of the belt speed</source>
+        <translation>local: beta, Exponent der Bandgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>local: cutting pressure that is approached however hard the wheel presses, MPa; 0: none</source>
+        <translation>local: abtragender Druck, der nie überschritten wird, so fest die Scheibe auch drückt, MPa; 0: keiner</translation>
+    </message>
+    <message>
+        <source>local: feed at which gamma has no effect, mm/s</source>
+        <translation>local: Vorschub, bei dem gamma nicht wirkt, mm/s</translation>
+    </message>
+    <message>
+        <source>local: gamma, exponent of the feed, beyond the time that it leaves</source>
+        <translation>local: gamma, Exponent des Vorschubs, über die Zeit hinaus, die er lässt</translation>
+    </message>
+    <message>
+        <source>local: measured cut as a share of a plain wheel&apos;s, [land share, share], a further factor; points ascending in the first; empty: none</source>
+        <translation>local: gemessener Abtrag als Anteil dessen einer glatten Scheibe, [Stegeanteil, Anteil], ein weiterer Faktor; Punkte aufsteigend im ersten; leer: keine</translation>
+    </message>
+    <message>
+        <source>local: measured cut as a share of that at the reference feed, [mm/s, share], in place of the exponent; points ascending in the first; empty: none</source>
+        <translation>local: gemessener Abtrag als Anteil dessen beim Bezugsvorschub, [mm/s, Anteil], statt des Exponenten; Punkte aufsteigend im ersten; leer: keine</translation>
+    </message>
+    <message>
+        <source>local: measured cut as a share of that at the reference pressure, [MPa, share], in place of the exponent; points ascending in the first; empty: none</source>
+        <translation>local: gemessener Abtrag als Anteil dessen beim Bezugsdruck, [MPa, Anteil], statt des Exponenten; Punkte aufsteigend im ersten; leer: keine</translation>
+    </message>
+    <message>
+        <source>local: measured cut as a share of that at the reference speed, [m/s, share], in place of the exponent; points ascending in the first; empty: none</source>
+        <translation>local: gemessener Abtrag als Anteil dessen bei der Bezugsgeschwindigkeit, [m/s, Anteil], statt des Exponenten; Punkte aufsteigend im ersten; leer: keine</translation>
+    </message>
+    <message>
+        <source>local: pressure at which alpha has no effect, MPa</source>
+        <translation>local: Druck, bei dem alpha nicht wirkt, MPa</translation>
+    </message>
+    <message>
+        <source>local: share of a serrated wheel&apos;s surface that bears: lands over lands and grooves; 1: a plain wheel</source>
+        <translation>local: tragender Anteil der Oberfläche einer genuteten Scheibe: Stege durch Stege und Nuten; 1: glatte Scheibe</translation>
+    </message>
+    <message>
+        <source>local_linear: dh/dt = K k_t V_b p; local: the same with exponents, threshold, saturation and curves; hammann: the linear law for the mean pressure over the contact; geometric: a rigid tool cuts all that its envelope meets (control position)</source>
+        <translation>local_linear: dh/dt = K k_t V_b p; local: dasselbe mit Exponenten, Schwelle, Sättigung und Kurven; hammann: das lineare Gesetz für den mittleren Druck im Kontakt; geometric: ein starres Werkzeug trägt alles ab, was seine Hülle trifft (Regelung position)</translation>
+    </message>
+    <message>
+        <source>lower and upper limit of the deviation, mm</source>
+        <translation>untere und obere Grenze der Abweichung, mm</translation>
+    </message>
+    <message>
+        <source>lower limit; set it at the job</source>
+        <translation>untere Grenze; am Auftrag einstellen</translation>
+    </message>
+    <message>
+        <source>mean probability, percent; 0: not known</source>
+        <translation>mittlere Wahrscheinlichkeit, Prozent; 0: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>mean standard deviation of the deviation</source>
+        <translation>mittlere Standardabweichung der Abweichung</translation>
+    </message>
+    <message>
+        <source>millimetres per unit of the mesh</source>
+        <translation>Millimeter je Einheit des Netzes</translation>
+    </message>
+    <message>
+        <source>mm around each pose in which the corner is rounded; negative: not known</source>
+        <translation>mm um jede Pose, in denen die Ecke gerundet wird; negativ: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>number of Cartesian poses</source>
+        <translation>Zahl der kartesischen Posen</translation>
+    </message>
+    <message>
+        <source>number of passes</source>
+        <translation>Zahl der Bahnen</translation>
+    </message>
+    <message>
+        <source>of the belt in the end, percent of a fresh one</source>
+        <translation>des Bandes am Ende, Prozent eines frischen</translation>
+    </message>
+    <message>
+        <source>of the deviation along the section</source>
+        <translation>der Abweichung längs des Schnitts</translation>
+    </message>
+    <message>
+        <source>of the deviation, by length</source>
+        <translation>der Abweichung, nach Länge</translation>
+    </message>
+    <message>
+        <source>of the deviation; negative: below the design</source>
+        <translation>der Abweichung; negativ: unter dem Soll</translation>
+    </message>
+    <message>
+        <source>of the deviation; positive: stock left</source>
+        <translation>der Abweichung; positiv: es steht noch Aufmaß</translation>
+    </message>
+    <message>
+        <source>of the faces</source>
+        <translation>der Flächen</translation>
+    </message>
+    <message>
+        <source>of the height field</source>
+        <translation>des Höhenfelds</translation>
+    </message>
+    <message>
+        <source>of the plane</source>
+        <translation>der Ebene</translation>
+    </message>
+    <message>
+        <source>of the section, without gaps</source>
+        <translation>des Schnitts, ohne Lücken</translation>
+    </message>
+    <message>
+        <source>of the simulation</source>
+        <translation>der Simulation</translation>
+    </message>
+    <message>
+        <source>on the design before</source>
+        <translation>zuvor auf dem Soll</translation>
+    </message>
+    <message>
+        <source>one colour per sample</source>
+        <translation>eine Farbe je Abtastpunkt</translation>
+    </message>
+    <message>
+        <source>one feed for all poses; 0: as programmed</source>
+        <translation>ein Vorschub für alle Posen; 0: wie programmiert</translation>
+    </message>
+    <message>
+        <source>one force for all poses; 0: as programmed</source>
+        <translation>eine Kraft für alle Posen; 0: wie programmiert</translation>
+    </message>
+    <message>
+        <source>outer radius at mid-width, belt included, mm</source>
+        <translation>Außenradius in der Mitte der Breite, mit Band, mm</translation>
+    </message>
+    <message>
+        <source>part in hand: the contact frame in the base frame</source>
+        <translation>Teil in der Hand: das Kontaktsystem im Basissystem</translation>
+    </message>
+    <message>
+        <source>part in hand: the document&apos;s origin in the tool frame</source>
+        <translation>Teil in der Hand: der Ursprung des Dokuments im Werkzeugsystem</translation>
+    </message>
+    <message>
+        <source>points of each piece of it</source>
+        <translation>Punkte jedes Stücks davon</translation>
+    </message>
+    <message>
+        <source>positioning moves: nothing is ground on the way to these poses</source>
+        <translation>Zustellbewegungen: auf dem Weg zu diesen Posen wird nichts geschliffen</translation>
+    </message>
+    <message>
+        <source>pressing force along the passes, N; 0: the belt machine&apos;s</source>
+        <translation>Anpresskraft längs der Bahnen, N; 0: die der Bandschleifmaschine</translation>
+    </message>
+    <message>
+        <source>pressing force towards each pose, N; negative: the belt machine&apos;s</source>
+        <translation>Anpresskraft hin zu jeder Pose, N; negativ: die der Bandschleifmaschine</translation>
+    </message>
+    <message>
+        <source>pressing force where the program has none, N</source>
+        <translation>Anpresskraft, wo das Programm keine hat, N</translation>
+    </message>
+    <message>
+        <source>pressure per indentation of the elastic foundation, MPa/mm; 0: as stiff as the wheel_rim is on a plane under force_N</source>
+        <translation>Druck je Eindrückung der elastischen Bettung, MPa/mm; 0: so steif wie wheel_rim auf einer Ebene unter force_N</translation>
+    </message>
+    <message>
+        <source>radius of the rim&apos;s profile across the width, mm; 0: cylinder</source>
+        <translation>Radius des Profils über die Breite, mm; 0: Zylinder</translation>
+    </message>
+    <message>
+        <source>relative error of the pressure field</source>
+        <translation>relativer Fehler des Druckfelds</translation>
+    </message>
+    <message>
+        <source>removed by grinding</source>
+        <translation>durch Schleifen abgetragen</translation>
+    </message>
+    <message>
+        <source>removed volume, mm3</source>
+        <translation>abgetragenes Volumen, mm³</translation>
+    </message>
+    <message>
+        <source>results whose use has been counted</source>
+        <translation>Ergebnisse, deren Gebrauch gezählt ist</translation>
+    </message>
+    <message>
+        <source>reverse the normals of loose faces</source>
+        <translation>die Normalen loser Flächen umkehren</translation>
+    </message>
+    <message>
+        <source>samples over which no stock was found</source>
+        <translation>Abtastpunkte, über denen kein Rohteil gefunden wurde</translation>
+    </message>
+    <message>
+        <source>samples where the stock lies below the design</source>
+        <translation>Abtastpunkte, wo das Rohteil unter dem Soll liegt</translation>
+    </message>
+    <message>
+        <source>share of a fresh belt&apos;s cut, percent</source>
+        <translation>Anteil des Abtrags eines frischen Bandes, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the area cut too deep, percent</source>
+        <translation>Anteil der Fläche, die zu tief geschliffen ist, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the area in tolerance, percent</source>
+        <translation>Anteil der Fläche in Toleranz, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the area with too much left, percent</source>
+        <translation>Anteil der Fläche, auf der zu viel steht, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the cut that stays</source>
+        <translation>Anteil des Abtrags, der bleibt</translation>
+    </message>
+    <message>
+        <source>share of the length in tolerance, percent</source>
+        <translation>Anteil der Länge in Toleranz, Prozent</translation>
+    </message>
+    <message>
+        <source>shorter pieces of passes are left out, mm</source>
+        <translation>kürzere Stücke von Bahnen werden weggelassen, mm</translation>
+    </message>
+    <message>
+        <source>six joint angles in whose configuration every program begins, degrees; empty: the one that gets furthest</source>
+        <translation>sechs Gelenkwinkel, in deren Stellung jedes Programm beginnt, Grad; leer: die, die am weitesten kommt</translation>
+    </message>
+    <message>
+        <source>spacing of the samples that the passes are found on, mm; 0: by the faces&apos; size and the step-over</source>
+        <translation>Abstand der Abtastpunkte, auf denen die Bahnen gefunden werden, mm; 0: nach der Größe der Flächen und dem Bahnabstand</translation>
+    </message>
+    <message>
+        <source>speed towards each pose, mm/s</source>
+        <translation>Geschwindigkeit hin zu jeder Pose, mm/s</translation>
+    </message>
+    <message>
+        <source>standard deviation at which its ramp ends</source>
+        <translation>Standardabweichung, bei der ihr Farbverlauf endet</translation>
+    </message>
+    <message>
+        <source>step-over as a share of the contact&apos;s width across the pass</source>
+        <translation>Bahnabstand als Anteil der Kontaktbreite quer zur Bahn</translation>
+    </message>
+    <message>
+        <source>steps of each ramp; 0: without steps</source>
+        <translation>Stufen jedes Farbverlaufs; 0: ohne Stufen</translation>
+    </message>
+    <message>
+        <source>tension of the belt on the rim, per width, N/mm (wheel_rim only)</source>
+        <translation>Spannung des Bandes auf dem Belag, je Breite, N/mm (nur wheel_rim)</translation>
+    </message>
+    <message>
+        <source>the CAM path or robot trajectory of FreeCAD that the poses follow, in place of a file</source>
+        <translation>der CAM-Pfad oder die Roboterbahn von FreeCAD, denen die Posen folgen, statt einer Datei</translation>
+    </message>
+    <message>
+        <source>the Part or Mesh object that is the stock</source>
+        <translation>das Part- oder Mesh-Objekt, das das Rohteil ist</translation>
+    </message>
+    <message>
+        <source>the belt machine, for the cell&apos;s frames</source>
+        <translation>die Bandschleifmaschine, für die Systeme der Zelle</translation>
+    </message>
+    <message>
+        <source>the belt, none: a fresh one</source>
+        <translation>das Band; keines: ein frisches</translation>
+    </message>
+    <message>
+        <source>the events as JSON</source>
+        <translation>die Ereignisse als JSON</translation>
+    </message>
+    <message>
+        <source>the faces to be ground</source>
+        <translation>die Flächen, die geschliffen werden</translation>
+    </message>
+    <message>
+        <source>the faces with the passes</source>
+        <translation>die Flächen mit den Bahnen</translation>
+    </message>
+    <message>
+        <source>the ground height field</source>
+        <translation>das geschliffene Höhenfeld</translation>
+    </message>
+    <message>
+        <source>the ground profile in space</source>
+        <translation>das geschliffene Profil im Raum</translation>
+    </message>
+    <message>
+        <source>the result shown</source>
+        <translation>das gezeigte Ergebnis</translation>
+    </message>
+    <message>
+        <source>the result that is cut</source>
+        <translation>das Ergebnis, das geschnitten wird</translation>
+    </message>
+    <message>
+        <source>the robot program that the poses come from</source>
+        <translation>das Roboterprogramm, aus dem die Posen kommen</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s own base in the base frame of the programs</source>
+        <translation>der eigene Fuß des Roboters im Basissystem der Programme</translation>
+    </message>
+    <message>
+        <source>the tool frame of the programs in the robot&apos;s flange</source>
+        <translation>das Werkzeugsystem der Programme im Flansch des Roboters</translation>
+    </message>
+    <message>
+        <source>thickness of the rim on its rigid core, mm</source>
+        <translation>Dicke des Belags auf seinem starren Kern, mm</translation>
+    </message>
+    <message>
+        <source>time at the programmed feeds without acceleration, s; the job&apos;s own: Simulation.ProcessTime</source>
+        <translation>Zeit bei den programmierten Vorschüben ohne Beschleunigung, s; die des Auftrags: Simulation.ProcessTime</translation>
+    </message>
+    <message>
+        <source>tool centre points in the program&apos;s base frame, mm</source>
+        <translation>TCPs im Basissystem des Programms, mm</translation>
+    </message>
+    <message>
+        <source>tool in hand: the contact frame in the tool frame</source>
+        <translation>Werkzeug in der Hand: das Kontaktsystem im Werkzeugsystem</translation>
+    </message>
+    <message>
+        <source>tool in hand: the document&apos;s origin in the base frame</source>
+        <translation>Werkzeug in der Hand: der Ursprung des Dokuments im Basissystem</translation>
+    </message>
+    <message>
+        <source>trapezoidal: acceleration of reorientation, degrees/s2</source>
+        <translation>trapezoidal: Beschleunigung der Umorientierung, Grad/s²</translation>
+    </message>
+    <message>
+        <source>trapezoidal: acceleration of the tool centre point along the path, and across it in corners, mm/s2; the default is URScript&apos;s for movel, large robots reach 1000 to 5000</source>
+        <translation>trapezoidal: Beschleunigung des TCP längs der Bahn, in Ecken auch quer, mm/s²; die Vorgabe ist die von movel in URScript, große Roboter erreichen 1000 bis 5000</translation>
+    </message>
+    <message>
+        <source>trapezoidal: largest speed of reorientation, degrees/s; the default is KUKA&apos;s $VEL.ORI1</source>
+        <translation>trapezoidal: größte Geschwindigkeit der Umorientierung, Grad/s; die Vorgabe ist $VEL.ORI1 von KUKA</translation>
+    </message>
+    <message>
+        <source>trapezoidal: zone of poses whose program does not tell it, mm; 0: exact stop</source>
+        <translation>trapezoidal: Überschleifzone von Posen, deren Programm keine nennt, mm; 0: Genauhalt</translation>
+    </message>
+    <message>
+        <source>two_stage: J or mm3 in which it falls to 1/e</source>
+        <translation>two_stage: J oder mm³, in denen er auf 1/e fällt</translation>
+    </message>
+    <message>
+        <source>two_stage: share that goes at first</source>
+        <translation>two_stage: Anteil, der zuerst vergeht</translation>
+    </message>
+    <message>
+        <source>uniform stock on the design, mm</source>
+        <translation>gleichmäßiges Aufmaß auf dem Soll, mm</translation>
+    </message>
+    <message>
+        <source>uninterrupted lines on one face</source>
+        <translation>ununterbrochene Linien auf einer Fläche</translation>
+    </message>
+    <message>
+        <source>upper limit; set it at the job</source>
+        <translation>obere Grenze; am Auftrag einstellen</translation>
+    </message>
+    <message>
+        <source>version of the properties</source>
+        <translation>Version der Eigenschaften</translation>
+    </message>
+    <message>
+        <source>weighted by area</source>
+        <translation>nach Fläche gewichtet</translation>
+    </message>
+    <message>
+        <source>what `beltgrind surrogate` wrote, for the model surrogate</source>
+        <translation>was `beltgrind surrogate` schrieb, für das Modell surrogate</translation>
+    </message>
+    <message>
+        <source>what changed in every step, for playback</source>
+        <translation>was sich in jedem Schritt änderte, für die Wiedergabe</translation>
+    </message>
+    <message>
+        <source>what could not be resolved, by file and line</source>
+        <translation>was nicht aufgelöst werden konnte, nach Datei und Zeile</translation>
+    </message>
+    <message>
+        <source>what goes with the part (clamps), in the document&apos;s coordinates</source>
+        <translation>was mit dem Teil geht (Spannmittel), in den Koordinaten des Dokuments</translation>
+    </message>
+    <message>
+        <source>what goes with the wheel (housing), in the contact frame</source>
+        <translation>was mit der Scheibe geht (Gehäuse), im Kontaktsystem</translation>
+    </message>
+    <message>
+        <source>what happened on the way</source>
+        <translation>was unterwegs geschah</translation>
+    </message>
+    <message>
+        <source>what stands still in the cell, in the base frame</source>
+        <translation>was in der Zelle still steht, im Basissystem</translation>
+    </message>
+    <message>
+        <source>what the belt did, as JSON</source>
+        <translation>was das Band tat, als JSON</translation>
+    </message>
+    <message>
+        <source>what the colours show; uncertainty: of a calibrated law</source>
+        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes</translation>
+    </message>
+    <message>
+        <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together</source>
+        <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs derer u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen</translation>
+    </message>
+    <message>
+        <source>what the robot carries (gripper, tool), in the tool frame</source>
+        <translation>was der Roboter trägt (Greifer, Werkzeug), im Werkzeugsystem</translation>
+    </message>
+    <message>
+        <source>what the robot takes, s</source>
+        <translation>was der Roboter braucht, s</translation>
+    </message>
+    <message>
+        <source>what the simulation took, s</source>
+        <translation>was die Simulation brauchte, s</translation>
+    </message>
+    <message>
+        <source>what the user should know of the input</source>
+        <translation>was man von der Eingabe wissen sollte</translation>
+    </message>
+    <message>
+        <source>what the user should know of the passes</source>
+        <translation>was man von den Bahnen wissen sollte</translation>
+    </message>
+    <message>
+        <source>what was cut, and how</source>
+        <translation>was geschnitten wurde, und wie</translation>
+    </message>
+    <message>
+        <source>where the file&apos;s mesh lies in the document</source>
+        <translation>wo das Netz der Datei im Dokument liegt</translation>
+    </message>
+    <message>
+        <source>where the line begins</source>
+        <translation>wo die Linie beginnt</translation>
+    </message>
+    <message>
+        <source>where the line ends</source>
+        <translation>wo die Linie endet</translation>
+    </message>
+    <message>
+        <source>where the ramps end</source>
+        <translation>wo die Farbverläufe enden</translation>
+    </message>
+    <message>
+        <source>which result the colours show</source>
+        <translation>welches Ergebnis die Farben zeigen</translation>
+    </message>
+    <message>
+        <source>who holds what</source>
+        <translation>wer was hält</translation>
+    </message>
+    <message>
+        <source>why there is no section; else empty</source>
+        <translation>warum es keinen Schnitt gibt; sonst leer</translation>
+    </message>
+    <message>
+        <source>width, mm</source>
+        <translation>Breite, mm</translation>
+    </message>
+    <message>
+        <source>work of the pressing force at belt speed, J</source>
+        <translation>Arbeit der Anpresskraft bei Bandgeschwindigkeit, J</translation>
+    </message>
+    <message>
+        <source>zigzag: every other pass backwards; one_way: all passes in one direction</source>
+        <translation>zigzag: jede zweite Bahn rückwärts; one_way: alle Bahnen in einer Richtung</translation>
+    </message>
+</context>
+<context>
     <name>BeltGrinding</name>
     <message>
         <source>(none)</source>

@@ -50,6 +50,9 @@ simulation, deviation = doc.Simulation, doc.Deviation
 field_ = simulation.Proxy.field(simulation)
 assert field_.size == simulation.Samples > 20 and simulation.RemovedVolume.Value > 0.5
 assert len(deviation.VertexColors) == deviation.Mesh.CountPoints == field_.size
+recorded = simulation.Proxy.recording(simulation)
+assert (recorded is not None) == (old.name >= "5")
+assert recorded is None or recorded[0].samples == field_.size
 assert deviation.ViewObject.Coloring and 0 < deviation.InTolerance < 100
 
 # Whatever an object of today has, it has; of the same kind, with the same choices.
@@ -107,11 +110,11 @@ for obj in (job, doc.Stock, doc.BeltMachine, doc.RobotPath):
     settle()
     press("OK")
 menu("Simulate")
-wait(lambda: not doc.Simulation.OutOfDate)
+wait(lambda: field("state").text() == "Done.")
 press("Close")
+assert not doc.Simulation.OutOfDate and not doc.Deviation.OutOfDate
 # The elasticity of the wheel is another one since the first state.
 assert abs(doc.Simulation.RemovedVolume.Value / before - 1) < 0.25, (before, doc.Simulation.RemovedVolume)
-assert not doc.Deviation.OutOfDate
 menu("Belt machine")
 type_in("Force", "25 N")
 press("OK")

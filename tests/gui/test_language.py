@@ -38,11 +38,32 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath"):
     buttons = [b for b in window.findChildren(QtGui.QPushButton) if b.isVisible()]
     next(b for b in buttons if b.text().replace("&", "") in ("OK", "Ok")).click()
     settle()
+
+# What is said of a property: FreeCAD stores it in English, and looks for its translation when it shows it.
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.BeltMachine)
+tips = set()
+def seen():
+    for view in window.findChildren(QtGui.QTreeView):
+        if view.metaObject().className() != "Gui::PropertyEditor::PropertyEditor":
+            continue
+        model = view.model()
+        rows = [model.index(i, 0) for i in range(model.rowCount())]
+        rows += [model.index(k, 0, group) for group in rows for k in range(model.rowCount(group))]
+        tips.update(str(model.data(row, QtCore.Qt.ToolTipRole)) for row in rows)
+    return any("Außenradius in der Mitte der Breite" in tip for tip in tips)
+wait(seen, 20)
+assert any("Elastizitätsmodul des Gummibelags" in tip for tip in tips)
+for obj in [doc.BeltGrindingJob, *doc.BeltGrindingJob.Group]:
+    plain = doc.addObject(obj.TypeId, "plain")
+    for name in set(obj.PropertiesList) - set(plain.PropertiesList):
+        said = obj.getDocumentationOfProperty(name)
+        assert FreeCAD.Qt.translate("App::Property", said) != said, (obj.Name, name, said)
+    doc.removeObject(plain.Name)
 Gui.Selection.clearSelection()
 Gui.Selection.addSelection(doc.BeltGrindingJob)
 Gui.runCommand("BeltGrinding_Simulate")
-wait(lambda: doc.getObject("Simulation") is not None, 120)
-assert field("state").text() == "Fertig."
+wait(lambda: field("state").text() == "Fertig.", 120)
 if "PICTURES" in os.environ:
     screenshot(Path(os.environ["PICTURES"], "simulation.png"))
 """

@@ -74,10 +74,25 @@ def press(text):
     raise AssertionError(text)
 
 
+def view_widget():
+    """The widget in which the 3D view is drawn."""
+    drawn = [w for w in window.findChildren(QtGui.QWidget) if w.isVisible()]
+    return next(w for w in drawn if w.metaObject().className() == "QOpenGLWidget")
+
+
+def strike(widget, key):
+    """Strikes a key ("1", "V", " ") over a widget."""
+    widget.setFocus()
+    settle()
+    for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
+        event = QtGui.QKeyEvent(kind, ord(key.upper()), QtCore.Qt.NoModifier, key)
+        QtGui.QApplication.sendEvent(QtGui.QApplication.focusWidget() or widget, event)
+    settle()
+
+
 def click_at(x, y):
     """A click into the 3D view, at device pixels from its lower left."""
-    drawn = [w for w in window.findChildren(QtGui.QWidget) if w.isVisible()]
-    widget = next(w for w in drawn if w.metaObject().className() == "QOpenGLWidget")
+    widget = view_widget()
     ratio = widget.devicePixelRatioF()
     at = QtCore.QPointF(round(x / ratio), widget.height() - 1 - round(y / ratio))
     place = QtCore.QPointF(widget.mapToGlobal(at.toPoint()))

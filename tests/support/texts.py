@@ -1,18 +1,23 @@
 """The texts of the workbench that are translated, found in its sources."""
 
 import ast
+import json
 import re
 import string
 import xml.etree.ElementTree as tree
+from pathlib import Path
 
 MARKED = ("translate", "QT_TRANSLATE_NOOP")
+PROPERTY = "App::Property"  # the context in which FreeCAD looks for what is said of a property
+TABLES = ("SETTINGS", "LISTS", "LINKS", "FRAMES", "BODIES", "ROBOT_FRAMES")  # their rows end so
+SCHEMAS = Path(__file__).resolve().parents[2] / "Resources" / "schema"
 
 
 def marked(folder):
-    """{(context, text): "file:line"} of all marked texts; raises ValueError for one that is no
-    literal, which lupdate would not see.
+    """{(context, text): "file:line"} of all marked texts and of what is said of properties; raises
+    ValueError for a marked one that is no literal, which lupdate would not see.
     """
-    found = {}
+    found = described(folder)
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if not isinstance(node, ast.Call) or _name(node.func) not in MARKED:
@@ -25,6 +30,45 @@ def marked(folder):
                 raise ValueError(f"{where}: a text to be translated must be a literal")
             found[tuple(texts)] = where
     return found
+
+
+def described(folder):
+    """{(PROPERTY, text): "file:line"} of what is said of the objects' properties: by themselves, or by
+    the schema's description of their key.
+    """
+    found = {}
+    for path in sorted((folder / "beltgrinding").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for text in _descriptions(node, path.parent.name == "objects"):
+                found[PROPERTY, text] = f"{path.relative_to(folder)}:{node.lineno}"
+    return found
+
+
+def _descriptions(node, of_objects):
+    if isinstance(node, ast.Call) and len(node.args) > 3:
+        name, given = _name(node.func), node.args[3]
+        if isinstance(given, ast.Constant) and isinstance(given.value, str):
+            if name == "Key":
+                yield _description(given.value)
+            elif name in ("Output", "addProperty", "add"):
+                yield given.value
+    elif of_objects and isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+        if node.targets[0].id == "text" and isinstance(node.value, ast.Constant):
+            yield node.value.value
+        if node.targets[0].id in TABLES:
+            rows = node.value.values if isinstance(node.value, ast.Dict) else node.value.elts
+            yield from (row.elts[-1].value for row in rows)
+
+
+def _description(key):
+    """What the schema says of a job's dotted key, or of a raster path's."""
+    first, _, rest = key.partition(".")
+    name, parts = ("raster", rest.split(".")) if first == "raster" else ("job", key.split("."))
+    node = json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
+    for part in parts:
+        if not part.isdigit():
+            node = (node["items"] if node.get("type") == "array" else node)["properties"][part]
+    return node["description"]
 
 
 def _name(node):

@@ -5,6 +5,7 @@ tests/gui/test_tutorial.py walks them and compares the page's figures and pictur
 
 import FreeCAD
 import FreeCADGui as Gui
+from PySide import QtCore, QtGui
 
 from support import hands
 
@@ -18,8 +19,10 @@ def walk():
     doc = FreeCAD.ActiveDocument
     view = Gui.ActiveDocument.ActiveView
     view.setAnimationEnabled(False)
-    view.viewFront()
-    view.fitAll()
+    drawn = hands.view_widget()
+    for key in "1VF":
+        hands.strike(drawn, key)
+    assert view.getViewDirection().isEqual(FreeCAD.Vector(0, 1, 0), 1e-6)
     hands.picture("tutorial-blade")
 
     open_panel(doc.RobotPath)
@@ -31,7 +34,7 @@ def walk():
     hands.wait(lambda: doc.getObject("Simulation") is not None, 200)
     hands.picture("tutorial-simulation")
     hands.press("Deviation")
-    doc.RobotPath.ViewObject.Visibility = False
+    hide(doc.RobotPath)
     hands.picture("tutorial-deviation")
     figures.update(statistics())
     hands.press("OK")
@@ -60,6 +63,30 @@ def walk():
 def open_panel(obj):
     """A double click in the tree."""
     obj.ViewObject.Proxy.doubleClicked(obj.ViewObject)
+    hands.settle()
+
+
+def hide(obj):
+    """The space bar over the tree, in the tab Model; then back to the panel."""
+    tabs = next(
+        tabs
+        for tabs in hands.window.findChildren(QtGui.QTabWidget)
+        if tabs.isVisible() and tabs.tabText(0) == "Model"
+    )
+    tabs.setCurrentIndex(0)
+    tree = next(
+        tree
+        for tree in hands.window.findChildren(QtGui.QTreeWidget)
+        if tree.isVisible() and tree.metaObject().className() == "Gui::TreeWidget"
+    )
+    exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
+    hands.wait(lambda: tree.findItems(obj.Label, exactly, 0), 10)
+    tree.findItems(obj.Label, exactly, 0)[0].setSelected(True)
+    hands.settle()
+    hands.strike(tree, " ")
+    assert not obj.ViewObject.Visibility
+    Gui.Selection.clearSelection()
+    tabs.setCurrentIndex(1)
     hands.settle()
 
 

@@ -140,7 +140,9 @@ class JobPanel(Panel):
             self.tint.show([])
             self.tell(str(error), True)
             return
-        self.tint.show([shape.Faces[number - 1] for number in numbers])
+        # A hidden part lies under the deviation, whose colours a tint would change.
+        seen = any(obj.ViewObject.Visibility for obj, _ in self.obj.DesignFaces)
+        self.tint.show([shape.Faces[number - 1] for number in numbers] if seen else [])
         area = sum(shape.Faces[number - 1].Area for number in numbers)
         count = area / self.obj.Spacing.Value**2
         self.tell(

@@ -23,6 +23,11 @@ USED = {
     "solid": {"Kind", "Deflection", "SearchAbove", "SearchBelow"},
     "mesh": {"Kind", "FileUnit", "SearchAbove", "SearchBelow"},
 }
+LINKS = (  # name, kind, group, text
+    ("Source", "LinkGlobal", "Stock", "the Part or Mesh object that is the stock"),
+    ("File", "File", "Mesh", "a mesh's file (STL, PLY, OBJ) in place of an object"),
+    ("FilePlacement", "Placement", "Mesh", "where the file's mesh lies in the document"),
+)
 
 
 class Stock(Proxy):
@@ -33,11 +38,7 @@ class Stock(Proxy):
 
     def add_properties(self, obj):
         add_keys(obj, KEYS)
-        for kind, name, group, text in (
-            ("LinkGlobal", "Source", "Stock", "the Part or Mesh object that is the stock"),
-            ("File", "File", "Mesh", "a mesh's file (STL, PLY, OBJ) in place of an object"),
-            ("Placement", "FilePlacement", "Mesh", "where the file's mesh lies in the document"),
-        ):
+        for name, kind, group, text in LINKS:
             if name not in obj.PropertiesList:
                 obj.addProperty(f"App::Property{kind}", name, group, text)
 

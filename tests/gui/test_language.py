@@ -62,8 +62,11 @@ for obj in [doc.BeltGrindingJob, *doc.BeltGrindingJob.Group]:
     doc.removeObject(plain.Name)
 Gui.Selection.clearSelection()
 Gui.Selection.addSelection(doc.BeltGrindingJob)
+wait(lambda: Gui.Command.get("BeltGrinding_Simulate").isActive(), 10)
 Gui.runCommand("BeltGrinding_Simulate")
-wait(lambda: field("state").text() == "Fertig.", 120)
+assert Gui.Control.activeDialog()
+wait(lambda: doc.getObject("Simulation") is not None, 120)
+assert field("state").text() == "Fertig.", field("state").text()
 if "PICTURES" in os.environ:
     screenshot(Path(os.environ["PICTURES"], "simulation.png"))
 """

@@ -152,6 +152,9 @@ def screenshot(path):
 def picture(name):
     """A picture of the manual: the whole screen, to build/pictures."""
     PICTURES.mkdir(parents=True, exist_ok=True)
+    bars, end = window.statusBar().findChildren(QtGui.QProgressBar), time.monotonic() + 3
+    while any(bar.isVisible() for bar in bars) and time.monotonic() < end:
+        settle()  # FreeCAD's own of loading goes a while later
     screenshot(PICTURES / f"{name}.png")
     _taken.append(name)
 

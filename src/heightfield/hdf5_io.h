@@ -85,9 +85,11 @@ inline void write_array(hid_t file, const char* name, const std::vector<T>& data
                         hsize_t row) {
     const hsize_t dims[2] = {data.size(), row};
     const Handle space(H5Screate_simple(row == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-    const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation, false);  // the same data make the same bytes at any time
+    const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                      H5Dclose);
-    require(set.ok(), "cannot write it");
+    require(creation.ok() && set.ok(), "cannot write it");
     if (!data.empty()) {
         require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
                 "cannot write it; is the disk full?");

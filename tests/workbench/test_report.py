@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
 from beltgrinding import InputError, core, inputs, picture, result as results  # noqa: E402
-from beltgrinding.reporting import charts, facts, language, markup  # noqa: E402
+from beltgrinding.reporting import charts, converged, facts, language, markup  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 NASTY = 'Blade <img src=x onerror="alert(1)"> & "co" \u0007'
@@ -258,6 +258,8 @@ def spoken():
                     texts.add(node.args[0].value)
     texts |= {text for _, text, _, _ in charts.SERIES} | set(facts.ELASTICITY.values())
     texts |= {name for name, _ in facts.LAWS.values()}
+    for table in (converged.NAMES, converged.SETTINGS, converged.LEVEL_NAMES):
+        texts |= set(table.values())
     return texts
 
 

@@ -48,6 +48,16 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     return reporting.report(result, output, pdf, language, title, context)
 
 
+def converge(job, context=None):
+    """Runs a job (a dict, or the path of a job.json) coarser, as given and finer; returns its
+    ``job.Result`` with ``convergence``; see ``convergence.converge``.
+    """
+    from . import convergence, job as jobs
+
+    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
+    return convergence.converge(job, context)
+
+
 # What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).
 DOCUMENT_FUNCTIONS = (
     "make_job",

@@ -38,8 +38,8 @@ class Result:
         self.recording = recording
 
     def write(self, folder):
-        """Writes summary.json, events.json, steps.csv, deviation.ply, heightfield.h5; each whole or
-        not."""
+        """Writes summary.json, events.json, steps.csv, deviation.ply, heightfield.h5 and, if it is known,
+        convergence.json; each whole or not."""
         start = time.perf_counter()
         folder = Path(folder)
         try:
@@ -49,6 +49,9 @@ class Result:
             write_whole(folder / "deviation.ply", ply)
             self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
             write_whole(folder / "events.json", _json(self.events))
+            (folder / "convergence.json").unlink(missing_ok=True)
+            if self.convergence is not None:
+                write_whole(folder / "convergence.json", _json(self.convergence))
             if self.steps is not None:
                 write_whole(folder / "steps.csv", _table(self.steps))
             self.summary["wall_time_s"]["write"] = time.perf_counter() - start
@@ -61,6 +64,8 @@ class Result:
         """The result that ``write`` left in ``folder``. An older version's gets what has come since, by
         its default. Raises InputError.
         """
+        from . import convergence
+
         folder = Path(folder)
         data = {}
         for name in ("summary.json", "events.json"):
@@ -78,7 +83,9 @@ class Result:
                 f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
             ) from None
         data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
-        return cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
+        result = cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
+        result.convergence = convergence.read(folder / "convergence.json", job)
+        return result
 
 
 def colour_scale(job):

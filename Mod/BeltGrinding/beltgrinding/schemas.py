@@ -9,7 +9,7 @@ from . import InputError, resources
 
 
 def schema(name):
-    """The JSON Schema ``name`` (job, contact, presets), as a dict."""
+    """The JSON Schema ``name`` (job, contact, convergence, presets), as a dict."""
     with open(resources() / "schema" / f"{name}.schema.json", encoding="utf-8") as file:
         return json.load(file)
 

@@ -8,6 +8,7 @@ import numpy as np
 from .. import core
 from ..poses import program_name
 from . import charts, facts
+from .converged import convergence_part
 from .layout import section, table
 from .markup import e
 
@@ -326,4 +327,4 @@ def _convergence(convergence, words):
     if convergence is None:
         text = words("This was not checked.")
         return [head, e("p", text, class_="unknown")]
-    return None
+    return [head, convergence_part(convergence, words)]

@@ -1,0 +1,184 @@
+"""A spreadsheet with the figures of a job, live: its cells are expressions of the objects' properties.
+
+Expressions name objects by their internal name, which no renaming changes. The sheet stands beside the
+job, not in it: a child that reads its parent would be a circle.
+"""
+
+import FreeCAD
+
+from .. import InputError
+from .belt_machine import BeltMachine
+from .deviation import Deviation
+from .job_object import BeltGrindingJob, child
+from .simulation import Simulation
+from .stock import Stock
+
+MARK = "Job"  # the sheet's property that links its job
+WIDTHS = {"A": 300, "B": 130, "C": 130}  # pixels
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+# Heading: proxy of the object, and of every row the property, its label, and the unit that it is shown
+# in; a unit in brackets stands behind a number that has none.
+SECTIONS = (
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Deviation from the design"),
+        Deviation,
+        (
+            ("ToleranceLower", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, lower limit"), "mm"),
+            ("ToleranceUpper", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, upper limit"), "mm"),
+            ("InTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area in tolerance"), "[%]"),
+            ("AboveTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area with too much left"), "[%]"),
+            ("BelowTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area cut too deep"), "[%]"),
+            ("Minimum", QT_TRANSLATE_NOOP("BeltGrinding", "Deepest below the design"), "mm"),
+            ("Maximum", QT_TRANSLATE_NOOP("BeltGrinding", "Highest above the design"), "mm"),
+            ("Mean", QT_TRANSLATE_NOOP("BeltGrinding", "Mean"), "mm"),
+            ("RootMeanSquare", QT_TRANSLATE_NOOP("BeltGrinding", "Root mean square"), "mm"),
+            ("Percentile05", QT_TRANSLATE_NOOP("BeltGrinding", "5 % of the area lie below"), "mm"),
+            (
+                "Percentile50",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Half of the area lies below"),
+                "mm",
+            ),
+            ("Percentile95", QT_TRANSLATE_NOOP("BeltGrinding", "95 % of the area lie below"), "mm"),
+            (
+                "UncertaintyMean",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Standard deviation, mean; 0: not known"),
+                "mm",
+            ),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Simulation"),
+        Simulation,
+        (
+            ("StockVolume", QT_TRANSLATE_NOOP("BeltGrinding", "Stock before"), "mm^3"),
+            ("RemovedVolume", QT_TRANSLATE_NOOP("BeltGrinding", "Removed"), "mm^3"),
+            ("DesignArea", QT_TRANSLATE_NOOP("BeltGrinding", "Ground area"), "mm^2"),
+            ("ProcessTime", QT_TRANSLATE_NOOP("BeltGrinding", "Time of the robot"), "[s]"),
+            ("RemainingCut", QT_TRANSLATE_NOOP("BeltGrinding", "Cut left in the belt"), "[%]"),
+            ("Samples", QT_TRANSLATE_NOOP("BeltGrinding", "Samples"), ""),
+            ("Steps", QT_TRANSLATE_NOOP("BeltGrinding", "Steps"), ""),
+            ("LawModel", QT_TRANSLATE_NOOP("BeltGrinding", "Law of removal"), ""),
+            ("ElasticModel", QT_TRANSLATE_NOOP("BeltGrinding", "Elasticity"), ""),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "How sure that is"),
+        Simulation,
+        (
+            ("OutOfDate", QT_TRANSLATE_NOOP("BeltGrinding", "An input has changed since"), ""),
+            ("EventCount", QT_TRANSLATE_NOOP("BeltGrinding", "Events"), ""),
+            ("MissedRays", QT_TRANSLATE_NOOP("BeltGrinding", "Samples without stock"), ""),
+            (
+                "DefectiveSamples",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Samples with stock below the design"),
+                "",
+            ),
+            (
+                "LawExtrapolated",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Outside of the law's range"),
+                "",
+            ),
+            ("NotConverged", QT_TRANSLATE_NOOP("BeltGrinding", "Contacts not converged"), ""),
+            ("WarningCount", QT_TRANSLATE_NOOP("BeltGrinding", "Warnings of the input"), ""),
+            ("Calibrated", QT_TRANSLATE_NOOP("BeltGrinding", "The law is calibrated"), ""),
+            (
+                "FineEnough",
+                QT_TRANSLATE_NOOP("BeltGrinding", "The settings are fine enough"),
+                "",
+            ),
+            (
+                "SettingsError",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Error of a depth for the settings' sake"),
+                "mm",
+            ),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Settings"),
+        BeltGrindingJob,
+        (
+            ("Spacing", QT_TRANSLATE_NOOP("BeltGrinding", "Spacing of the samples"), "mm"),
+            ("MaxTravel", QT_TRANSLATE_NOOP("BeltGrinding", "Step of the simulation"), "mm"),
+            ("LawCoefficient", QT_TRANSLATE_NOOP("BeltGrinding", "Coefficient K"), "[mm²/N]"),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Belt machine"),
+        BeltMachine,
+        (
+            ("WheelRadius", QT_TRANSLATE_NOOP("BeltGrinding", "Wheel radius"), "mm"),
+            ("WheelWidth", QT_TRANSLATE_NOOP("BeltGrinding", "Wheel width"), "mm"),
+            ("BeltSpeed", QT_TRANSLATE_NOOP("BeltGrinding", "Belt speed"), "m/s"),
+            ("Force", QT_TRANSLATE_NOOP("BeltGrinding", "Force"), "N"),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Stock"),
+        Stock,
+        (("Allowance", QT_TRANSLATE_NOOP("BeltGrinding", "Allowance"), "mm"),),
+    ),
+)
+
+
+def find(job):
+    """The job's sheet, or None."""
+    for obj in job.Document.Objects:
+        if obj.TypeId == "Spreadsheet::Sheet" and getattr(obj, MARK, None) is job:
+            return obj
+    return None
+
+
+def make(job):
+    """The job's sheet, made where it is missing and filled anew with what the job now has. Cells of a
+    user's own in other columns than A to C stay. Raises InputError.
+    """
+    if child(job, Simulation) is None:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    sheet = find(job)
+    if sheet is None:
+        sheet = job.Document.addObject("Spreadsheet::Sheet", "Figures")
+        sheet.Label = FreeCAD.Qt.translate("BeltGrinding", "Figures")
+        sheet.addProperty("App::PropertyLink", MARK, "Base", "the job whose figures these are")
+        setattr(sheet, MARK, job)
+        sheet.setEditorMode(MARK, 1)
+    _clear(sheet)
+    row = 1
+    for heading, proxy, rows in SECTIONS:
+        obj = job if proxy is BeltGrindingJob else child(job, proxy)
+        if obj is not None:
+            row = _fill(sheet, row, heading, obj, rows)
+    for column, width in WIDTHS.items():
+        sheet.setColumnWidth(column, width)
+    sheet.recompute()
+    return sheet
+
+
+def _clear(sheet):
+    """Takes out what ``make`` has put in."""
+    for cell in sheet.getUsedCells() if hasattr(sheet, "getUsedCells") else _used(sheet):
+        if cell[0] in WIDTHS and cell[1:].isdigit():
+            sheet.clear(cell)
+
+
+def _used(sheet):
+    """Names of the cells that hold something, of FreeCADs that do not tell."""
+    return [name for name in sheet.cells.Content] if hasattr(sheet, "cells") else []
+
+
+def _fill(sheet, row, heading, obj, rows):
+    """Writes a section from ``row`` on; returns the next free row."""
+    sheet.set(f"A{row}", FreeCAD.Qt.translate("BeltGrinding", heading))
+    sheet.setStyle(f"A{row}", "bold")
+    for name, label, unit in rows:
+        if name not in obj.PropertiesList:
+            continue
+        row += 1
+        sheet.set(f"A{row}", FreeCAD.Qt.translate("BeltGrinding", label))
+        sheet.set(f"B{row}", f"={obj.Name}.{name}")
+        if unit.startswith("["):
+            sheet.set(f"C{row}", unit[1:-1])
+        elif unit:
+            sheet.setDisplayUnit(f"B{row}", unit)
+        sheet.setAlignment(f"B{row}", "right")
+    return row + 2

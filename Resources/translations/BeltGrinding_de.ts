@@ -2316,6 +2316,202 @@ removed {} on the mean</source>
 Abweichung {} bis {}, Mittel {}
 im Mittel {} abgetragen</translation>
     </message>
+    <message>
+        <source>5 % of the area lie below</source>
+        <translation>5 % der Fläche liegen darunter</translation>
+    </message>
+    <message>
+        <source>95 % of the area lie below</source>
+        <translation>95 % der Fläche liegen darunter</translation>
+    </message>
+    <message>
+        <source>An input has changed since</source>
+        <translation>Eine Eingabe hat sich seither geändert</translation>
+    </message>
+    <message>
+        <source>An input has changed since the simulation: figures and pictures are of the old one, the settings and the job file of the new one.</source>
+        <translation>Seit der Simulation hat sich eine Eingabe geändert: Werte und Bilder sind vom alten Stand, die Einstellungen und die Job-Datei vom neuen.</translation>
+    </message>
+    <message>
+        <source>Are the spacing of the samples, the steps and the contact&apos;s cells fine enough? The job is simulated at twice, once and half of them. That takes about ten times as long as one simulation.</source>
+        <translation>Sind der Abstand der Stützpunkte, die Schritte und die Zellen des Kontakts fein genug? Der Job wird mit doppelten, einfachen und halben simuliert. Das dauert etwa zehnmal so lange wie eine Simulation.</translation>
+    </message>
+    <message>
+        <source>Area cut too deep</source>
+        <translation>Fläche zu tief geschliffen</translation>
+    </message>
+    <message>
+        <source>Area in tolerance</source>
+        <translation>Fläche in Toleranz</translation>
+    </message>
+    <message>
+        <source>Area with too much left</source>
+        <translation>Fläche mit zu viel Rest</translation>
+    </message>
+    <message>
+        <source>Check</source>
+        <translation>Prüfen</translation>
+    </message>
+    <message>
+        <source>Check settings</source>
+        <translation>Einstellungen prüfen</translation>
+    </message>
+    <message>
+        <source>Checking the settings, {}</source>
+        <translation>Die Einstellungen werden geprüft, {}</translation>
+    </message>
+    <message>
+        <source>Coefficient K</source>
+        <translation>Koeffizient K</translation>
+    </message>
+    <message>
+        <source>Contacts not converged</source>
+        <translation>Nicht konvergierte Kontakte</translation>
+    </message>
+    <message>
+        <source>Cut left in the belt</source>
+        <translation>Verbliebene Schärfe des Bandes</translation>
+    </message>
+    <message>
+        <source>Deviation from the design</source>
+        <translation>Abweichung vom Entwurf</translation>
+    </message>
+    <message>
+        <source>Error</source>
+        <translation>Fehler</translation>
+    </message>
+    <message>
+        <source>Error of a depth because of the settings</source>
+        <translation>Fehler einer Tiefe wegen der Einstellungen</translation>
+    </message>
+    <message>
+        <source>Events</source>
+        <translation>Ereignisse</translation>
+    </message>
+    <message>
+        <source>Figure</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>Figures</source>
+        <translation>Werte</translation>
+    </message>
+    <message>
+        <source>Ground area</source>
+        <translation>Geschliffene Fläche</translation>
+    </message>
+    <message>
+        <source>Half of the area lies below</source>
+        <translation>Die halbe Fläche liegt darunter</translation>
+    </message>
+    <message>
+        <source>Highest deviation</source>
+        <translation>Höchste Abweichung</translation>
+    </message>
+    <message>
+        <source>How sure that is</source>
+        <translation>Wie sicher das ist</translation>
+    </message>
+    <message>
+        <source>Law of removal</source>
+        <translation>Abtragsgesetz</translation>
+    </message>
+    <message>
+        <source>Lowest deviation</source>
+        <translation>Tiefste Abweichung</translation>
+    </message>
+    <message>
+        <source>Not checked yet.</source>
+        <translation>Noch nicht geprüft.</translation>
+    </message>
+    <message>
+        <source>Outside of the law&apos;s range</source>
+        <translation>Außerhalb des Bereichs des Gesetzes</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>Samples</source>
+        <translation>Stützpunkte</translation>
+    </message>
+    <message>
+        <source>Samples with stock below the design</source>
+        <translation>Stützpunkte mit Rohteil unter dem Entwurf</translation>
+    </message>
+    <message>
+        <source>Samples without stock</source>
+        <translation>Stützpunkte ohne Rohteil</translation>
+    </message>
+    <message>
+        <source>Settings</source>
+        <translation>Einstellungen</translation>
+    </message>
+    <message>
+        <source>Spacing of the samples</source>
+        <translation>Abstand der Stützpunkte</translation>
+    </message>
+    <message>
+        <source>Standard deviation, mean; 0: not known</source>
+        <translation>Standardabweichung, Mittel; 0: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>Step of the simulation</source>
+        <translation>Schritt der Simulation</translation>
+    </message>
+    <message>
+        <source>Steps</source>
+        <translation>Schritte</translation>
+    </message>
+    <message>
+        <source>Stock before</source>
+        <translation>Aufmaß vorher</translation>
+    </message>
+    <message>
+        <source>The law is calibrated</source>
+        <translation>Das Gesetz ist kalibriert</translation>
+    </message>
+    <message>
+        <source>The settings are fine enough</source>
+        <translation>Die Einstellungen sind fein genug</translation>
+    </message>
+    <message>
+        <source>The stock is a mesh in the FreeCAD document; the job file below does not hold it. Export the job to repeat it.</source>
+        <translation>Das Rohteil ist ein Netz im FreeCAD-Dokument; die Job-Datei unten enthält es nicht. Zum Wiederholen den Job exportieren.</translation>
+    </message>
+    <message>
+        <source>Time of the robot</source>
+        <translation>Zeit des Roboters</translation>
+    </message>
+    <message>
+        <source>Tolerance, lower limit</source>
+        <translation>Toleranz, untere Grenze</translation>
+    </message>
+    <message>
+        <source>Tolerance, upper limit</source>
+        <translation>Toleranz, obere Grenze</translation>
+    </message>
+    <message>
+        <source>Warnings of the input</source>
+        <translation>Warnungen zu den Eingaben</translation>
+    </message>
+    <message>
+        <source>Wheel radius</source>
+        <translation>Radius der Scheibe</translation>
+    </message>
+    <message>
+        <source>Wheel width</source>
+        <translation>Breite der Scheibe</translation>
+    </message>
+    <message>
+        <source>Writing the report</source>
+        <translation>Der Bericht wird geschrieben</translation>
+    </message>
+    <message>
+        <source>{}: {}, off by up to {}, allowed {}</source>
+        <translation>{}: {}, falsch um bis zu {}, erlaubt {}</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -2359,6 +2555,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Says who holds what, and where; shows the wheel at every pose</source>
         <translation>Legt fest, wer was wo hält; zeigt die Scheibe an jeder Pose</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_CheckSettings</name>
+    <message>
+        <source>Are spacing and steps fine enough? Simulates coarser, as given and finer</source>
+        <translation>Sind Abstand und Schritte fein genug? Simuliert gröber, wie angegeben und feiner</translation>
+    </message>
+    <message>
+        <source>Check settings...</source>
+        <translation>Einstellungen prüfen...</translation>
     </message>
 </context>
 <context>
@@ -2414,6 +2621,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Writes the selected robot path as KRL, RAPID, URScript or CSV</source>
         <translation>Schreibt die gewählte Roboterbahn als KRL, RAPID, URScript oder CSV</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Figures</name>
+    <message>
+        <source>Figures in a spreadsheet</source>
+        <translation>Werte in einer Tabelle</translation>
+    </message>
+    <message>
+        <source>Makes a spreadsheet of the figures that follows the result</source>
+        <translation>Erstellt eine Tabelle der Werte, die dem Ergebnis folgt</translation>
     </message>
 </context>
 <context>
@@ -2513,6 +2731,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Reads the job&apos;s robot programs from their files again</source>
         <translation>Liest die Roboterprogramme des Auftrags erneut aus ihren Dateien</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Report</name>
+    <message>
+        <source>Report...</source>
+        <translation>Bericht...</translation>
+    </message>
+    <message>
+        <source>Writes verdict, pictures, events and the job itself into one HTML or PDF file</source>
+        <translation>Schreibt Urteil, Bilder, Ereignisse und den Job selbst in eine HTML- oder PDF-Datei</translation>
     </message>
 </context>
 <context>

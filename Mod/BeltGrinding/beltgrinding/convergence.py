@@ -58,17 +58,17 @@ def converge(job, context=None):
             result = found if level == "given" else result
         so_far = end
         found = None  # a fine field is large
-    quantities = _quantities(job, runs)
     answer = {
-        "job_sha256": hashlib.sha256(inputs.canonical(job)).hexdigest(),
+        "job_sha256": digest(job),
         "ratio": RATIO,
+        "tolerance_mm": list(job["inspection"]["tolerance_mm"]),
         "band_share": BAND_SHARE,
         "levels": {name: _settings(job, name, runs[name]) for name in LEVELS},
-        "quantities": quantities,
-        "fine_enough": all(one["ok"] for one in quantities),
+        "quantities": _quantities(runs),
         "settings": None,
         "notes": notes,
     }
+    answer = judged(answer, job["inspection"])
     if not answer["fine_enough"]:
         context.report(so_far / whole)
         rest = context.part(so_far / whole, 1.0)
@@ -124,28 +124,42 @@ def _settings(job, level, run):
     }
 
 
-def _quantities(job, runs):
-    lower, upper = narrowest_band(job)
-    limits = {"mm": BAND_SHARE * (upper - lower), "share": SHARE_LIMIT}
+def _quantities(runs):
     found = []
-    for key, given in runs["given"]["figures"].items():
+    for key in runs["given"]["figures"]:
         name, unit, face = key
         values = [runs[level]["figures"].get(key) if runs[level] else None for level in LEVELS]
-        one = {"name": name, "face": face, "unit": unit, "values": values, **estimate(*values)}
-        limit = limits.get(unit, SHARE_LIMIT * abs(given))
-        one["limit"] = limit
-        one["ok"] = one["error"] is not None and one["error"] <= limit
-        found.append(one)
+        found.append({"name": name, "face": face, "unit": unit, "values": values})
+        found[-1].update(estimate(*values))
     return found
 
 
-def narrowest_band(job):
-    """(lower, upper) of the job's narrowest tolerance, mm."""
-    bands = [job["inspection"]["tolerance_mm"]]
+def judged(convergence, inspection):
+    """A copy of an answer, judged by the tolerances of a job's ``inspection``: the errors hold for any.
+    The share in tolerance is left out where it was that of another tolerance.
+    """
+    lower, upper = narrowest_band(inspection)
+    limits = {"mm": BAND_SHARE * (upper - lower), "share": SHARE_LIMIT}
+    same = convergence["tolerance_mm"] == list(inspection["tolerance_mm"])
+    quantities = []
+    for one in convergence["quantities"]:
+        if one["name"] == "in_tolerance" and not same:
+            continue
+        limit = limits.get(one["unit"], SHARE_LIMIT * abs(one["values"][1]))
+        ok = one["error"] is not None and one["error"] <= limit
+        quantities.append({**one, "limit": limit, "ok": ok})
+    return {
+        **convergence,
+        "quantities": quantities,
+        "fine_enough": all(one["ok"] for one in quantities),
+    }
+
+
+def narrowest_band(inspection):
+    """(lower, upper) of the narrowest tolerance of a job's ``inspection``, mm."""
+    bands = [inspection["tolerance_mm"]]
     bands += [
-        zone["tolerance_mm"]
-        for zone in job["inspection"].get("zones", [])
-        if zone.get("tolerance_mm")
+        zone["tolerance_mm"] for zone in inspection.get("zones", []) if zone.get("tolerance_mm")
     ]
     return min(bands, key=lambda band: band[1] - band[0])
 
@@ -209,9 +223,10 @@ def _excess(one):
     return one["error"] / one["limit"] if one["limit"] > 0.0 else (math.inf, 0.0)[one["error"] == 0]
 
 
-def belongs(convergence, job):
-    """True if it was made of this job."""
-    return convergence.get("job_sha256") == hashlib.sha256(inputs.canonical(job)).hexdigest()
+def digest(job):
+    """SHA-256 of what the heights of a validated job depend on: all but its inspection."""
+    job = {key: value for key, value in job.items() if key != "inspection"}
+    return hashlib.sha256(inputs.canonical(job)).hexdigest()
 
 
 def read(path, job):
@@ -221,4 +236,4 @@ def read(path, job):
     if not path.is_file():
         return None
     found = schemas.checked(schemas.read_json(path), schemas.schema("convergence"), str(path))
-    return found if belongs(found, job) else None
+    return judged(found, job["inspection"]) if found["job_sha256"] == digest(job) else None

@@ -61,7 +61,12 @@ class Runner(Background):
         self.data = job_object.to_data(job, self.folder.name)
         self.fingerprint = job_object.fingerprint(job)
         self.start = time.monotonic()
-        super().__init__(lambda context: jobs.run(self.data, context, recording), self._finish)
+        self.recorded = recording
+        super().__init__(self.work, self._finish)
+
+    def work(self, context):
+        """The ``job.Result``; in the thread."""
+        return jobs.run(self.data, context, self.recorded)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""

@@ -32,6 +32,7 @@ from .job_object import child, children
 from .preferences import apply_threads
 from .properties import from_job, set_by_name
 from .proxy import type_of
+from .telling import check_settings, make_figures, write_report  # noqa: F401
 
 
 apply_threads()  # before anything computes, whoever calls: a button or a macro

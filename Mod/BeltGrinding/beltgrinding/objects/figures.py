@@ -24,26 +24,26 @@ SECTIONS = (
         QT_TRANSLATE_NOOP("BeltGrinding", "Deviation from the design"),
         Deviation,
         (
-            ("ToleranceLower", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, lower limit"), "mm"),
-            ("ToleranceUpper", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, upper limit"), "mm"),
+            ("ToleranceLower", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, lower limit"), "µm"),
+            ("ToleranceUpper", QT_TRANSLATE_NOOP("BeltGrinding", "Tolerance, upper limit"), "µm"),
             ("InTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area in tolerance"), "[%]"),
             ("AboveTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area with too much left"), "[%]"),
             ("BelowTolerance", QT_TRANSLATE_NOOP("BeltGrinding", "Area cut too deep"), "[%]"),
-            ("Minimum", QT_TRANSLATE_NOOP("BeltGrinding", "Deepest below the design"), "mm"),
-            ("Maximum", QT_TRANSLATE_NOOP("BeltGrinding", "Highest above the design"), "mm"),
-            ("Mean", QT_TRANSLATE_NOOP("BeltGrinding", "Mean"), "mm"),
-            ("RootMeanSquare", QT_TRANSLATE_NOOP("BeltGrinding", "Root mean square"), "mm"),
-            ("Percentile05", QT_TRANSLATE_NOOP("BeltGrinding", "5 % of the area lie below"), "mm"),
+            ("Minimum", QT_TRANSLATE_NOOP("BeltGrinding", "Lowest deviation"), "µm"),
+            ("Maximum", QT_TRANSLATE_NOOP("BeltGrinding", "Highest deviation"), "µm"),
+            ("Mean", QT_TRANSLATE_NOOP("BeltGrinding", "Mean"), "µm"),
+            ("RootMeanSquare", QT_TRANSLATE_NOOP("BeltGrinding", "Root mean square"), "µm"),
+            ("Percentile05", QT_TRANSLATE_NOOP("BeltGrinding", "5 % of the area lie below"), "µm"),
             (
                 "Percentile50",
                 QT_TRANSLATE_NOOP("BeltGrinding", "Half of the area lies below"),
-                "mm",
+                "µm",
             ),
-            ("Percentile95", QT_TRANSLATE_NOOP("BeltGrinding", "95 % of the area lie below"), "mm"),
+            ("Percentile95", QT_TRANSLATE_NOOP("BeltGrinding", "95 % of the area lie below"), "µm"),
             (
                 "UncertaintyMean",
                 QT_TRANSLATE_NOOP("BeltGrinding", "Standard deviation, mean; 0: not known"),
-                "mm",
+                "µm",
             ),
         ),
     ),
@@ -89,8 +89,8 @@ SECTIONS = (
             ),
             (
                 "SettingsError",
-                QT_TRANSLATE_NOOP("BeltGrinding", "Error of a depth for the settings' sake"),
-                "mm",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Error of a depth because of the settings"),
+                "µm",
             ),
         ),
     ),
@@ -119,6 +119,12 @@ SECTIONS = (
         (("Allowance", QT_TRANSLATE_NOOP("BeltGrinding", "Allowance"), "mm"),),
     ),
 )
+
+
+def _in_words(text):
+    """A text marked above, in FreeCAD's language."""
+    in_language = FreeCAD.Qt.translate
+    return in_language("BeltGrinding", text)
 
 
 def find(job):
@@ -150,7 +156,7 @@ def make(job):
             row = _fill(sheet, row, heading, obj, rows)
     for column, width in WIDTHS.items():
         sheet.setColumnWidth(column, width)
-    sheet.recompute()
+    job.Document.recompute()
     return sheet
 
 
@@ -168,17 +174,17 @@ def _used(sheet):
 
 def _fill(sheet, row, heading, obj, rows):
     """Writes a section from ``row`` on; returns the next free row."""
-    sheet.set(f"A{row}", FreeCAD.Qt.translate("BeltGrinding", heading))
+    sheet.set(f"A{row}", _in_words(heading))
     sheet.setStyle(f"A{row}", "bold")
     for name, label, unit in rows:
         if name not in obj.PropertiesList:
             continue
         row += 1
-        sheet.set(f"A{row}", FreeCAD.Qt.translate("BeltGrinding", label))
+        sheet.set(f"A{row}", _in_words(label))
         sheet.set(f"B{row}", f"={obj.Name}.{name}")
         if unit.startswith("["):
             sheet.set(f"C{row}", unit[1:-1])
         elif unit:
             sheet.setDisplayUnit(f"B{row}", unit)
-        sheet.setAlignment(f"B{row}", "right")
+        sheet.setAlignment(f"B{row}", "right|vcenter")
     return row + 2

@@ -18,6 +18,7 @@ from .robot_path import RobotPath
 from .section import Section
 from .simulation import Simulation
 from .stock import Stock
+from . import told
 
 KEYS = (
     Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
@@ -84,6 +85,7 @@ class BeltGrindingJob(Proxy):
             except InputError:
                 stale = True
             simulation.OutOfDate = stale
+            told.update(simulation, inspection(obj))
         for deviation in children(obj, Deviation):
             deviation.Proxy.update(deviation)
         for section in children(obj, Section):

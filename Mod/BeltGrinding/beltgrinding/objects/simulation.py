@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import core
+from . import told
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -50,6 +51,7 @@ class Simulation(Proxy):
             )
             obj.setEditorMode("HeightField", 1)
         add_outputs(obj, OUTPUTS)
+        told.add(obj)
 
     def field(self, obj):
         """core.HeightField of the result; None if there is none."""
@@ -94,6 +96,7 @@ def store(obj, result, fingerprint):
     kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
     obj.BeltUse = json.dumps({"during": during, "job": kept})
     obj.EventData = json.dumps(result.events)
+    told.store(obj, result)
     obj.Fingerprint = fingerprint
     obj.OutOfDate = False
 

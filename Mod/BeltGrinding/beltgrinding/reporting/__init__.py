@@ -24,12 +24,12 @@ class Content(NamedTuple):
     notes: list  # sentences that are shown on top
 
 
-def report(result, output=None, pdf=None, language="en", title=None, context=None):
+def report(result, output=None, pdf=None, language="en", title=None, context=None, notes=()):
     """Writes the report of a result as one self-contained HTML file.
 
     ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default
     report.html in that folder; ``pdf``: a file for the same as PDF (needs WeasyPrint); ``language``:
-    "en" or "de"; ``title``: what the part is called. Returns the path of the HTML file. Raises
+    "en" or "de"; ``title``: what the part is called; ``notes``: sentences to be shown on top. Returns the path of the HTML file. Raises
     InputError, Cancelled.
     """
     folder = None if isinstance(result, Result) else Path(result)
@@ -39,7 +39,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     words = Language(language)
     printer = _printer() if pdf is not None else None
     context = context or core.RunContext()
-    html = render(load(result, title), words, context)
+    html = render(load(result, title, notes), words, context)
     context.throw_if_cancelled()
     try:
         write_whole(output, html.encode())
@@ -52,12 +52,12 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     return output
 
 
-def load(result, title=None):
+def load(result, title=None, notes=()):
     """The ``Content`` of a folder that a run wrote, or of a ``Result``. Raises InputError."""
     source = ""
     if not isinstance(result, Result):
         source, result = str(result), Result.read(result)
-    notes = []
+    notes = list(notes)
     try:
         shape = jobs.read_design(result.job["design"])
     except InputError as error:

@@ -119,7 +119,7 @@ def histogram(field, scale, words):
 def legend(scale, words):
     """The colours of the deviation, with their limits in mm, and of missed rays."""
     lower, upper, limit = scale
-    left, top, bar, wide = 30, 10, 20, 560
+    left, top, bar, wide = 30, 10, 20, 530
     values = np.linspace(-limit, limit, 281)
     colours = core.colour_scale(lower, upper, limit, values.tolist())
 

@@ -9,7 +9,7 @@ from .markup import e
 MOST_FACES = 8  # of the whole table, the worst ones
 NAMES = {
     "removed_volume": "Removed volume",
-    "min": "Deepest deviation",
+    "min": "Lowest deviation",
     "max": "Highest deviation",
     "mean": "Mean deviation",
     "rms": "Deviation, root mean square",
@@ -17,7 +17,7 @@ NAMES = {
     "p50": "Half of the area lies below",
     "p95": "95 % of the area lie below",
     "in_tolerance": "Share of the area in tolerance",
-    "face_min": "Face{face}, deepest",
+    "face_min": "Face{face}, lowest",
     "face_max": "Face{face}, highest",
 }
 SETTINGS = {
@@ -43,7 +43,7 @@ def sentences(convergence, words):
     if convergence["fine_enough"]:
         most = max(one["error"] for one in depths)
         said = words(
-            "Yes: no depth is off by more than about {error} mm for their sake.",
+            "Yes: because of them no depth is off by more than about {error} mm.",
             error=words.number(most, 4),
         )
         return [said, rule]

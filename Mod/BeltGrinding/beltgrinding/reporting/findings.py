@@ -66,8 +66,8 @@ def head(content, words, scale):
         said.append(words("Over some of the area no stock was found, so nothing is known there."))
     tiles = [
         (words.percent(summary["in_tolerance_area_share"]), words("of the area in tolerance")),
-        (f"{words.number(deviation['max'], 3, True)} mm", words("highest above the design")),
-        (f"{words.number(deviation['min'], 3, True)} mm", words("deepest below the design")),
+        (f"{words.number(deviation['max'], 3, True)} mm", words("highest deviation")),
+        (f"{words.number(deviation['min'], 3, True)} mm", words("lowest deviation")),
         (f"{words.number(summary['removed_volume_mm3'], 0)} mm³", words("removed")),
         (words.seconds(summary.get("process_time_s")), words("of robot time")),
         (words.whole(len(content.result.events)), words("events on the way")),
@@ -137,7 +137,7 @@ def _by_face(content, words, scale):
         (words("too high"), "number"),
         (words("too deep"), "number"),
         (words("highest, mm"), "number"),
-        (words("deepest, mm"), "number"),
+        (words("lowest, mm"), "number"),
         (words("Verdict"), ""),
     ]
     return [table(heads, rows, "list faces")]

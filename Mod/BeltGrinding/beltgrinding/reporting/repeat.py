@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from .. import inputs
-from .layout import facts, section, table
+from .layout import section, table
 from .markup import data_uri, e
 
 _NAMES = {
@@ -19,7 +19,10 @@ LONG = 400  # characters of a text, or items of a list, beyond which the shown j
 
 def repeat(content, words):
     result = content.result
-    versions = [(_NAMES.get(k, k), str(v)) for k, v in result.summary["versions"].items()]
+    versions = ", ".join(
+        f"{_NAMES.get(name, name)} {version}"
+        for name, version in result.summary["versions"].items()
+    )
     data = json.dumps(result.job, indent=1, ensure_ascii=False)
     name = f"{content.title}.job.json"
     link = e(
@@ -42,7 +45,7 @@ def repeat(content, words):
         ),
         _hashes(result, words),
         e("h3", words("Versions")),
-        facts(versions, "facts versions"),
+        e("p", versions),
         e(
             "details",
             e("summary", words("The job's settings")),

@@ -2,7 +2,7 @@
 
 import FreeCADGui as Gui
 
-from . import files, paths, results, set_up
+from . import files, paths, results, set_up, tell
 
 WORK = (  # in the order of work: toolbar and menu
     set_up.NewJob,
@@ -15,12 +15,15 @@ WORK = (  # in the order of work: toolbar and menu
     results.Deviation,
     results.Section,
     results.Playback,
+    tell.Report,
 )
 MORE = (  # menu only
     paths.FollowPath,
     set_up.Belt,
     files.Calibrate,
     results.Contact,
+    tell.CheckSettings,
+    tell.Figures,
     paths.ReadAgain,
     files.OpenJob,
     paths.ExportProgram,

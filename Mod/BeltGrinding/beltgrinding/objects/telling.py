@@ -1,0 +1,72 @@
+"""What a macro calls to tell others of a job's result: report, figures, convergence."""
+
+import json
+
+import FreeCAD
+
+from .. import InputError, convergence, reporting
+from ..result import Result
+from . import figures, job_object, told
+from .job_object import child
+from .simulation import Simulation
+
+
+def make_figures(job):
+    """A spreadsheet of the job's figures, live; filled anew where there is one already."""
+    return figures.make(job)
+
+
+def write_report(job, output, pdf=None, language="en", title=None):
+    """Writes the report of the job's result as one HTML file, and as PDF; returns the HTML's path. See
+    ``beltgrinding.report``.
+    """
+    with job_object.scratch_folder() as folder:
+        result, name, notes = report_data(job, folder)
+        return reporting.report(result, output, pdf, language, title or name, notes=notes)
+
+
+def report_data(job, folder):
+    """(``Result``, title, notes) of the job's stored result, for ``reporting.report`` in any thread. A
+    mesh stock is written to ``folder``. Raises InputError.
+    """
+    simulation = child(job, Simulation)
+    if simulation is None or not simulation.Fingerprint:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    field = simulation.Proxy.field(simulation)
+    if field is None or not simulation.SummaryData:
+        raise InputError(f"{simulation.Label}: it holds too little for a report; simulate again")
+    data, notes = job_object.to_data(job, folder), []
+    if simulation.OutOfDate:
+        notes.append(
+            FreeCAD.Qt.translate(
+                "BeltGrinding",
+                "An input has changed since the simulation: figures and pictures are of the old one, "
+                "the settings and the job file of the new one.",
+            )
+        )
+    if "file" in data["stock"]:
+        notes.append(
+            FreeCAD.Qt.translate(
+                "BeltGrinding",
+                "The stock is a mesh in the FreeCAD document; the job file below does not hold it. "
+                "Export the job to repeat it.",
+            )
+        )
+    result = Result(
+        data, field, json.loads(simulation.SummaryData), simulation.Proxy.events(simulation), None
+    )
+    result.bins = json.loads(simulation.SeriesData) if simulation.SeriesData else None
+    result.convergence = told.convergence(simulation, data["inspection"])
+    names = dict.fromkeys(obj.Label for obj, _ in job.DesignFaces)
+    return result, ", ".join(names), notes
+
+
+def check_settings(job, context=None):
+    """Runs the job coarser, as given and finer, here and now; keeps result and answer in its
+    Simulation, which it returns. See ``beltgrinding.converge``.
+    """
+    with job_object.scratch_folder() as folder:
+        result = convergence.converge(job_object.to_data(job, folder), context)
+    from .api import store_result
+
+    return store_result(job, result, job_object.fingerprint(job))

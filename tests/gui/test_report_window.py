@@ -1,0 +1,140 @@
+"""Report, figures and the check of the settings in FreeCAD's window."""
+
+PREPARE = """
+import re
+from pathlib import Path
+from support.hands import *
+job = prepare()
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Close")
+"""
+
+
+def test_the_menus_report_is_that_of_the_document(freecad):
+    freecad.run(
+        PREPARE
+        + """
+opened = []
+patch(QtGui.QDesktopServices, "openUrl", staticmethod(lambda url: opened.append(url.toLocalFile())))
+part = job.DesignFaces[0][0]
+part.Label = 'Plate <7> & "co"'
+name_file(Path("told").resolve(), "HTML (*.html)")
+menu("Report...")
+wait(lambda: opened, 120)
+assert opened == [str(Path("told.html").resolve())]
+html = Path("told.html").read_text()
+assert "<h1>Plate &lt;7&gt; &amp; \\"co\\"</h1>" in html and "Face6" in html
+assert f"{doc.Simulation.RemovedVolume.Value:.1f} mm³" in html
+assert "An input has changed" not in html and html.count("<svg") > 3
+assert "Peak pressure" in html  # the time series came with the document
+
+before = doc.Simulation.RemovedVolume.Value
+doc.BeltMachine.Force = "20 N"
+doc.recompute()
+opened.clear()
+name_file(Path("told.pdf").resolve(), "PDF (*.pdf)")
+menu("Report...")
+wait(lambda: opened or window.findChildren(QtGui.QMessageBox), 120)
+assert "An input has changed" in Path("told.html").read_text()
+try:
+    import weasyprint
+    assert Path("told.pdf").read_bytes().startswith(b"%PDF") and opened
+except ImportError:
+    assert not Path("told.pdf").exists()
+""",
+        window=True,
+    )
+
+
+def test_the_figures_follow_the_result(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import beltgrinding
+deviation = beltgrinding.make_deviation(job)
+menu("Figures in a spreadsheet")
+sheet = doc.Figures
+rows = {sheet.get(f"A{r}"): r for r in range(1, 60) if sheet.getContents(f"B{r}")}
+
+def value(label):
+    found = sheet.get(f"B{rows[label]}")
+    return getattr(found, "Value", found)
+
+assert sheet.getContents(f"B{rows['Removed']}").endswith("Simulation.RemovedVolume")
+assert value("Removed") == doc.Simulation.RemovedVolume.Value > 0
+assert value("Area in tolerance") == deviation.InTolerance < 99
+assert sheet.get(f"C{rows['Area in tolerance']}") == "%"
+assert abs(value("Force") - 30000) < 1e-6  # FreeCAD's mm kg/s2
+job.ToleranceUpper = "9 mm"
+doc.recompute()
+assert value("Area in tolerance") == deviation.InTolerance and value("Tolerance, upper limit") == 9
+for obj in (job, doc.Simulation, deviation, doc.BeltMachine, sheet):
+    obj.Label = f"Renamed {obj.Name}"
+before = value("Removed")
+doc.BeltMachine.Force = "20 N"
+doc.recompute()
+assert value("An input has changed since") and value("Removed") == before
+menu("Simulate")
+wait(lambda: not doc.Simulation.OutOfDate)
+press("Close")
+assert value("Removed") == doc.Simulation.RemovedVolume.Value < 0.8 * before
+assert not value("An input has changed since")
+
+sheet.set("D1", "mine")
+menu("Figures in a spreadsheet")
+assert len([o for o in doc.Objects if o.TypeId == "Spreadsheet::Sheet"]) == 1
+assert sheet.get("D1") == "mine" and value("Removed") == doc.Simulation.RemovedVolume.Value
+
+doc.saveAs(str(Path("work.FCStd").resolve()))
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("work.FCStd")
+sheet, job = doc.Figures, doc.BeltGrindingJob
+assert value("Removed") == doc.Simulation.RemovedVolume.Value
+job.ToleranceUpper = "0.01 mm"
+doc.recompute()
+assert value("Area in tolerance") == doc.Deviation.InTolerance < 99
+""",
+        window=True,
+    )
+
+
+def test_settings_are_checked_and_the_answer_stays(freecad):
+    freecad.run(
+        PREPARE
+        + """
+assert doc.Simulation.FineEnough == "not checked"
+job.Spacing, job.ToleranceLower, job.ToleranceUpper = 0.3, -9, 9  # slow enough to be cancelled
+doc.recompute()
+steps = doc.UndoCount
+menu("Check settings...")
+assert field("state").text() == "Not checked yet."
+press("Check")
+field("cancel").click()
+wait(lambda: "Cancelled" in field("state").text())
+assert doc.Simulation.OutOfDate and doc.UndoCount == steps
+press("Close")
+job.Spacing = 1.5
+doc.recompute()
+menu("Check settings...")
+press("Check")
+wait(lambda: doc.Simulation.FineEnough == "yes", 120)
+assert not doc.Simulation.OutOfDate and doc.Simulation.SettingsError.Value > 0
+assert field("state").text().startswith("Yes")
+table = field("figures")
+assert table.rowCount() > 8 and "Removed" in table.item(0, 0).text()
+press("Close")
+
+job.ToleranceLower, job.ToleranceUpper = -1e-6, 1e-6
+doc.recompute()
+assert doc.Simulation.FineEnough == "no"
+menu("Check settings...")
+assert field("state").text().startswith("No")
+press("Close")
+doc.BeltMachine.Force = "20 N"
+doc.recompute()
+assert doc.Simulation.FineEnough == "not checked"
+""",
+        window=True,
+    )

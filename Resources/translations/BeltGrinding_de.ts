@@ -795,6 +795,50 @@
         <source>zigzag: every other pass backwards; one_way: all passes in one direction</source>
         <translation>zigzag: jede zweite Bahn rückwärts; one_way: alle Bahnen in einer Richtung</translation>
     </message>
+    <message>
+        <source>contacts whose pressure did not settle</source>
+        <translation>Kontakte, deren Druck nicht konvergierte</translation>
+    </message>
+    <message>
+        <source>convergence.json</source>
+        <translation>convergence.json</translation>
+    </message>
+    <message>
+        <source>events outside of the law&apos;s range</source>
+        <translation>Ereignisse außerhalb des Bereichs des Gesetzes</translation>
+    </message>
+    <message>
+        <source>how far a depth may be off because of the settings; 0: not checked</source>
+        <translation>wie weit eine Tiefe wegen der Einstellungen falsch sein kann; 0: nicht geprüft</translation>
+    </message>
+    <message>
+        <source>how many events there are</source>
+        <translation>wie viele Ereignisse es gibt</translation>
+    </message>
+    <message>
+        <source>how many warnings of the input there are</source>
+        <translation>wie viele Warnungen zu den Eingaben es gibt</translation>
+    </message>
+    <message>
+        <source>summary.json</source>
+        <translation>summary.json</translation>
+    </message>
+    <message>
+        <source>the job whose figures these are</source>
+        <translation>der Job, dessen Werte das sind</translation>
+    </message>
+    <message>
+        <source>the time series as JSON</source>
+        <translation>die Zeitverläufe als JSON</translation>
+    </message>
+    <message>
+        <source>whether the job&apos;s settings are: yes, no, not checked</source>
+        <translation>ob es die Einstellungen des Jobs sind: yes (ja), no (nein), not checked (nicht geprüft)</translation>
+    </message>
+    <message>
+        <source>whether the law of removal was calibrated</source>
+        <translation>ob das Abtragsgesetz kalibriert wurde</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -45,6 +45,11 @@ Shape make_shape(const TopoDS_Shape& shape, const std::string& name);
 /// "face 3 of blade.step": faces are counted from 1 at the user's eye.
 std::string face_name(const Shape::Impl& impl, std::size_t face);
 
+/// A copy of `shape` (the original is shared with other threads) that carries a triangulation by
+/// OpenCASCADE; `angle` in rad between facets. Cancellable.
+TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, double deflection, double angle,
+                               bool relative, const RunContext& context);
+
 /// Triangulates `shape` (a copy: the original is shared with other threads); cancellable.
 TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative,
                      const RunContext& context);

@@ -125,18 +125,25 @@ void orient_alike(std::vector<Triangle>& triangles) {
 
 }  // namespace
 
+TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, double deflection, double angle,
+                               bool relative, const RunContext& context) {
+    const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape, false, false).Shape();
+    IMeshTools_Parameters parameters;
+    parameters.Deflection = deflection;
+    parameters.Angle = angle;
+    parameters.Relative = relative;
+    parameters.InParallel = true;
+    const Handle(ContextProgress) progress = new ContextProgress(context);
+    BRepMesh_IncrementalMesh mesher(copy, parameters, progress->Start());
+    context.throw_if_cancelled();
+    return copy;
+}
+
 TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative,
                      const RunContext& context) {
     try {
-        const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape, false, false).Shape();
-        IMeshTools_Parameters parameters;
-        parameters.Deflection = deflection;
-        parameters.Angle = kAngularDeflection;
-        parameters.Relative = relative;
-        parameters.InParallel = true;
-        const Handle(ContextProgress) progress = new ContextProgress(context);
-        BRepMesh_IncrementalMesh mesher(copy, parameters, progress->Start());
-        context.throw_if_cancelled();
+        const TopoDS_Shape copy =
+            triangulated_copy(shape, deflection, kAngularDeflection, relative, context);
         TriangleMesh mesh;
         for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next())
             append_face(TopoDS::Face(e.Current()), mesh);

@@ -53,6 +53,7 @@ void bind_calibration(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
+void bind_ground_mesh(py::module_& m);
 void bind_section(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_picture(py::module_& m);

@@ -84,6 +84,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_recording(m);
     bind_simulation(m);
     bind_inspection(m);
+    bind_ground_mesh(m);
     bind_section(m);
     bind_picture(m);
     bind_robot(m);

@@ -58,6 +58,21 @@ def converge(job, context=None):
     return convergence.converge(job, context)
 
 
+def ground_mesh(result, path=None, ground=True, deflection_mm=None, context=None):
+    """The whole part as ground, as one closed mesh (``closed_mesh.ground_mesh``); written to
+    ``path`` (.stl, .ply, .3mf) if there is one. result: a ``job.Result`` or its folder.
+    """
+    from . import closed_mesh
+    from .result import Result, colour_scale
+
+    result = result if isinstance(result, Result) else Result.read(result)
+    deflection = closed_mesh.DEFLECTION if deflection_mm is None else deflection_mm
+    mesh = closed_mesh.ground_mesh(result, ground, deflection, context)
+    if path is not None:
+        closed_mesh.write(mesh, path, colour_scale(result.job))
+    return mesh
+
+
 # What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).
 DOCUMENT_FUNCTIONS = (
     "make_job",

@@ -7,11 +7,11 @@ import argparse
 import json
 import sys
 
-from . import calibrate, grind, inspect, lists, press, program, report
+from . import calibrate, grind, inspect, lists, measure, press, program, report
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
-TOPICS = (grind, press, program, calibrate, inspect, report, lists)
+TOPICS = (grind, press, program, calibrate, inspect, measure, report, lists)
 
 
 def _parser():

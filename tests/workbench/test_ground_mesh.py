@@ -25,8 +25,8 @@ def block():
     return core.shape_from_mesh(core.TriangleMesh(corners, np.array(triangles, np.uint32)))
 
 
-@pytest.fixture(scope="module")
-def result():
+def block_job():
+    """The job of test_job on the block's top."""
     shape = block()
     tops = []
     for face in range(shape.face_count):
@@ -35,7 +35,12 @@ def result():
             tops.append(face + 1)
     job = plate_job()
     job["design"] = {"brep": shape.write_brep(), "faces": tops}
-    return beltgrinding.run(job)
+    return job
+
+
+@pytest.fixture(scope="module")
+def result():
+    return beltgrinding.run(block_job())
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,63 @@
+"""The deviation of the closed ground mesh, told by other programs from the CAD."""
+
+import json
+import shutil
+import sys
+
+import numpy as np
+import pytest
+from support.freecad import ROOT
+
+sys.path.insert(0, str(ROOT / "tests" / "workbench"))
+sys.path.insert(0, str(ROOT / "tests" / "benchmark"))
+
+import beltgrinding  # noqa: E402
+import deviation_bench  # noqa: E402
+from beltgrinding import closed_mesh  # noqa: E402
+from test_ground_mesh import block_job  # noqa: E402
+
+AGREEMENT = 0.002  # mm, root mean square, on smooth areas
+
+needs_cloudcompare = pytest.mark.skipif(
+    deviation_bench.CLOUDCOMPARE is None or shutil.which("xvfb-run") is None,
+    reason="cloudcompare or xvfb is not installed",
+)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return beltgrinding.run(block_job())
+
+
+@needs_cloudcompare
+def test_cloudcompare_finds_the_same_deviation(result, tmp_path):
+    mesh = beltgrinding.ground_mesh(result)
+    ground = np.flatnonzero(mesh.standing == closed_mesh.STANDING.index("ground"))
+    chosen = deviation_bench.smooth(result, mesh, mesh.vertices, ground)
+    assert len(chosen) > 0.5 * len(ground)
+    deviation_bench.cad_mesh(result, 0.5, tmp_path / "cad.stl")
+    points = mesh.vertices[chosen]
+    _, told = deviation_bench.cloudcompare(points, tmp_path / "cad.stl", tmp_path)
+    truth = mesh.deviation[chosen].astype(float)
+    assert truth.max() - truth.min() > 0.03  # a ground track, not a constant
+    assert deviation_bench.difference(told, truth)["rms_mm"] < AGREEMENT
+
+
+def test_inspection_finds_the_same_deviation(result, tmp_path, freecad):
+    result.write(tmp_path / "out")
+    told = tmp_path / "told.json"
+    freecad.run(
+        f"""
+import json, os, sys
+sys.path.insert(0, {str(ROOT / "tests" / "benchmark")!r})
+import deviation_bench
+deviation_bench.CLOUDCOMPARE = None
+deviation_bench.INSPECTED = 100
+figures = deviation_bench.compare({str(tmp_path / "out")!r})
+open({str(told)!r}, "w").write(json.dumps(figures))
+"""
+    )
+    figures = json.loads(told.read_text())
+    assert figures["inspection"]["points"] == 100 and figures["inspection"]["lost"] == 0
+    assert figures["inspection"]["rms_mm"] < AGREEMENT
+    assert figures["ours"]["rms_mm"] < AGREEMENT

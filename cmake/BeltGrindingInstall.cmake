@@ -22,9 +22,11 @@ string(REPLACE "../../Resources" "Resources" package_xml "${package_xml}")
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/package.xml CONTENT "${package_xml}" @ONLY)
 
 set(modules beltgrinding_core)
-if(TARGET beltgrinding_coin)
-  list(APPEND modules beltgrinding_coin)
-endif()
+foreach(optional beltgrinding_coin beltgrinding_scan)
+  if(TARGET ${optional})
+    list(APPEND modules ${optional})
+  endif()
+endforeach()
 add_custom_target(beltgrinding_modules DEPENDS ${modules} translations)  # all that an installation needs built
 
 # Beside each core stands what it was built for, so that one that does not fit can say why before it

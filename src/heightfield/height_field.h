@@ -57,6 +57,7 @@ struct HeightField {
     std::vector<std::uint32_t> face;  ///< index of the sample's face in the shape, from 0
     std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
     std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
+    std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
     std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm

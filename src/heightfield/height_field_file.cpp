@@ -38,6 +38,7 @@ void each_trace_array(Trace& t, Visit&& visit) {
 }
 
 constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
+constexpr const char* kMeasured = "measured_mm";      // where a scan was compared
 constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
 
 void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
@@ -51,6 +52,9 @@ void write_all(const HeightField& field, const std::string& path, const std::str
     });
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+    }
+    if (!field.measured.empty()) {
+        write_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
     }
     if (!field.trace.empty()) {
         each_trace_array(field.trace, [&](const char* name, const auto& data, hid_t type) {
@@ -88,6 +92,10 @@ void check(const HeightField& f) {
     for (const float sd : f.height_sd) {
         require(std::isfinite(sd) && sd >= 0.0f, "its standard deviations are no lengths");
     }
+    require(f.measured.empty() || f.measured.size() == n, "its arrays differ in length");
+    for (const float height : f.measured) {
+        require(!std::isinf(height), "its measured heights are no lengths");
+    }
     for (std::size_t i = 0; i < n; ++i) {
         require(f.point[i].allFinite() && f.normal[i].allFinite() && std::isfinite(f.height[i]) &&
                     std::isfinite(f.area[i]) && std::isfinite(f.stock_height[i]),
@@ -124,6 +132,9 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
         each_array(field, [&](const char* name, auto& data, hid_t type, hsize_t row) {
             read_array(file, bytes, name, data, type, row);
         });
+        if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
+            read_array(file, bytes, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
+        }
         if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
             read_array(file, bytes, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
         }

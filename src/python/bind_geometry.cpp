@@ -35,6 +35,23 @@ void bind_geometry(py::module_& m) {
             return view<std::uint32_t>(self.cast<TriangleMesh&>().triangles, 3, self);
         });
     m.def(
+        "read_ply",
+        [](const std::string& path) {
+            PlyData data;
+            {
+                const py::gil_scoped_release release;
+                data = read_ply_data(path);
+            }
+            py::array_t<double> vertices({data.vertices.size(), std::size_t{3}});
+            std::copy_n(reinterpret_cast<const double*>(data.vertices.data()), vertices.size(),
+                        vertices.mutable_data());
+            py::array_t<std::uint32_t> triangles({data.triangles.size(), std::size_t{3}});
+            std::copy_n(reinterpret_cast<const std::uint32_t*>(data.triangles.data()),
+                        triangles.size(), triangles.mutable_data());
+            return py::make_tuple(vertices, triangles);
+        },
+        py::arg("path"), "(vertices (n, 3), triangles (m, 3)) of a PLY, as the file has them.");
+    m.def(
         "read_mesh",
         [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement) {
             const Frame frame = frame_from(placement, "the placement of " + path);

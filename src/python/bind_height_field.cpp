@@ -40,6 +40,7 @@ void bind_height_field(py::module_& m) {
         .BELTGRINDING_VIEW("stock_height", stock_height, float, 1)
         .BELTGRINDING_VIEW("height", height, double, 1)
         .BELTGRINDING_VIEW("height_sd", height_sd, float, 1)
+        .BELTGRINDING_VIEW("measured", measured, float, 1)
         .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
         .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
         .BELTGRINDING_VIEW("triangles", triangles, std::uint32_t, 3)
@@ -88,6 +89,18 @@ void bind_height_field(py::module_& m) {
                 field.height_sd = sd;
             },
             py::arg("sd"), "Standard deviation of every height, mm.")
+        .def(
+            "set_measured",
+            [](HeightField& field, const std::vector<float>& measured) {
+                if (!measured.empty() && measured.size() != field.size()) {
+                    throw InputError("set_measured needs one value per sample, or none");
+                }
+                for (const float height : measured) {
+                    if (std::isinf(height)) throw InputError("a measured height is not finite");
+                }
+                field.measured = measured;
+            },
+            py::arg("measured"), "Height of a scan over every sample, mm; NaN: not scanned.")
         .def(
             "write_hdf5",
             [](const HeightField& field, const std::string& path, const std::string& attributes) {

@@ -67,6 +67,12 @@ bool is_ply(const std::string& path) {
 
 }  // namespace
 
+PlyData read_ply_data(const std::string& path) {
+    if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": there is no such file");
+    RawMesh raw = read_ply(path);
+    return {std::move(raw.vertices), std::move(raw.triangles)};
+}
+
 TriangleMesh read_mesh(const std::string& path, double unit_mm, const Frame& work_from_mesh) {
     if (!std::isfinite(unit_mm) || unit_mm <= 0.0) {
         throw InputError(path + ": the unit of the mesh must be a positive number of millimetres");

@@ -34,6 +34,15 @@ StockReport apply_allowance(HeightField& field, double allowance);
 StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const StockOptions& options,
                        const RunContext& context = {});
 
+/// A mesh or cloud as a PLY file has it, in its own unit and frame.
+struct PlyData {
+    std::vector<Vec3> vertices;
+    std::vector<Triangle> triangles;  ///< none: a cloud
+};
+
+/// Reads a PLY whether it has faces or not. Throws InputError naming the file.
+PlyData read_ply_data(const std::string& path);
+
 /// Reads STL, OBJ, OFF or 3MF by assimp, PLY by `read_ply`, scaled by `unit_mm` (1: millimetres,
 /// 1000: metres) and moved by `work_from_mesh`. Throws InputError naming the file.
 TriangleMesh read_mesh(const std::string& path, double unit_mm = 1.0,

@@ -85,20 +85,31 @@ def calibrate_from_scan(
     }
 
 
-def from_files(result, scan, unit_mm=1.0, placement=None, offset=False):
+def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
     """``calibrate_from_scan`` for a result's folder (as ``beltgrind run`` writes it) and a scan of the
     ground part, a mesh's file in the job's coordinates; ``unit_mm``: mm of the file's 1; placement:
-    where the mesh lies, a 4 x 4 matrix. Returns (law with the new coefficient, figures). Raises
+    where the mesh lies, a 4 x 4 matrix. Without a scan: the one that was aligned and measured for
+    the result (``scan.compare``, ``beltgrind scan``). Returns (law with the new coefficient, figures). Raises
     InputError.
     """
     result = Result.read(result)
     field, law = result.field, result.job["law"]
-    scanned = field.copy()
-    stock = result.job["stock"]
-    mesh = core.read_mesh(str(scan), unit_mm, np.eye(4) if placement is None else placement)
-    core.apply_mesh(scanned, mesh, stock["search_above_mm"], stock["search_below_mm"])
-    missed = (np.asarray(scanned.flags) | np.asarray(field.flags)) & core.MISSED
-    measured = np.where(missed, math.nan, scanned.height)
+    unmeasured = (np.asarray(field.flags) & core.MISSED) != 0
+    if scan is None:
+        if not len(field.measured):
+            raise InputError(
+                "the result has no measured heights: give a scan that lies where the design does, or "
+                "align one first by 'beltgrind scan'"
+            )
+        measured = np.array(field.measured, dtype=float)
+    else:
+        scanned = field.copy()
+        stock = result.job["stock"]
+        mesh = core.read_mesh(str(scan), unit_mm, np.eye(4) if placement is None else placement)
+        core.apply_mesh(scanned, mesh, stock["search_above_mm"], stock["search_below_mm"])
+        unmeasured |= (np.asarray(scanned.flags) & core.MISSED) != 0
+        measured = np.array(scanned.height)
+    measured[unmeasured] = math.nan
     removed = np.asarray(field.stock_height, dtype=float) - field.height
     figures = calibrate_from_scan(
         measured,

@@ -21,7 +21,11 @@ def add(commands):
         "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
     )
     scan.add_argument("result", help="folder that run wrote for the same grind")
-    scan.add_argument("scan", help="mesh of the ground part, where the job's design lies")
+    scan.add_argument(
+        "scan",
+        nargs="?",
+        help="mesh of the ground part, where the job's design lies; none: what 'scan' measured",
+    )
     scan.add_argument("-o", "--output", required=True, help="file for the law (.json)")
     scan.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
     scan.add_argument("--offset", action="store_true", help="the scan may lie too high everywhere")

@@ -1,5 +1,6 @@
 """Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
 
+import gc
 import subprocess
 import sys
 import time
@@ -46,9 +47,21 @@ def menu(text):
     settle()
 
 
+def visible(kind, *name):
+    """The visible widgets of a kind, and of an object name if one is given."""
+    for _ in range(5):
+        try:
+            return [widget for widget in window.findChildren(kind, *name) if widget.isVisible()]
+        except RuntimeError:
+            pass
+        # PySide knew a widget that is gone, and takes a new one at its address for it.
+        gc.collect()
+    raise AssertionError(f"{name}: PySide takes a widget for one that is gone")
+
+
 def field(name, kind=QtGui.QWidget):
     """The visible widget of this object name."""
-    found = [w for w in window.findChildren(kind, name) if w.isVisible()]
+    found = visible(kind, name)
     assert len(found) == 1, (name, found)
     return found[0]
 
@@ -67,8 +80,8 @@ def type_in(name, text):
 
 def press(text):
     """Presses the visible button with this text."""
-    for button in window.findChildren(QtGui.QPushButton):
-        if button.isVisible() and button.text().replace("&", "") == text:
+    for button in visible(QtGui.QPushButton):
+        if button.text().replace("&", "") == text:
             button.click()
             return settle()
     raise AssertionError(text)
@@ -76,8 +89,25 @@ def press(text):
 
 def view_widget():
     """The widget in which the 3D view is drawn."""
-    drawn = [w for w in window.findChildren(QtGui.QWidget) if w.isVisible()]
+    drawn = visible(QtGui.QWidget)
     return next(w for w in drawn if w.metaObject().className() == "QOpenGLWidget")
+
+
+def bring_up(widget):
+    """Chooses the tabs, or the docks, behind which a widget lies."""
+    child = widget
+    while child is not None:
+        parent = child.parentWidget()
+        if isinstance(child, QtGui.QDockWidget):
+            child.show()
+            child.raise_()
+        if isinstance(parent, QtGui.QStackedWidget):
+            parent.setCurrentWidget(child)
+            if isinstance(parent.parentWidget(), QtGui.QTabWidget):
+                parent.parentWidget().setCurrentWidget(child)
+        child = parent
+    settle()
+    assert widget.isVisible()
 
 
 def strike(widget, key):
@@ -86,7 +116,7 @@ def strike(widget, key):
     settle()
     for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
         event = QtGui.QKeyEvent(kind, ord(key.upper()), QtCore.Qt.NoModifier, key)
-        QtGui.QApplication.sendEvent(QtGui.QApplication.focusWidget() or widget, event)
+        QtGui.QApplication.sendEvent(widget, event)
     settle()
 
 
@@ -133,6 +163,7 @@ def reset():
     Gui.Selection.clearSelection()
     for name in list(FreeCAD.listDocuments()):
         FreeCAD.closeDocument(name)
+    gc.collect()
     while _patched:
         setattr(*_patched.pop())
     preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/BeltGrinding")

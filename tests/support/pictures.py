@@ -16,7 +16,7 @@ RELEASE = [
     20,
 ]  # of FreeCAD that the kept pictures are of; others draw their own frames and icons
 COARSE = (80, 50)  # pixels to which pictures are shrunk before they are compared
-SAME = 0.05  # of 255: mean difference of coarse pictures taken twice
+SAME = 0.02  # of 255: mean difference of coarse pictures taken twice
 ALIKE = (
     4.0  # of 255: the same step; a toolbar may have got a button since, a panel is another picture
 )

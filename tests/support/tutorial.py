@@ -68,26 +68,23 @@ def open_panel(obj):
 
 def hide(obj):
     """The space bar over the tree, in the tab Model; then back to the panel."""
-    tabs = next(
-        tabs
-        for tabs in hands.window.findChildren(QtGui.QTabWidget)
-        if tabs.isVisible() and tabs.tabText(0) == "Model"
-    )
-    tabs.setCurrentIndex(0)
+    panel = hands.field("statistics")
+    exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
     tree = next(
         tree
         for tree in hands.window.findChildren(QtGui.QTreeWidget)
-        if tree.isVisible() and tree.metaObject().className() == "Gui::TreeWidget"
+        if tree.metaObject().className() == "Gui::TreeWidget"
     )
-    exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
+    hands.bring_up(tree)
     hands.wait(lambda: tree.findItems(obj.Label, exactly, 0), 10)
-    tree.findItems(obj.Label, exactly, 0)[0].setSelected(True)
-    hands.settle()
+    item = tree.findItems(obj.Label, exactly, 0)[0]
+    tree.setCurrentItem(item)
+    item.setSelected(True)
+    hands.wait(lambda: obj in Gui.Selection.getSelection(), 10)
     hands.strike(tree, " ")
     assert not obj.ViewObject.Visibility
     Gui.Selection.clearSelection()
-    tabs.setCurrentIndex(1)
-    hands.settle()
+    hands.bring_up(panel)
 
 
 def again(doc):

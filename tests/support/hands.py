@@ -1,7 +1,6 @@
 """Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
 
 import gc
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -177,7 +176,8 @@ def reset():
 def screenshot(path):
     """The whole screen as a PNG."""
     settle()
-    subprocess.run(["import", "-window", "root", "-strip", str(path)], check=True)
+    # The X server's root window: a grab of FreeCAD's own shows the 3D view empty.
+    assert QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(str(path)), path
 
 
 def picture(name):

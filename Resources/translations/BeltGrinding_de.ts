@@ -8,6 +8,82 @@
         <translation>5 % der Fläche liegen darunter</translation>
     </message>
     <message>
+        <source>all figures of the comparison, as JSON</source>
+        <translation>alle Zahlen des Vergleichs, als JSON</translation>
+    </message>
+    <message>
+        <source>chord error on faces that are not ground</source>
+        <translation>Sehnenfehler auf Flächen, die nicht geschliffen werden</translation>
+    </message>
+    <message>
+        <source>left on the design: no stock was found there</source>
+        <translation>auf dem Soll belassen: dort wurde kein Rohteil gefunden</translation>
+    </message>
+    <message>
+        <source>made from another result; make it again</source>
+        <translation>aus einem anderen Ergebnis erstellt; neu erstellen</translation>
+    </message>
+    <message>
+        <source>measured less predicted height</source>
+        <translation>gemessene weniger vorhergesagte Höhe</translation>
+    </message>
+    <message>
+        <source>of the ground part; 0: the mesh is open</source>
+        <translation>des geschliffenen Teils; 0: das Netz ist offen</translation>
+    </message>
+    <message>
+        <source>of the same triangles on the design</source>
+        <translation>derselben Dreiecke auf dem Soll</translation>
+    </message>
+    <message>
+        <source>of the scan&apos;s height over the design</source>
+        <translation>der Höhe des Scans über dem Soll</translation>
+    </message>
+    <message>
+        <source>one colour per vertex</source>
+        <translation>eine Farbe je Eckpunkt</translation>
+    </message>
+    <message>
+        <source>root mean square of that</source>
+        <translation>quadratisches Mittel davon</translation>
+    </message>
+    <message>
+        <source>root mean square of the alignment</source>
+        <translation>quadratisches Mittel der Ausrichtung</translation>
+    </message>
+    <message>
+        <source>share of the area that the scan covers, percent</source>
+        <translation>Anteil der Fläche, den der Scan abdeckt, Prozent</translation>
+    </message>
+    <message>
+        <source>that the displacement turned over</source>
+        <translation>die durch die Verschiebung umgeklappt sind</translation>
+    </message>
+    <message>
+        <source>the result that is meshed</source>
+        <translation>das Ergebnis, das vernetzt wird</translation>
+    </message>
+    <message>
+        <source>the scan of the ground part that was compared</source>
+        <translation>der verglichene Scan des geschliffenen Teils</translation>
+    </message>
+    <message>
+        <source>what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan</source>
+        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes; measured, difference: eines Scans</translation>
+    </message>
+    <message>
+        <source>what the user should know of the mesh</source>
+        <translation>was der Benutzer über das Netz wissen sollte</translation>
+    </message>
+    <message>
+        <source>which result it was made from</source>
+        <translation>aus welchem Ergebnis es erstellt wurde</translation>
+    </message>
+    <message>
+        <source>without gaps, as the design is</source>
+        <translation>ohne Lücken, wie das Soll</translation>
+    </message>
+    <message>
         <source>95 % of the area are surer than that</source>
         <translation>95 % der Fläche sind sicherer als das</translation>
     </message>
@@ -724,10 +800,6 @@
         <translation>was das Band tat, als JSON</translation>
     </message>
     <message>
-        <source>what the colours show; uncertainty: of a calibrated law</source>
-        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes</translation>
-    </message>
-    <message>
         <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together</source>
         <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs derer u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen</translation>
     </message>
@@ -849,6 +921,122 @@
     <message>
         <source>(not known)</source>
         <translation>(nicht bekannt)</translation>
+    </message>
+    <message>
+        <source>Aligning and measuring...</source>
+        <translation>Wird ausgerichtet und gemessen...</translation>
+    </message>
+    <message>
+        <source>Alignment, rms</source>
+        <translation>Ausrichtung, RMS</translation>
+    </message>
+    <message>
+        <source>Area measured</source>
+        <translation>Gemessene Fläche</translation>
+    </message>
+    <message>
+        <source>Choose the file of the start.</source>
+        <translation>Die Datei des Anfangs wählen.</translation>
+    </message>
+    <message>
+        <source>Choose the scan&apos;s file.</source>
+        <translation>Die Datei des Scans wählen.</translation>
+    </message>
+    <message>
+        <source>Compare</source>
+        <translation>Vergleichen</translation>
+    </message>
+    <message>
+        <source>Compare a scan</source>
+        <translation>Scan vergleichen</translation>
+    </message>
+    <message>
+        <source>Datum faces</source>
+        <translation>Bezugsflächen</translation>
+    </message>
+    <message>
+        <source>Difference, mean</source>
+        <translation>Differenz, Mittel</translation>
+    </message>
+    <message>
+        <source>Difference, rms</source>
+        <translation>Differenz, RMS</translation>
+    </message>
+    <message>
+        <source>Ground part as mesh</source>
+        <translation>Geschliffenes Teil als Netz</translation>
+    </message>
+    <message>
+        <source>Its file</source>
+        <translation>Dessen Datei</translation>
+    </message>
+    <message>
+        <source>Make the mesh anew</source>
+        <translation>Netz neu erstellen</translation>
+    </message>
+    <message>
+        <source>Measured, mean</source>
+        <translation>Gemessen, Mittel</translation>
+    </message>
+    <message>
+        <source>Points used</source>
+        <translation>Genutzte Punkte</translation>
+    </message>
+    <message>
+        <source>Same verdict</source>
+        <translation>Gleiches Urteil</translation>
+    </message>
+    <message>
+        <source>Scan</source>
+        <translation>Scan</translation>
+    </message>
+    <message>
+        <source>Scan less prediction</source>
+        <translation>Scan weniger Vorhersage</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Anfang</translation>
+    </message>
+    <message>
+        <source>The comparison is still running.</source>
+        <translation>Der Vergleich läuft noch.</translation>
+    </message>
+    <message>
+        <source>aligned already</source>
+        <translation>schon ausgerichtet</translation>
+    </message>
+    <message>
+        <source>all that are not ground</source>
+        <translation>alle nicht geschliffenen</translation>
+    </message>
+    <message>
+        <source>as it lies</source>
+        <translation>wie er liegt</translation>
+    </message>
+    <message>
+        <source>matrix from a file</source>
+        <translation>Matrix aus einer Datei</translation>
+    </message>
+    <message>
+        <source>numbers of the faces that the scan is laid on, as 1,2,5</source>
+        <translation>Nummern der Flächen, auf die der Scan gelegt wird, wie 1,2,5</translation>
+    </message>
+    <message>
+        <source>pairs of points from a file</source>
+        <translation>Punktpaare aus einer Datei</translation>
+    </message>
+    <message>
+        <source>principal axes</source>
+        <translation>Hauptachsen</translation>
+    </message>
+    <message>
+        <source>scan - prediction, {}</source>
+        <translation>Scan - Vorhersage, {}</translation>
+    </message>
+    <message>
+        <source>scan, {}</source>
+        <translation>Scan, {}</translation>
     </message>
     <message>
         <source>... and {} more</source>
@@ -2698,6 +2886,28 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Reads a robot program into the job</source>
         <translation>Liest ein Roboterprogramm in den Auftrag ein</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_GroundMesh</name>
+    <message>
+        <source>Ground part as mesh</source>
+        <translation>Geschliffenes Teil als Netz</translation>
+    </message>
+    <message>
+        <source>Makes the whole part as ground, one closed mesh, to measure or export; once more after a new simulation</source>
+        <translation>Erstellt das ganze Teil, wie geschliffen, als ein geschlossenes Netz zum Messen oder Ausgeben; nach neuer Simulation noch einmal</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Scan</name>
+    <message>
+        <source>Compare a scan...</source>
+        <translation>Scan vergleichen...</translation>
+    </message>
+    <message>
+        <source>Lays a scan of the ground part on the design and compares it with the prediction</source>
+        <translation>Legt einen Scan des geschliffenen Teils auf das Soll und vergleicht ihn mit der Vorhersage</translation>
     </message>
 </context>
 <context>

@@ -84,7 +84,7 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
         std::vector<Condition> conditions;
         for (std::size_t v = begin; v < end; ++v) {
             conditions.clear();
-            bool on_ground = false;
+            bool on_ground = false, on_other = false;
             double sum = 0;
             int heights = 0;
             for (std::uint32_t m = first[v]; m < first[v + 1]; ++m) {
@@ -102,10 +102,13 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
                         ++heights;
                     }
                 }
+                on_other |= !is_ground(meeting.face);
                 conditions.push_back({meeting.normal.cast<double>(), h});
             }
             if (!on_ground) continue;
-            out.standing[v] = heights > 0 ? MeshVertex::kGround : MeshVertex::kMissed;
+            out.standing[v] = heights == 0 ? MeshVertex::kMissed
+                              : on_other   ? MeshVertex::kBorder
+                                           : MeshVertex::kGround;
             if (heights == 0) continue;
             out.deviation[v] = static_cast<float>(sum / heights);
             bool held = false;

@@ -16,6 +16,7 @@ enum class MeshVertex : std::uint8_t {
     kDesign,  ///< on no ground face
     kGround,  ///< on a ground face
     kMissed,  ///< on a ground face whose samples there all missed the stock: left on the design
+    kBorder,  ///< between a ground face and one that is not
 };
 
 /// Soundness and size of a triangle mesh.

@@ -62,7 +62,9 @@ def test_it_is_closed_and_holds_what_was_left(result, mesh):
 def test_vertices_stand_on_the_design_at_their_deviation(result, mesh):
     ground = mesh.standing == closed_mesh.STANDING.index("ground")
     np.testing.assert_allclose(mesh.vertices[ground, 2], mesh.deviation[ground], atol=1e-6)
-    assert np.isnan(mesh.deviation[~ground]).all()
+    border = mesh.standing == closed_mesh.STANDING.index("border")
+    np.testing.assert_allclose(mesh.vertices[border, 2], mesh.deviation[border], atol=1e-6)
+    assert border.any() and np.isnan(mesh.deviation[~(ground | border)]).all()
     # Between the samples the height is linear: no vertex is above the highest, below the lowest.
     assert mesh.deviation[ground].max() <= result.field.height.max() + 1e-6
     assert mesh.deviation[ground].min() >= result.field.height.min() - 1e-6

@@ -93,6 +93,8 @@ DOCUMENT_FUNCTIONS = (
     "export_job",
     "import_result",
     "open_job",
+    "make_ground_mesh",
+    "compare_scan",
 )
 
 

@@ -11,7 +11,7 @@ from .result import Result, colour_scale, write_whole
 
 DEFLECTION = 0.05  # mm, chord error on faces that are not ground
 SUFFIXES = (".stl", ".ply", ".3mf")
-STANDING = ("design", "ground", "missed")  # the values of GroundMesh.standing
+STANDING = ("design", "ground", "missed", "border")  # the values of GroundMesh.standing
 
 # Open Packaging Conventions: the two parts that lead to a 3MF package's model.
 _CONTENT_TYPES = (

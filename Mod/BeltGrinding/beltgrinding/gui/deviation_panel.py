@@ -37,10 +37,12 @@ class DeviationPanel(Panel):
         colours.add("Bands", translate("BeltGrinding", "Steps of each ramp"))
         self.colours, self.tolerance = colours, form
         self.body.addWidget(colours)
-        if obj.ExpectedInTolerance > 0.0:
+        if obj.ExpectedInTolerance > 0.0 or getattr(obj.Simulation, "ScanFigures", ""):
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
                 "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
+                "measured": translate("BeltGrinding", "Scan"),
+                "difference": translate("BeltGrinding", "Scan less prediction"),
             }
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
         self.table = QtGui.QTableWidget(0, 2)

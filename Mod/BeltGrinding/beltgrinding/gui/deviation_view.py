@@ -2,7 +2,7 @@
 
 from pivy import coin
 
-from ..objects.deviation import UNCERTAINTY, bands_of
+from ..objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of
 from . import legend
 from .compat import make_matt
 from .part_context import rest_of_part
@@ -88,6 +88,10 @@ class DeviationView(View):
         if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
             limit = obj.UncertaintyLimit.Value
             self.legend.addChild(legend.uncertainty_node(limit, obj.OutOfDate))
+        elif obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
+            self.legend.addChild(
+                legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
+            )
         else:
             self.legend.addChild(legend.node(*scale, obj.OutOfDate, bands_of(obj)))
         self.legend.whichChild = -3 if self.view.Visibility else -1

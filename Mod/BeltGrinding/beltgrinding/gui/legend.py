@@ -16,19 +16,34 @@ def _rgb(packed):
     return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
 
 
+def scan_node(lower, upper, limit, out_of_date=False, difference=False):
+    """The legend of a scan's heights, or of their difference from the prediction; always in the
+    standard colours without steps.
+    """
+    if difference:
+        text = translate("BeltGrinding", "scan - prediction, {}")
+    else:
+        text = translate("BeltGrinding", "scan, {}")
+    return _deviation(lower, upper, limit, out_of_date, 0, None, text)
+
+
 def node(lower, upper, limit, out_of_date=False, bands=0):
     """The legend of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
     each ramp.
     """
+    text = translate("BeltGrinding", "deviation, {}")
+    return _deviation(lower, upper, limit, out_of_date, bands, preferences.colours(), text)
+
+
+def _deviation(lower, upper, limit, out_of_date, bands, choice, text):
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     unit = preferences.deviation_unit()
     labels = {
         _height(value, limit): f"{value / unit.size:+.{unit.decimals}f}"
         for value in label_values(lower, upper, limit, bands)
     }
-    colours = core.colour_scale(lower, upper, limit, values, bands, preferences.colours())
-    text = translate("BeltGrinding", "deviation, {}").format(unit.symbol)
-    return _legend(colours, labels, text, out_of_date)
+    colours = core.colour_scale(lower, upper, limit, values, bands, choice)
+    return _legend(colours, labels, text.format(unit.symbol), out_of_date)
 
 
 def label_values(lower, upper, limit, bands=0):

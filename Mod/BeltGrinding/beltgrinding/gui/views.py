@@ -6,6 +6,7 @@ from ..objects.robot_path import load_program
 from .compat import QtGui, translate
 from .deviation_view import DeviationView
 from .icons import icon
+from .ground_mesh_view import GroundMeshView
 from .section_view import SectionView
 from .view import View
 
@@ -13,6 +14,7 @@ __all__ = [
     "BeltMachineView",
     "BeltView",
     "DeviationView",
+    "GroundMeshView",
     "JobView",
     "RasterPathView",
     "RobotPathView",

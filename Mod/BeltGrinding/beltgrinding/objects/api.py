@@ -27,6 +27,7 @@ from . import (
     simulation as results,
 )
 from . import stock as stocks
+from . import ground_mesh, scanned
 from .geometry import placement_from_job
 from .job_object import child, children
 from .preferences import apply_threads
@@ -251,6 +252,41 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
             raise InputError(found.Problem)
     job.Document.recompute()
     return found
+
+
+def make_ground_mesh(job, **properties):
+    """Adds the ground part as one closed Mesh object, or makes the one that is there anew. Raises
+    InputError where the result is missing or out of date.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    found = child(job, ground_mesh.GroundMesh)
+    if found is not None:
+        set_by_name(found, properties)
+        ground_mesh.make(found)
+        return found
+    found = job.Document.addObject("Mesh::FeaturePython", "GroundPart")
+    with _removed_on_error(found):
+        ground_mesh.GroundMesh(found)
+        found.Label = "Ground part"
+        found.Simulation = simulation
+        job.addObject(found)
+        set_by_name(found, properties)
+        ground_mesh.make(found)
+    job.Document.recompute()
+    return found
+
+
+def compare_scan(job, path, **options):
+    """Aligns a scan of the ground part and keeps its heights with the Simulation; returns the figures.
+    ``options``: of ``scan.compare`` (unit_mm, start, pairs, datum_faces, fixed, ...).
+    """
+    simulation = child(job, results.Simulation)
+    figures = scanned.compare(simulation, job, path, **options)
+    simulation.touch()
+    job.Document.recompute()
+    return figures
 
 
 def export_job(job, path):

@@ -14,6 +14,11 @@ from .properties import Output, add_outputs
 from .proxy import Proxy
 
 DEVIATION, UNCERTAINTY = "deviation", "uncertainty"
+MEASURED, DIFFERENCE = (
+    "measured",
+    "difference",
+)  # of a scan: its height, and that less the predicted
+SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE]
 BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
 SETTINGS = (  # name, kind, first value, text
     ("Bounds", "Enumeration", [BY_HAND, BY_TOLERANCE, BY_PERCENTILE], "where the ramps end"),
@@ -84,9 +89,13 @@ class Deviation(Proxy):
             obj.addProperty("App::PropertyLink", "Simulation", "Deviation", "the result shown")
             obj.setEditorMode("Simulation", 1)
         if "ColourBy" not in obj.PropertiesList:
-            text = "what the colours show; uncertainty: of a calibrated law"
+            text = "what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan"
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
-            obj.ColourBy = [DEVIATION, UNCERTAINTY]
+            obj.ColourBy = SHOWN
+        if obj.getEnumerationsOfProperty("ColourBy") != SHOWN:  # an older file's
+            before = obj.ColourBy
+            obj.ColourBy = SHOWN
+            obj.ColourBy = before
         for name, kind, value, text in SETTINGS:
             if name not in obj.PropertiesList:
                 obj.addProperty(f"App::Property{kind}", name, "Deviation", text)
@@ -106,10 +115,11 @@ class Deviation(Proxy):
         from .job_object import inspection
 
         scale = colour_scale({"inspection": inspection(job)})
+        scanned = getattr(simulation, "ScanFigures", "")
         result = [simulation.Fingerprint, simulation.WallTime]
         bounds = [obj.Bounds, obj.TimesTolerance, obj.Percentile, obj.Bands]
         chosen = preferences.colours()
-        shown = [*scale, obj.ColourBy, *bounds, chosen and list(chosen)]
+        shown = [*scale, obj.ColourBy, *bounds, chosen and list(chosen), scanned]
         before = json.loads(obj.Shown or "[null, null]")
         if before == [result, shown]:
             return
@@ -151,6 +161,12 @@ def percentile(field, share):
     return float(height[order[min(k, len(order) - 1)]])
 
 
+def scan_heights(obj, field):
+    """(n,) what a scan's colour mode shows, mm; NaN where the scan has nothing."""
+    measured = np.array(field.measured, dtype=float)
+    return measured if obj.ColourBy == MEASURED else measured - field.height
+
+
 def bands_of(obj):
     """The steps of each ramp; 0: none."""
     return min(max(obj.Bands, 0), MOST_BANDS)
@@ -166,6 +182,8 @@ def show(obj, field, scale, new_mesh=True):
     obj.UncertaintyLimit = _round_up(sd)
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
         colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
+    elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
+        colours = core.height_colours(scan_heights(obj, field), field.flags, *scale)
     else:
         colours = core.deviation_colours(field, *scale, bands_of(obj), preferences.colours())
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale

@@ -11,6 +11,7 @@ from .. import InputError, core, job as jobs
 from ..poses import list_poses
 from .belt_machine import BeltMachine
 from .deviation import Deviation
+from .ground_mesh import GroundMesh
 from .geometry import faces_digest, placed_shape
 from .properties import Key, add_keys, check_limits, to_job
 from .proxy import Proxy, type_of
@@ -86,6 +87,8 @@ class BeltGrindingJob(Proxy):
                 stale = True
             simulation.OutOfDate = stale
             told.update(simulation, inspection(obj))
+        for mesh in children(obj, GroundMesh):
+            mesh.Proxy.update(mesh)
         for deviation in children(obj, Deviation):
             deviation.Proxy.update(deviation)
         for section in children(obj, Section):

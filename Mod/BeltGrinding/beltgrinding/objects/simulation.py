@@ -76,6 +76,9 @@ class Simulation(Proxy):
 
 def store(obj, result, fingerprint):
     """Puts a ``job.Result`` into a Simulation object."""
+    from . import scanned  # which reads jobs, and a job holds simulations
+
+    scanned.forget(obj)  # it was compared with the older result
     with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
         path = Path(folder, "heightfield.h5")
         result.field.write_hdf5(str(path), json.dumps(_without_bulk(result.job)))

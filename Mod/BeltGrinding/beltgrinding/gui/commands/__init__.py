@@ -30,6 +30,8 @@ MORE = (  # menu only
     files.ExportJob,
     files.ImportResult,
     files.ExampleBlade,
+    results.GroundMesh,
+    results.Scan,
 )
 
 

@@ -1,0 +1,52 @@
+"""The ground part for other measuring programs, and what a scanner measured."""
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...objects import api, deviation, simulation
+from ...objects.job_object import child
+from ..compat import translate
+from .base import Command, active_job, transaction
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+
+class Measured(Command):
+    """Base: there must be a result."""
+
+    def IsActive(self):
+        return super().IsActive() and child(active_job(), simulation.Simulation) is not None
+
+
+class GroundMesh(Measured):
+    NAME = "BeltGrinding_GroundMesh"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_GroundMesh", "Ground part as mesh")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_GroundMesh",
+        "Makes the whole part as ground, one closed mesh, to measure or export; once more after a "
+        "new simulation",
+    )
+
+    def run(self):
+        job = active_job()
+        with transaction(job.Document, translate("BeltGrinding", "Ground part as mesh")):
+            api.make_ground_mesh(job)
+            shown = child(job, deviation.Deviation)
+            if shown is not None:  # its surface is the same; both would shimmer through each other
+                shown.ViewObject.Visibility = False
+
+
+class Scan(Measured):
+    NAME = "BeltGrinding_Scan"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Scan", "Compare a scan...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Scan",
+        "Lays a scan of the ground part on the design and compares it with the prediction",
+    )
+
+    def run(self):
+        from ..scan_panel import ScanPanel
+
+        job = active_job()
+        job.Document.openTransaction(translate("BeltGrinding", "Compare a scan"))
+        Gui.Control.showDialog(ScanPanel(job))

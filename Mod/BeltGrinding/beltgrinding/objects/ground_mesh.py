@@ -1,0 +1,90 @@
+"""The ground part as one closed mesh in the document."""
+
+import io
+import json
+
+import Mesh
+
+from .. import InputError, closed_mesh, core, job as jobs
+from ..result import colour_scale
+from .properties import Output, add_outputs
+from .proxy import Proxy
+
+OUTPUTS = (
+    Output("VertexColors", "ColorList", "Mesh", "one colour per vertex", True),
+    Output("OutOfDate", "Bool", "Mesh", "made from another result; make it again"),
+    Output("Closed", "Bool", "Mesh", "without gaps, as the design is"),
+    Output("Volume", "Volume", "Mesh", "of the ground part; 0: the mesh is open"),
+    Output("DesignVolume", "Volume", "Mesh", "of the same triangles on the design"),
+    Output("TurnedTriangles", "Integer", "Mesh", "that the displacement turned over"),
+    Output("MissedVertices", "Integer", "Mesh", "left on the design: no stock was found there"),
+    Output("Notes", "StringList", "Mesh", "what the user should know of the mesh"),
+    Output("Shown", "String", "Mesh", "which result it was made from", True),
+)
+
+
+class GroundMesh(Proxy):
+    """Proxy of the Mesh::FeaturePython. It is made on demand (``make``): that takes seconds."""
+
+    TYPE = "BeltGrinding::GroundMesh"
+    VIEW = "GroundMeshView"
+
+    def add_properties(self, obj):
+        if "Simulation" not in obj.PropertiesList:
+            text = "the result that is meshed"
+            obj.addProperty("App::PropertyLink", "Simulation", "Mesh", text)
+            obj.setEditorMode("Simulation", 1)
+        if "Deflection" not in obj.PropertiesList:
+            text = "chord error on faces that are not ground"
+            obj.addProperty("App::PropertyLength", "Deflection", "Mesh", text)
+            obj.Deflection = closed_mesh.DEFLECTION
+        add_outputs(obj, OUTPUTS)
+
+    def execute(self, obj):
+        self.update(obj)
+
+    def update(self, obj):
+        """Says whether the mesh is of the result that is there."""
+        simulation = obj.Simulation
+        if simulation is not None and obj.Shown:
+            stale = simulation.OutOfDate or obj.Shown != _shown(obj)
+            if obj.OutOfDate != stale:
+                obj.OutOfDate = stale
+
+
+def _shown(obj):
+    simulation = obj.Simulation
+    return json.dumps([simulation.Fingerprint, simulation.WallTime, obj.Deflection.Value])
+
+
+def make(obj):
+    """Makes the mesh from the object's simulation. Raises InputError where that is out of date."""
+    from . import job_object
+
+    simulation, job = obj.Simulation, obj.getParentGroup()
+    if simulation is None or job is None:
+        raise InputError(f"{obj.Label}: belongs to no simulation; make a new one")
+    if simulation.OutOfDate or job_object.fingerprint(job) != simulation.Fingerprint:
+        raise InputError(f"{simulation.Label} is out of date; simulate again")
+    field = simulation.Proxy.field(simulation)
+    if field is None:
+        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+    with job_object.scratch_folder() as folder:
+        data = job_object.to_data(job, folder)
+        shape, flip = jobs.read_design(data["design"]), data["design"]["flip_normals"]
+    mesh = core.ground_mesh(shape, field, True, obj.Deflection.Value, flip_normals=flip)
+    scale = colour_scale({"inspection": job_object.inspection(job)})
+    figures = closed_mesh.summary(mesh)
+    made = Mesh.Mesh()
+    made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")
+    obj.Mesh = made  # drops the colours: it comes first
+    obj.VertexColors = mesh.colours(*scale).tolist()
+    obj.Closed = figures["closed"]
+    obj.Volume, obj.DesignVolume = figures["volume_mm3"] or 0.0, figures["design_volume_mm3"] or 0.0
+    obj.TurnedTriangles, obj.MissedVertices = (
+        figures["turned_triangles"],
+        figures["missed_vertices"],
+    )
+    obj.Notes = figures["warnings"]
+    obj.Shown = _shown(obj)
+    obj.OutOfDate = False

@@ -22,7 +22,14 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
 from beltgrinding import InputError, core, inputs, picture, result as results  # noqa: E402
-from beltgrinding.reporting import charts, converged, facts, language, markup  # noqa: E402
+from beltgrinding.reporting import (
+    charts,
+    converged,
+    facts,
+    findings,
+    language,
+    markup,
+)  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 NASTY = 'Blade <img src=x onerror="alert(1)"> & "co" \u0007'
@@ -101,7 +108,7 @@ def test_verdict_figures_and_doubts_stand_in_it(ground):
     summary = json.loads((ground / "out" / "summary.json").read_text())
     assert "Not in tolerance" in page.text and ("div", {"class": "verdict fail"}) in page.elements
     share = f"{100 * summary['in_tolerance_area_share']:.1f} %"
-    assert f"{share} of the ground area lies within −0.050 … +0.050 mm" in page.text
+    assert f"{share} of the ground area keeps within −0.050 … +0.050 mm" in page.text
     assert f"{summary['deviation_mm']['max']:+.3f} mm" in page.text
     assert "Burn risk" in page.text and "pressure times belt speed" in page.text
     for what, _, _ in facts.doubts(
@@ -186,6 +193,30 @@ def test_where_nothing_is_known_nothing_is_claimed(tmp_path):
     assert "Cannot be told" in page.text and "verdict open" in str(page.elements)
 
 
+def test_the_verdict_tells_the_line_that_gouged_and_the_zones(tmp_path):
+    job = plate_job()
+    for k, pose in enumerate(job["programs"][0]["poses"]):
+        pose["line"] = 70 + k
+    job["belt_machine"]["force_N"] = 120
+    job["inspection"] = {
+        "zones": [{"name": 'rim <i>"', "faces": [1], "tolerance_mm": [-0.02, 0.3]}],
+    }
+    result = beltgrinding.run(job)
+    beltgrinding.report(result, tmp_path / "r.html")
+    page = Page((tmp_path / "r.html").read_text())
+    assert 'rim <i>"' in page.text and "−0.020 … +0.300 mm" in page.text
+    cluster = result.verdict["clusters"][0]
+    assert cluster["side"] == "below" and "line 71 (" in page.text
+    assert f"{cluster['area_mm2']:.1f}" in page.text and "Spot 1" in page.text
+    assert "keeps within the limits of its zone" in page.text
+    assert f"{result.verdict['gouge_volume_mm3']:.1f} mm³" in page.text
+    assert page.text.count("Never touched by the wheel") == 1
+
+    result.verdict = None  # that of an older result is found when the report is made
+    beltgrinding.report(result, tmp_path / "again.html")
+    assert (tmp_path / "again.html").read_text() == (tmp_path / "r.html").read_text()
+
+
 def test_pictures_show_every_sample_where_it_is(ground):
     result = results.Result.read(ground / "out")
     shape = core.Shape.read(str(ground / "plate & co.brep"))
@@ -265,6 +296,9 @@ def spoken():
 
 def test_every_text_is_there_in_german():
     german = language._texts("de")
+    kinds = getattr(core, "event_kinds", list)()
+    for kind in kinds:
+        assert findings.kind_text(kind["code"]) in german and kind["advice"] in german, kind
     missing = sorted(spoken() - german.keys())
     assert not missing, missing
     fields = re.compile(r"\{\w+\}")
@@ -279,6 +313,7 @@ def test_the_german_report_writes_numbers_as_germans_do(ground):
     words = language.Language("de")
     assert words.figures(1.25e-7) == "1,25 · 10⁻⁷" and words.whole(1234567) == "1\u202f234\u202f567"
     assert words.percent(0.9999999) == "> 99,9 %" and words.percent(1.0) == "100,0 %"
+    assert words.short("a" * 36) == "a" * 36 and len(words.short("a" * 20 + "b" * 30)) == 36
     assert words.number(-0.00001) == "0,000" and words.number(float("nan")) == "–"
     with pytest.raises(InputError, match="no language 'fr'"):
         language.Language("fr")

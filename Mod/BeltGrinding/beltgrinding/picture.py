@@ -22,7 +22,8 @@ CHORD = 1e-3  # chord error of the rest of the part, of its diagonal
 TURN, TILT = 25.0, 20.0  # degrees by which a view leaves the surface's normal, to look like a body
 STEEP = 30.0  # degrees from an axis within which it cannot be up
 CLOSED = 0.3  # of the area: a mean normal shorter than that says nothing
-CLOSE_UP = 40  # samples across a close-up, at least
+CLOSE_UP = 40  # samples from the lower to the upper border of a close-up, at least
+CLOSEST_SHARE = 0.3  # of the field's diagonal, at most
 HIDDEN = 2.0  # samples that a point may lie behind what the picture shows there
 
 
@@ -143,7 +144,8 @@ class Studio:
         normal = np.asarray(normal, dtype=float)
         low, high = self.renderer.extents
         most = MARGIN * float(np.linalg.norm(np.subtract(high, low)))
-        height = min(max(2.0 * extent, CLOSE_UP * self.field.spacing), most)
+        largest = CLOSEST_SHARE * float(np.linalg.norm(np.ptp(self.field.points, axis=0)))
+        height = min(max(min(2.0 * extent, largest), CLOSE_UP * self.field.spacing), most)
         up, near = _up_for(normal, self.field), 2.0 * most
         while True:
             size = CLOSE_WIDTH, CLOSE_HEIGHT

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import InputError, core, job as jobs
+from .. import InputError, core, job as jobs, verdict as verdicts
 from ..result import Result, colour_scale, write_whole
 from . import charts, page, pictures, spots
 from .language import Language
@@ -70,10 +70,21 @@ def load(result, title=None, notes=()):
         source,
         shape,
         bins,
-        getattr(result, "verdict", None),
+        _verdict(result, shape, notes),
         result.convergence,
         notes,
     )
+
+
+def _verdict(result, shape, notes):
+    """The result's verdict; of an older one, it is found now. None where it cannot be."""
+    if result.verdict is not None:
+        return result.verdict
+    try:
+        return verdicts.of_result(result, shape)
+    except InputError as error:
+        notes.append(str(error))
+        return None
 
 
 def render(content, words, context=None):

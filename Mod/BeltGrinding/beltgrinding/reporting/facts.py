@@ -27,8 +27,9 @@ def part_name(job):
     return Path(job["design"].get("file", "")).stem or "design"
 
 
-def part(job, summary, shape, words):
+def part(content, words):
     """Rows of the part and its stock."""
+    job, summary, shape = content.result.job, content.result.summary, content.shape
     design, stock = job["design"], job["stock"]
     held = words("held by the job itself")
     count = shape.face_count if shape is not None else None
@@ -53,6 +54,7 @@ def part(job, summary, shape, words):
             words("Removed"),
             words("{mm3} mm³", mm3=words.number(summary["removed_volume_mm3"], 1)),
         ),
+        *_left(content.verdict, words),
         (
             words("Samples"),
             words(
@@ -63,6 +65,18 @@ def part(job, summary, shape, words):
         ),
     ]
     return rows
+
+
+def _left(verdict, words):
+    """Rows of what is left and missing, by a verdict."""
+    if verdict is None:
+        return []
+    untouched = verdict["untouched_area_mm2"]
+    return [
+        (words("Left above the design"), f"{words.number(verdict['excess_volume_mm3'], 1)} mm³"),
+        (words("Missing below the design"), f"{words.number(verdict['gouge_volume_mm3'], 1)} mm³"),
+        (words("Never touched by the wheel"), f"{words.number(untouched, 1)} mm²"),
+    ]
 
 
 def faces(numbers, count, words):

@@ -7,12 +7,12 @@ import numpy as np
 
 from .. import core
 from ..poses import program_name
-from . import charts, facts
+from . import charts, facts, judged
 from .converged import convergence_part
 from .layout import section, table
 from .markup import e
 
-MOST_EVENTS = 2000  # rows of the full table
+MOST_EVENTS = 500  # rows of the full table
 MOST_CLUSTERS = 20
 SEVERITIES = ("error", "warning", "info")
 
@@ -20,8 +20,13 @@ SEVERITIES = ("error", "warning", "info")
 def passed(content):
     """True, False, or None where it cannot be told."""
     verdict, summary = content.verdict, content.result.summary
-    if verdict and verdict.get("overall") in ("pass", "fail"):
-        return verdict["overall"] == "pass"
+    if verdict is not None:
+        known = [one["verdict"] for one in [*verdict["faces"], *verdict["zones"]]]
+        thick = [(zone["thickness"] or {}).get("verdict") for zone in verdict["zones"]]
+        if "fail" in known or "fail" in thick:
+            return False
+        unsure = "unknown" in known or verdict["missed_rays"]
+        return None if unsure else verdict["overall"] == "pass"
     out = summary["above_tolerance_area_share"] + summary["below_tolerance_area_share"]
     if out > 0.0:
         return False
@@ -38,12 +43,13 @@ def head(content, words, scale):
         False: ("fail", words("Not in tolerance")),
         None: ("open", words("Cannot be told")),
     }[good]
-    above, below = (summary[f"{side}_tolerance_area_share"] for side in ("above", "below"))
+    share, above, below = _shares(content)
+    zones = bool(content.result.job["inspection"].get("zones"))
     said = [
         words(
-            "After this grind {share} of the ground area lies within {band} of the design.",
-            share=words.percent(summary["in_tolerance_area_share"]),
-            band=words.band(lower, upper),
+            "After this grind {share} of the ground area keeps within {band}.",
+            share=words.percent(share),
+            band=words("the limits of its zone") if zones else words.band(lower, upper),
         )
     ]
     if above > 0.0:
@@ -65,7 +71,7 @@ def head(content, words, scale):
     if good is None:
         said.append(words("Over some of the area no stock was found, so nothing is known there."))
     tiles = [
-        (words.percent(summary["in_tolerance_area_share"]), words("of the area in tolerance")),
+        (words.percent(share), words("of the area in tolerance")),
         (f"{words.number(deviation['max'], 3, True)} mm", words("highest deviation")),
         (f"{words.number(deviation['min'], 3, True)} mm", words("lowest deviation")),
         (f"{words.number(summary['removed_volume_mm3'], 0)} mm³", words("removed")),
@@ -86,15 +92,29 @@ def head(content, words, scale):
     )
 
 
-def spot(found, words):
-    """One sentence for a worst spot."""
-    beyond = f"{words.number(abs(found['beyond']))} mm"
+def _shares(content):
+    """Shares of the inspected area: good, above and below, by the zones' limits where there are any."""
+    verdict, summary = content.verdict, content.result.summary
+    if verdict is not None:
+        return verdict["in_share"], verdict["above_share"], verdict["below_share"]
+    return tuple(summary[f"{side}_tolerance_area_share"] for side in ("in", "above", "below"))
+
+
+def spot(found, verdict, words):
+    """A few words on a worst spot."""
+    beyond = f"{words.number(max(found['beyond'], 0.0))} mm"
+    value = words.number(found["deviation"], 3, True)
     if found["deviation"] > 0:
-        text = words("{mm} mm, {beyond} too high", mm=words.number(found["deviation"], 3, True), beyond=beyond)  # fmt: skip
+        text = words("{mm} mm, {beyond} too high", mm=value, beyond=beyond)
     else:
-        text = words("{mm} mm, {beyond} too deep", mm=words.number(found["deviation"], 3, True), beyond=beyond)  # fmt: skip
-    place = ", ".join(words.number(value, 1) for value in found["point"])
-    return f"{text}; Face{found['face']}, ({place}) mm"
+        text = words("{mm} mm, {beyond} too deep", mm=value, beyond=beyond)
+    text += f"; Face{found['face']}, ({judged.place(found['point'], words)}) mm"
+    if "cluster" in found:
+        text += f"; {words.number(found['cluster']['area_mm2'], 1)} mm²"
+        motions = found["cluster"]["motions"][:1]
+        if motions and motions[0]["line"]:
+            text += ", " + words("line {line}", line=motions[0]["line"])
+    return text
 
 
 def tolerance(content, words, scale):
@@ -104,10 +124,16 @@ def tolerance(content, words, scale):
         "How much of the ground area lies how far from the design. Green bars are in tolerance. The "
         "scale upwards is that of the square root, so that small shares are seen."
     )
+    verdict = content.verdict
+    tables = _by_face(content, words, scale)
+    if verdict is not None:
+        zones, faces = judged.zones(verdict, words), judged.faces(verdict, words)
+        tables = [zones, e("h3", words("By face")) if zones else None, faces]
     return section(
         words("Tolerance"),
-        *_by_face(content, words, scale),
+        *tables,
         e("figure", chart, e("figcaption", caption), class_="wide") if chart else None,
+        judged.clusters(verdict, words) if verdict is not None else None,
     )
 
 
@@ -125,7 +151,7 @@ def _by_face(content, words, scale):
             words.percent(one["below"]),
             words.number(one["max"], 3, True),
             words.number(one["min"], 3, True),
-            _mark(one["in"] == 1.0 and not one["missed"], words),
+            judged.mark("pass" if one["in"] == 1.0 and not one["missed"] else "fail", words),
         )
         for one in found
     ]
@@ -141,11 +167,6 @@ def _by_face(content, words, scale):
         (words("Verdict"), ""),
     ]
     return [table(heads, rows, "list faces")]
-
-
-def _mark(good, words):
-    text = words("pass") if good else words("fail")
-    return e("span", text, class_=f"mark {'pass' if good else 'fail'}")
 
 
 def faces_of(field, lower, upper):
@@ -234,7 +255,7 @@ def where(event, job, words):
     """Program, pose, line and time of an event."""
     parts = []
     if len(job["programs"]) > 1:
-        parts.append(Path(program_name(job, event["program"])).name)
+        parts.append(words.short(Path(program_name(job, event["program"])).name))
     if event.get("line"):
         parts.append(words("line {line}", line=event["line"]))
     parts.append(words("pose {pose}", pose=event["pose"] + 1))
@@ -253,6 +274,7 @@ def all_events(content, words):
             words.number(event.get("duration"), 2),
             words(kind_text(event["kind"])),
             where_short(event, content.result.job, words),
+            "" if event.get("face") is None else f"Face{event['face']}",
             event["message"],
         )
         for event in found[:MOST_EVENTS]
@@ -262,6 +284,7 @@ def all_events(content, words):
         (words("Lasts, s"), "number"),
         (words("What"), ""),
         (words("Where in the program"), ""),
+        (words("Face"), ""),
         (words("Message"), ""),
     ]
     left = len(found) - len(rows)
@@ -293,7 +316,8 @@ def trust(content, words):
         )
     ]
     heads = [(words("Count"), "number"), (words("Doubtful"), ""), (words("What it means"), "")]
-    warnings = result.summary.get("warnings", [])
+    warnings = list(result.summary.get("warnings", []))
+    warnings += content.verdict["notes"] if content.verdict is not None else []
     return section(
         words("How sure is that?"),
         e("p", words("Everything that weakens the result is counted here, also where it is zero.")),

@@ -65,6 +65,12 @@ class Language:
             return f"> {self.number(100.0 - step, decimals)} %"
         return f"{self.number(value, decimals)} %"
 
+    def short(self, name, most=36):
+        """A name that leaves room for others beside it: its middle gives way."""
+        if len(name) <= most:
+            return name
+        return f"{name[: most // 2]}…{name[1 - (most - most // 2) :]}"
+
     def band(self, lower, upper):
         """A tolerance band, mm."""
         return f"{self.number(lower, 3, True)} … {self.number(upper, 3, True)} mm"

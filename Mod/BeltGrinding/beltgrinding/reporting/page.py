@@ -12,7 +12,7 @@ def document(content, words, scale, spots, drawn):
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
     body = [
         findings.head(content, words, scale),
-        _pictures(words, scale, spots, drawn),
+        _pictures(content, words, scale, spots, drawn),
         findings.tolerance(content, words, scale),
         findings.events(content, words),
         _process(content, words),
@@ -36,7 +36,7 @@ def document(content, words, scale, spots, drawn):
     return "<!DOCTYPE html>\n" + html + "\n"
 
 
-def _pictures(words, scale, spots, drawn):
+def _pictures(content, words, scale, spots, drawn):
     shots = []
     names = {"front": words("Front"), "back": words("Back")}
     for key, name in names.items():
@@ -50,18 +50,22 @@ def _pictures(words, scale, spots, drawn):
             )
         )
     close = []
-    for number, (spot, shot) in enumerate(zip(spots, drawn["close"]), 1):
-        name = words("Spot {number}", number=number)
+    for spot, shot in zip(spots, drawn["close"]):
+        name = words("Spot {number}", number=spot["number"])
         picture = charts.ringed(shot.view, shot.uri, *shot.marks[0][1:], name)
-        text = e("figcaption", e("b", name), ": ", findings.spot(spot, words))
+        text = e("figcaption", e("b", name), ": ", findings.spot(spot, content.verdict, words))
         close.append(e("figure", picture, text))
     intro = words(
         "Grey is the part as it is. On the ground faces the colour says how far the surface will lie "
         "from the design after grinding."
     )
+    own = words(
+        "The colours' limits are {band}; zones have limits of their own.",
+        band=words.band(*scale[:2]),
+    )
     return section(
         words("Pictures"),
-        e("p", intro),
+        e("p", intro, " " + own if content.result.job["inspection"].get("zones") else None),
         charts.legend(scale, words),
         e("div", shots, class_="views"),
         e("h3", words("The worst spots, from near")) if close else None,
@@ -86,7 +90,7 @@ def _what(content, words):
             e(
                 "div",
                 e("h3", words("Part and stock")),
-                rows(facts.part(job, summary, content.shape, words)),
+                rows(facts.part(content, words)),
             ),
             e("div", e("h3", words("Process")), rows(facts.process(job, summary, words))),
             e(

@@ -27,12 +27,12 @@ def draw(field, scale, shape, spots, context=None):
     for name, view in zip(("front", "back"), studio.both(context)):
         whole[name] = _shot(view, spots, slack)
     close = []
-    for number, spot in enumerate(spots, 1):
+    for spot in spots:
         view = studio.close_up(
             np.array(spot["point"]), np.array(spot["normal"]), spot["extent"], context
         )
         x, y, _ = view.project([spot["point"]])[0]
-        close.append(Shot(view, _uri(view), [(number, x, y)]))
+        close.append(Shot(view, _uri(view), [(spot["number"], x, y)]))
     return {**whole, "close": close}
 
 
@@ -44,7 +44,9 @@ def _shot(view, spots, slack):
         facing = np.array([spot["normal"] for spot in spots]) @ view.direction < 0.05
         seen = view.shows(points, slack) & facing
         places = view.project(points)
-        marks = [(k + 1, *places[k, :2]) for k in range(len(spots)) if seen[k]]
+        marks = [
+            (spot["number"], *place[:2]) for spot, place, there in zip(spots, places, seen) if there
+        ]
     return Shot(view, _uri(view), marks)
 
 

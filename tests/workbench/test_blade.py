@@ -1,17 +1,22 @@
 """The example blade, made by FreeCAD and ground from the command line's functions."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
+from beltgrinding import picture  # noqa: E402
 from beltgrinding.programs import read_program  # noqa: E402
+from support import pictures  # noqa: E402
 
 SCRIPT = """
 import os, sys
@@ -62,3 +67,20 @@ def test_the_job_grinds_the_pressure_side(example):
     assert 0.3 < summary["removed_volume_mm3"] / summary["stock_volume_mm3"] < 1.5
     assert abs(summary["deviation_mm"]["p50"]) < 0.15
     assert summary["in_tolerance_area_share"] > 0.2
+
+
+def test_the_manuals_report_is_that_of_the_example(example):
+    weasyprint = pytest.importorskip("weasyprint")
+    if not shutil.which("pdftoppm"):
+        pytest.skip("pdftoppm is not installed")
+    beltgrinding.run(example / "job.json").write(example / "out")
+    beltgrinding.report(example / "out", pdf=example / "report.pdf", title="Compressor blade")
+    assert weasyprint.__version__
+    pages = []
+    for page in ("1", "2"):
+        command = ["pdftoppm", "-png", "-r", "60", "-f", page, "-l", page, "-singlefile"]
+        subprocess.run([*command, "report.pdf", f"page{page}"], cwd=example, check=True)
+        pages.append(np.asarray(Image.open(example / f"page{page}.png").convert("RGB")))
+    frame = [np.pad(page, ((4, 4), (4, 4), (0, 0)), constant_values=200) for page in pages]
+    pictures.keep("report", picture.png(np.hstack(frame)))
+    pictures.check(pictures.RELEASE, ["report"])

@@ -2744,6 +2744,62 @@ im Mittel {} abgetragen</translation>
         <source>{}: {}, off by up to {}, allowed {}</source>
         <translation>{}: {}, falsch um bis zu {}, erlaubt {}</translation>
     </message>
+    <message>
+        <source>Area within the zones&apos; limits</source>
+        <translation>Fläche in den Grenzen der Zonen</translation>
+    </message>
+    <message>
+        <source>Beyond its limit</source>
+        <translation>Über der Grenze um</translation>
+    </message>
+    <message>
+        <source>Faces out of tolerance</source>
+        <translation>Flächen außer Toleranz</translation>
+    </message>
+    <message>
+        <source>Largest place out</source>
+        <translation>Größte Stelle außerhalb</translation>
+    </message>
+    <message>
+        <source>Left above the design</source>
+        <translation>Über dem Entwurf geblieben</translation>
+    </message>
+    <message>
+        <source>Missing below the design</source>
+        <translation>Fehlt unter dem Entwurf</translation>
+    </message>
+    <message>
+        <source>Motions not resolved; -1: not known</source>
+        <translation>Nicht aufgelöste Bewegungen; -1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>Never touched</source>
+        <translation>Nie berührt</translation>
+    </message>
+    <message>
+        <source>Verdict</source>
+        <translation>Urteil</translation>
+    </message>
+    <message>
+        <source>Verdict by zones</source>
+        <translation>Urteil nach Zonen</translation>
+    </message>
+    <message>
+        <source>Waves across the feed</source>
+        <translation>Wellen quer zum Vorschub</translation>
+    </message>
+    <message>
+        <source>Waves along the feed</source>
+        <translation>Wellen längs zum Vorschub</translation>
+    </message>
+    <message>
+        <source>Worst deviation</source>
+        <translation>Schlimmste Abweichung</translation>
+    </message>
+    <message>
+        <source>Zones out of tolerance</source>
+        <translation>Zonen außer Toleranz</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

@@ -17,6 +17,13 @@ MARK = "Job"  # the sheet's property that links its job
 WIDTHS = {"A": 300, "B": 130, "C": 130}  # pixels
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
+
+class _Verdict:
+    """What ``child`` needs to know of a Verdict, which not every document has."""
+
+    TYPE = "BeltGrinding::Verdict"
+
+
 # Heading: proxy of the object, and of every row the property, its label, and the unit that it is shown
 # in; a unit in brackets stands behind a number that has none.
 SECTIONS = (
@@ -44,6 +51,33 @@ SECTIONS = (
                 "UncertaintyMean",
                 QT_TRANSLATE_NOOP("BeltGrinding", "Standard deviation, mean; 0: not known"),
                 "µm",
+            ),
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("BeltGrinding", "Verdict by zones"),
+        _Verdict,
+        (
+            ("Overall", QT_TRANSLATE_NOOP("BeltGrinding", "Verdict"), ""),
+            ("FacesFailed", QT_TRANSLATE_NOOP("BeltGrinding", "Faces out of tolerance"), ""),
+            ("ZonesFailed", QT_TRANSLATE_NOOP("BeltGrinding", "Zones out of tolerance"), ""),
+            (
+                "InTolerance",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Area within the zones' limits"),
+                "[%]",
+            ),
+            ("Worst", QT_TRANSLATE_NOOP("BeltGrinding", "Worst deviation"), "µm"),
+            ("WorstBeyond", QT_TRANSLATE_NOOP("BeltGrinding", "Beyond its limit"), "µm"),
+            ("LargestCluster", QT_TRANSLATE_NOOP("BeltGrinding", "Largest place out"), "mm^2"),
+            ("UntouchedArea", QT_TRANSLATE_NOOP("BeltGrinding", "Never touched"), "mm^2"),
+            ("ExcessVolume", QT_TRANSLATE_NOOP("BeltGrinding", "Left above the design"), "mm^3"),
+            ("GougeVolume", QT_TRANSLATE_NOOP("BeltGrinding", "Missing below the design"), "mm^3"),
+            ("WavinessAcross", QT_TRANSLATE_NOOP("BeltGrinding", "Waves across the feed"), "µm"),
+            ("WavinessAlong", QT_TRANSLATE_NOOP("BeltGrinding", "Waves along the feed"), "µm"),
+            (
+                "UnresolvedMotions",
+                QT_TRANSLATE_NOOP("BeltGrinding", "Motions not resolved; -1: not known"),
+                "",
             ),
         ),
     ),

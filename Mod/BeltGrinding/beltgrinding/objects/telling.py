@@ -56,9 +56,17 @@ def report_data(job, folder):
         data, field, json.loads(simulation.SummaryData), simulation.Proxy.events(simulation), None
     )
     result.bins = json.loads(simulation.SeriesData) if simulation.SeriesData else None
+    result.verdict = _verdict(simulation, data["inspection"])
     result.convergence = told.convergence(simulation, data["inspection"])
     names = dict.fromkeys(obj.Label for obj, _ in job.DesignFaces)
     return result, ", ".join(names), notes
+
+
+def _verdict(simulation, inspection):
+    """The verdict that the simulation was stored with, if it is by the same tolerances."""
+    stored = json.loads(getattr(simulation, "VerdictData", "") or "{}")
+    judged_by = {key: inspection.get(key) for key in ("tolerance_mm", "zones")}
+    return stored["verdict"] if stored.get("inspection") == judged_by else None
 
 
 def check_settings(job, context=None):

@@ -147,6 +147,15 @@ def test_inputs_that_changed_since_the_run_are_told(ground, tmp_path):
     assert "no longer there" in made(tmp_path / "out").text
 
 
+def test_the_nearest_bodies_of_the_cell_are_told(tmp_path):
+    result = beltgrinding.run(plate_job())
+    pair = {"bodies": ["wheel", "clamp & co"], "distance_mm": 3.25, "program": 0, "pose": 1}
+    result.summary["clearances"] = [{**pair, "line": 7, "time_s": 1.5, "points": None}]
+    page = Page(beltgrinding.report(result, tmp_path / "r.html").read_text())
+    assert "Clearances" in page.text and "wheel – clamp & co" in page.text
+    assert "3.2 line 7, pose 2, 1.50 s" in page.text or "3.3 line 7" in page.text
+
+
 def test_a_result_of_an_older_version_has_its_report(ground, tmp_path):
     shutil.copytree(ground / "out", tmp_path / "out")
     (tmp_path / "out" / "steps.csv").unlink()

@@ -13,7 +13,7 @@ from .layout import section, table
 from .markup import e
 
 MOST_EVENTS = 500  # rows of the full table
-MOST_CLUSTERS = 20
+MOST_PAIRS = 20  # of bodies, the nearest ones
 SEVERITIES = ("error", "warning", "info")
 
 
@@ -204,7 +204,7 @@ def events(content, words):
     found = content.result.events
     if not found:
         text = words("Nothing out of the ordinary happens on the way.")
-        return section(words("Events"), e("p", text))
+        return section(words("Events"), e("p", text), _clearances(content, words))
     counts = Counter(event["kind"] for event in found)
     first = {}
     for event in found:
@@ -225,7 +225,28 @@ def events(content, words):
         (words("First at"), ""),
         (words("The first of them"), ""),
     ]
-    return section(words("Events"), table(heads, rows, "list events"))
+    return section(words("Events"), table(heads, rows, "list events"), _clearances(content, words))
+
+
+def _clearances(content, words):
+    """How near the cell's bodies come to each other; None where none were given."""
+    found = content.result.summary.get("clearances")
+    if not found:
+        return None
+    rows = [
+        (
+            " – ".join(words.short(name) for name in pair["bodies"]),
+            words.number(pair["distance_mm"], 1),
+            where({**pair, "time": pair["time_s"]}, content.result.job, words),
+        )
+        for pair in found[:MOST_PAIRS]
+    ]
+    heads = [
+        (words("Bodies"), ""),
+        (words("Least distance, mm"), "number"),
+        (words("Where"), ""),
+    ]
+    return [e("h3", words("Clearances")), table(heads, rows)]
 
 
 def kind_text(kind):

@@ -911,6 +911,150 @@
         <source>whether the law of removal was calibrated</source>
         <translation>ob das Abtragsgesetz kalibriert wurde</translation>
     </message>
+    <message>
+        <source>a line for every face</source>
+        <translation>eine Zeile für jede Fläche</translation>
+    </message>
+    <message>
+        <source>a line for every zone</source>
+        <translation>eine Zeile für jede Zone</translation>
+    </message>
+    <message>
+        <source>all of it as JSON</source>
+        <translation>alles als JSON</translation>
+    </message>
+    <message>
+        <source>area of the largest connected place out of tolerance</source>
+        <translation>Fläche der größten zusammenhängenden Stelle außer Toleranz</translation>
+    </message>
+    <message>
+        <source>connected areas cut too deep</source>
+        <translation>zusammenhängende Stellen, die zu tief geschliffen sind</translation>
+    </message>
+    <message>
+        <source>connected areas with too much left</source>
+        <translation>zusammenhängende Stellen, an denen zu viel steht</translation>
+    </message>
+    <message>
+        <source>contact point at the end of every motion</source>
+        <translation>Kontaktpunkt am Ende jeder Bewegung</translation>
+    </message>
+    <message>
+        <source>contacts that did not converge</source>
+        <translation>Kontakte, die nicht konvergierten</translation>
+    </message>
+    <message>
+        <source>deviation farthest beyond its limit, or next to it</source>
+        <translation>Abweichung am weitesten jenseits ihrer Grenze oder am nächsten daran</translation>
+    </message>
+    <message>
+        <source>events outside of what was measured</source>
+        <translation>Ereignisse außerhalb des Gemessenen</translation>
+    </message>
+    <message>
+        <source>faces that fail</source>
+        <translation>Flächen, die nicht bestehen</translation>
+    </message>
+    <message>
+        <source>how far; negative: what is left to the limit</source>
+        <translation>wie weit; negativ: was bis zur Grenze bleibt</translation>
+    </message>
+    <message>
+        <source>largest Wt of a face across the feed; 0: none</source>
+        <translation>größtes Wt einer Fläche quer zum Vorschub; 0: keines</translation>
+    </message>
+    <message>
+        <source>largest Wt of a face along the feed; 0: none</source>
+        <translation>größtes Wt einer Fläche längs des Vorschubs; 0: keines</translation>
+    </message>
+    <message>
+        <source>left above the design</source>
+        <translation>übrig über dem Entwurf</translation>
+    </message>
+    <message>
+        <source>missing below the design</source>
+        <translation>fehlt unter dem Entwurf</translation>
+    </message>
+    <message>
+        <source>names of the programs</source>
+        <translation>Namen der Programme</translation>
+    </message>
+    <message>
+        <source>parts of the surface with tolerances of their own; later ones override earlier ones</source>
+        <translation>Teile der Oberfläche mit eigenen Toleranzen; spätere gelten vor früheren</translation>
+    </message>
+    <message>
+        <source>pass, fail or unknown</source>
+        <translation>pass (bestanden), fail (nicht bestanden) oder unknown (unbekannt)</translation>
+    </message>
+    <message>
+        <source>places of the programs not resolved</source>
+        <translation>Stellen der Programme nicht aufgelöst</translation>
+    </message>
+    <message>
+        <source>places of the programs that were not resolved; -1: not known</source>
+        <translation>Stellen der Programme, die nicht aufgelöst wurden; -1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>pose that every motion leads to, from 0</source>
+        <translation>Pose, zu der jede Bewegung führt, ab 0</translation>
+    </message>
+    <message>
+        <source>program of every motion, from 0</source>
+        <translation>Programm jeder Bewegung, ab 0</translation>
+    </message>
+    <message>
+        <source>samples where no stock was found</source>
+        <translation>Punkte, an denen kein Rohteil gefunden wurde</translation>
+    </message>
+    <message>
+        <source>share cut too deep, percent</source>
+        <translation>Anteil, der zu tief geschliffen ist, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the inspected area, percent</source>
+        <translation>Anteil der geprüften Fläche, Prozent</translation>
+    </message>
+    <message>
+        <source>share with too much left, percent</source>
+        <translation>Anteil, an dem zu viel steht, Prozent</translation>
+    </message>
+    <message>
+        <source>source line of every motion; 0: not known</source>
+        <translation>Quellzeile jeder Bewegung; 0: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>stock below the design from the start</source>
+        <translation>Rohteil von Anfang an unter dem Entwurf</translation>
+    </message>
+    <message>
+        <source>the result judged</source>
+        <translation>das beurteilte Ergebnis</translation>
+    </message>
+    <message>
+        <source>the verdict of the run and its limits, JSON</source>
+        <translation>das Urteil des Laufs und seine Grenzen, JSON</translation>
+    </message>
+    <message>
+        <source>what could not be judged, and why</source>
+        <translation>was nicht beurteilt werden konnte, und warum</translation>
+    </message>
+    <message>
+        <source>what was judged, and how</source>
+        <translation>was beurteilt wurde, und wie</translation>
+    </message>
+    <message>
+        <source>where that is</source>
+        <translation>wo das ist</translation>
+    </message>
+    <message>
+        <source>where the wheel never was</source>
+        <translation>wo die Scheibe nie war</translation>
+    </message>
+    <message>
+        <source>zones that fail</source>
+        <translation>Zonen, die nicht bestehen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -2800,6 +2944,246 @@ im Mittel {} abgetragen</translation>
         <source>Zones out of tolerance</source>
         <translation>Zonen außer Toleranz</translation>
     </message>
+    <message>
+        <source>Add</source>
+        <translation>Hinzufügen</translation>
+    </message>
+    <message>
+        <source>Area, mm²</source>
+        <translation>Fläche, mm²</translation>
+    </message>
+    <message>
+        <source>Beyond, mm</source>
+        <translation>Darüber hinaus, mm</translation>
+    </message>
+    <message>
+        <source>Cannot be told: not everything was inspected</source>
+        <translation>Nicht zu sagen: nicht alles wurde geprüft</translation>
+    </message>
+    <message>
+        <source>Choose a zone in the table first.</source>
+        <translation>Wählen Sie zuerst eine Zone in der Tabelle.</translation>
+    </message>
+    <message>
+        <source>Click: show the wheel and the line. Double click: open the program</source>
+        <translation>Klick: Scheibe und Zeile zeigen. Doppelklick: Programm öffnen</translation>
+    </message>
+    <message>
+        <source>Clusters out of tolerance</source>
+        <translation>Zusammenhängende Stellen außer Toleranz</translation>
+    </message>
+    <message>
+        <source>Deep, %</source>
+        <translation>Zu tief, %</translation>
+    </message>
+    <message>
+        <source>Depth, mm</source>
+        <translation>Tiefe, mm</translation>
+    </message>
+    <message>
+        <source>Down</source>
+        <translation>Abwärts</translation>
+    </message>
+    <message>
+        <source>Each zone has limits of its own; where several hold a place, the last one counts. Without faces a zone holds all; with an edge radius only convex edges with a smaller radius. Lengths in mm; what is left empty is not inspected.</source>
+        <translation>Jede Zone hat eigene Grenzen; wo mehrere einen Ort enthalten, gilt die letzte. Ohne Flächen enthält eine Zone alles, mit Kantenradius nur konvexe Kanten mit kleinerem Radius. Längen in mm; was leer bleibt, wird nicht geprüft.</translation>
+    </message>
+    <message>
+        <source>Edge radius</source>
+        <translation>Kantenradius</translation>
+    </message>
+    <message>
+        <source>High, %</source>
+        <translation>Zu hoch, %</translation>
+    </message>
+    <message>
+        <source>In doubt</source>
+        <translation>Zweifelhaft</translation>
+    </message>
+    <message>
+        <source>In, %</source>
+        <translation>In Toleranz, %</translation>
+    </message>
+    <message>
+        <source>Largest first. Click: go there in the 3D view</source>
+        <translation>Größte zuerst. Klick: in der 3D-Ansicht dorthin</translation>
+    </message>
+    <message>
+        <source>Lower</source>
+        <translation>Untere</translation>
+    </message>
+    <message>
+        <source>Lower limit of the thickness against the design&apos;s</source>
+        <translation>Untere Grenze der Dicke gegen die des Entwurfs</translation>
+    </message>
+    <message>
+        <source>Motions of the cluster</source>
+        <translation>Bewegungen an dieser Stelle</translation>
+    </message>
+    <message>
+        <source>Never touched: {:,.1f} of {:,.1f} mm²</source>
+        <translation>Nie berührt: {:,.1f} von {:,.1f} mm²</translation>
+    </message>
+    <message>
+        <source>Not in tolerance</source>
+        <translation>Nicht in Toleranz</translation>
+    </message>
+    <message>
+        <source>Not in tolerance: {} of {} faces</source>
+        <translation>Nicht in Toleranz: {} von {} Flächen</translation>
+    </message>
+    <message>
+        <source>Numbers of faces; empty: all</source>
+        <translation>Nummern von Flächen; leer: alle</translation>
+    </message>
+    <message>
+        <source>Only convex edges with a smaller radius; empty: all</source>
+        <translation>Nur konvexe Kanten mit kleinerem Radius; leer: alles</translation>
+    </message>
+    <message>
+        <source>Removed {:,.1f} mm³, left {:,.1f} mm³, too deep {:,.1f} mm³</source>
+        <translation>Abgetragen {:,.1f} mm³, übrig {:,.1f} mm³, zu tief {:,.1f} mm³</translation>
+    </message>
+    <message>
+        <source>Row {}: a zone needs a name.</source>
+        <translation>Zeile {}: Eine Zone braucht einen Namen.</translation>
+    </message>
+    <message>
+        <source>Share, %</source>
+        <translation>Anteil, %</translation>
+    </message>
+    <message>
+        <source>Show verdict</source>
+        <translation>Urteil zeigen</translation>
+    </message>
+    <message>
+        <source>Size, mm</source>
+        <translation>Größe, mm</translation>
+    </message>
+    <message>
+        <source>Take selected faces</source>
+        <translation>Gewählte Flächen nehmen</translation>
+    </message>
+    <message>
+        <source>Thicker by</source>
+        <translation>Dicker um</translation>
+    </message>
+    <message>
+        <source>Thinner by</source>
+        <translation>Dünner um</translation>
+    </message>
+    <message>
+        <source>Tolerance zones</source>
+        <translation>Toleranzzonen</translation>
+    </message>
+    <message>
+        <source>Up</source>
+        <translation>Aufwärts</translation>
+    </message>
+    <message>
+        <source>Upper</source>
+        <translation>Obere</translation>
+    </message>
+    <message>
+        <source>Upper limit of the thickness against the design&apos;s</source>
+        <translation>Obere Grenze der Dicke gegen die des Entwurfs</translation>
+    </message>
+    <message>
+        <source>Waves Wt, mm</source>
+        <translation>Welligkeit Wt, mm</translation>
+    </message>
+    <message>
+        <source>What</source>
+        <translation>Was</translation>
+    </message>
+    <message>
+        <source>Where</source>
+        <translation>Wo</translation>
+    </message>
+    <message>
+        <source>Worst, mm</source>
+        <translation>Schlimmste, mm</translation>
+    </message>
+    <message>
+        <source>Zone</source>
+        <translation>Zone</translation>
+    </message>
+    <message>
+        <source>Zones and faces</source>
+        <translation>Zonen und Flächen</translation>
+    </message>
+    <message>
+        <source>Zones: {}. Elsewhere {} to {} mm.</source>
+        <translation>Zonen: {}. Sonst {} bis {} mm.</translation>
+    </message>
+    <message>
+        <source>contacts not converged</source>
+        <translation>Kontakte nicht konvergiert</translation>
+    </message>
+    <message>
+        <source>elsewhere</source>
+        <translation>sonst</translation>
+    </message>
+    <message>
+        <source>events outside of the law&apos;s range</source>
+        <translation>Ereignisse außerhalb des Bereichs des Gesetzes</translation>
+    </message>
+    <message>
+        <source>fail</source>
+        <translation>nicht bestanden</translation>
+    </message>
+    <message>
+        <source>missed rays</source>
+        <translation>verfehlte Strahlen</translation>
+    </message>
+    <message>
+        <source>never touched</source>
+        <translation>nie berührt</translation>
+    </message>
+    <message>
+        <source>pass</source>
+        <translation>bestanden</translation>
+    </message>
+    <message>
+        <source>places of the programs not resolved</source>
+        <translation>Stellen der Programme nicht aufgelöst</translation>
+    </message>
+    <message>
+        <source>samples with defective stock</source>
+        <translation>Punkte mit fehlendem Aufmaß</translation>
+    </message>
+    <message>
+        <source>too deep</source>
+        <translation>zu tief</translation>
+    </message>
+    <message>
+        <source>too high</source>
+        <translation>zu hoch</translation>
+    </message>
+    <message>
+        <source>unknown</source>
+        <translation>unbekannt</translation>
+    </message>
+    <message>
+        <source>{:.2f} % in tolerance, {:.2f} % too high, {:.2f} % too deep</source>
+        <translation>{:.2f} % in Toleranz, {:.2f} % zu hoch, {:.2f} % zu tief</translation>
+    </message>
+    <message>
+        <source>{}: &apos;{}&apos; is no number of millimetres.</source>
+        <translation>{}: „{}“ ist keine Zahl von Millimetern.</translation>
+    </message>
+    <message>
+        <source>{}: give both limits, or none.</source>
+        <translation>{}: Geben Sie beide Grenzen an oder keine.</translation>
+    </message>
+    <message>
+        <source>{}: thickness</source>
+        <translation>{}: Dicke</translation>
+    </message>
+    <message>
+        <source>{}: write the faces&apos; numbers, such as 1 2 5.</source>
+        <translation>{}: Schreiben Sie die Nummern der Flächen, etwa 1 2 5.</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -2934,17 +3318,6 @@ im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>
-    <name>BeltGrinding_ImportProgram</name>
-    <message>
-        <source>Import robot program...</source>
-        <translation>Roboterprogramm einlesen...</translation>
-    </message>
-    <message>
-        <source>Reads a robot program into the job</source>
-        <translation>Liest ein Roboterprogramm in den Auftrag ein</translation>
-    </message>
-</context>
-<context>
     <name>BeltGrinding_GroundMesh</name>
     <message>
         <source>Ground part as mesh</source>
@@ -2956,14 +3329,14 @@ im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>
-    <name>BeltGrinding_Scan</name>
+    <name>BeltGrinding_ImportProgram</name>
     <message>
-        <source>Compare a scan...</source>
-        <translation>Scan vergleichen...</translation>
+        <source>Import robot program...</source>
+        <translation>Roboterprogramm einlesen...</translation>
     </message>
     <message>
-        <source>Lays a scan of the ground part on the design and compares it with the prediction</source>
-        <translation>Legt einen Scan des geschliffenen Teils auf das Soll und vergleicht ihn mit der Vorhersage</translation>
+        <source>Reads a robot program into the job</source>
+        <translation>Liest ein Roboterprogramm in den Auftrag ein</translation>
     </message>
 </context>
 <context>
@@ -3055,6 +3428,17 @@ im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>
+    <name>BeltGrinding_Scan</name>
+    <message>
+        <source>Compare a scan...</source>
+        <translation>Scan vergleichen...</translation>
+    </message>
+    <message>
+        <source>Lays a scan of the ground part on the design and compares it with the prediction</source>
+        <translation>Legt einen Scan des geschliffenen Teils auf das Soll und vergleicht ihn mit der Vorhersage</translation>
+    </message>
+</context>
+<context>
     <name>BeltGrinding_Section</name>
     <message>
         <source>Cross-section</source>
@@ -3085,6 +3469,28 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Stock</source>
         <translation>Rohteil</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Verdict</name>
+    <message>
+        <source>In tolerance or not, where not, and which motion of the program did it</source>
+        <translation>In Toleranz oder nicht, wo nicht, und welche Bewegung des Programms es war</translation>
+    </message>
+    <message>
+        <source>Verdict</source>
+        <translation>Urteil</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Zones</name>
+    <message>
+        <source>Gives faces, edges and the thickness tolerances of their own</source>
+        <translation>Gibt Flächen, Kanten und der Dicke eigene Toleranzen</translation>
+    </message>
+    <message>
+        <source>Tolerance zones...</source>
+        <translation>Toleranzzonen...</translation>
     </message>
 </context>
 <context>

@@ -55,6 +55,7 @@ void bind_simulation(py::module_& m);
 void bind_inspection(py::module_& m);
 void bind_ground_mesh(py::module_& m);
 void bind_section(py::module_& m);
+void bind_verdict(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_picture(py::module_& m);
 void bind_toolpath(py::module_& m);

@@ -1,18 +1,11 @@
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
-#include <memory>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "stock/ray_scene.h"
 #include "stock/stock.h"
 
 namespace beltgrinding {
@@ -23,83 +16,6 @@ constexpr int kMaxLayers = 16;        // surfaces crossed by one ray before it g
 constexpr float kAdvance = 1e-4F;     // mm beyond a hit from which the ray goes on
 // mm: outward surfaces closer together than this are one surface scanned twice; the outer counts.
 constexpr float kDoubleSurface = 0.05F;
-
-struct DeviceDeleter {
-    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
-};
-struct SceneDeleter {
-    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
-};
-
-/// The stock's triangles in Embree. The mesh must outlive it.
-class RayScene {
-  public:
-    explicit RayScene(const TriangleMesh& mesh) : device_(rtcNewDevice("threads=0")) {
-        if (!device_)
-            throw InputError("Embree could not be started; is the processor without SSE2?");
-        scene_.reset(rtcNewScene(device_.get()));
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-        RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* vertices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(Vec3f), mesh.vertices.size());
-        void* indices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    sizeof(Triangle), mesh.triangles.size());
-        if (vertices == nullptr || indices == nullptr) {
-            rtcReleaseGeometry(geometry);
-            throw InputError("stock: the mesh does not fit in memory");
-        }
-        std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
-        std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_.get(), geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene_.get());
-    }
-
-    struct Hit {
-        float distance = -1.0F;  // negative: none
-        bool leaving = false;    // the ray leaves material here
-    };
-
-    Hit first(const Vec3f& origin, const Vec3f& direction, float near, float far) const {
-        RTCRayHit ray{};
-        ray.ray.org_x = origin.x();
-        ray.ray.org_y = origin.y();
-        ray.ray.org_z = origin.z();
-        ray.ray.dir_x = direction.x();
-        ray.ray.dir_y = direction.y();
-        ray.ray.dir_z = direction.z();
-        ray.ray.tnear = near;
-        ray.ray.tfar = far;
-        ray.ray.mask = ~0U;
-        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        intersect(ray);
-        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-        const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-        return {ray.ray.tfar, normal.dot(direction) > 0.0F};
-    }
-
-  private:
-    void intersect(RTCRayHit& ray) const {
-#if RTC_VERSION_MAJOR >= 4
-        RTCIntersectArguments arguments;
-        rtcInitIntersectArguments(&arguments);
-        arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-        rtcIntersect1(scene_.get(), &ray, &arguments);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        rtcIntersect1(scene_.get(), &context, &ray);
-#endif
-    }
-
-    std::unique_ptr<RTCDeviceTy, DeviceDeleter> device_;
-    std::unique_ptr<RTCSceneTy, SceneDeleter> scene_;
-};
 
 /// Height of the stock over one sample, or NaN for a miss. See `apply_mesh` for the rule.
 float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& normal,

@@ -131,6 +131,20 @@ assert (red > blue + 60).sum() > 1500 and (blue > red + 60).sum() > 200  # brown
 picture("workbench-deviation")
 press("OK")
 
+camera = Gui.ActiveDocument.ActiveView.getCamera()
+menu("Verdict")
+tree(doc.Verdict)
+clusters = field("clusters")
+deep = next(k for k in range(clusters.rowCount()) if clusters.item(k, 1).text() == "too deep")
+clusters.setCurrentCell(deep, 0)
+settle()
+assert field("motions").rowCount() > 3
+field("motions").setCurrentCell(0, 0)
+assert field("source").textCursor().blockNumber() > 10  # the line is marked
+picture("workbench-verdict")
+field("BeltGrinding_VerdictDock").close()
+Gui.ActiveDocument.ActiveView.setCamera(camera)
+
 menu("Cross-section")
 field("sectionKind").setCurrentIndex(2)
 Gui.SendMsgToActiveView("ViewFit")

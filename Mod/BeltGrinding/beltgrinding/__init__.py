@@ -87,6 +87,8 @@ DOCUMENT_FUNCTIONS = (
     "simulate",
     "make_deviation",
     "make_section",
+    "make_verdict",
+    "set_zones",
     "make_figures",
     "write_report",
     "check_settings",

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, inputs, law as laws, robot as robots, schemas
+from . import InputError, core, frames, inputs, law as laws, motions, robot as robots, schemas
+from . import verdict as verdicts
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -58,7 +59,29 @@ def validate(job, folder="."):
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
         raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
+    check_zones(job["inspection"]["zones"], job["design"]["faces"])
     return job
+
+
+def check_zones(zones, faces):
+    """Raises InputError for tolerance zones that cannot be; ``faces``: those that are ground, numbered
+    from 1, none for all.
+    """
+    ground, names = set(faces), set()
+    for i, zone in enumerate(zones):
+        where = f"inspection.zones[{i}] '{zone['name']}'"
+        if zone["name"] in names:
+            raise InputError(f"{where}: another zone has this name already; give it another")
+        names.add(zone["name"])
+        for key in ("tolerance_mm", "thickness_mm"):
+            lower, upper = zone.get(key, (0.0, 0.0))
+            if lower > upper:
+                raise InputError(f"{where}.{key}: the lower limit lies above the upper one")
+        if "tolerance_mm" not in zone and "thickness_mm" not in zone:
+            raise InputError(f"{where}: give it the key 'tolerance_mm', 'thickness_mm' or both")
+        for face in zone.get("faces", []):
+            if ground and face not in ground:
+                raise InputError(f"{where}.faces: face {face} is not ground; see design.faces")
 
 
 class _Phases:
@@ -95,6 +118,8 @@ def _run(job, context, warnings, recording):
     digests = inputs.digests(job)
     phases.end("hash")
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
+    unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
+    ways = motions.of_paths(paths)
     phases.end("programs")
     reached = robots.job_reach(job, paths, context.part(0.0, 0.0))
     phases.end("reach")
@@ -148,8 +173,14 @@ def _run(job, context, warnings, recording):
             "remaining_cut": remaining_cut(job, options["belt"]),
         },
         robot=robots.summary(job["robot"], reached),
+        unresolved_motions=unresolved,
     )
-    return Result(job, field, summary, events, steps, recording)
+    result = Result(job, field, summary, events, steps, recording)
+    result.motions = ways
+    phases.restart()
+    result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
+    phases.end("verdict")
+    return result
 
 
 def remaining_cut(job, belt):

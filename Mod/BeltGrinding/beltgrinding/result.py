@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, schemas
+from . import InputError, core, motions, schemas
 
 
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
@@ -23,11 +23,15 @@ class Result:
     """What a job gave: ``field`` (the ground HeightField), ``summary``, ``events`` (lists and dicts
     as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
     ``recording`` (core.Recording of the heights, or None), ``convergence`` (dict as in
-    convergence.json, or None).
+    convergence.json, or None), ``motions`` (as ``motions.of_paths`` gives them, or None), ``verdict``
+    (dict as in verdict.json, or None).
     """
 
+    VERDICT = "verdict.json"
     bins = None  # the time series of a document's result, as ``reporting.charts.binned`` makes it
     convergence = None
+    motions = None
+    verdict = None
 
     def __init__(self, job, field, summary, events, steps, recording=None):
         self.job = job
@@ -38,8 +42,8 @@ class Result:
         self.recording = recording
 
     def write(self, folder):
-        """Writes summary.json, events.json, steps.csv, deviation.ply, heightfield.h5 and, if it is known,
-        convergence.json; each whole or not."""
+        """Writes summary.json, events.json, verdict.json, steps.csv, motions.csv, deviation.ply,
+        heightfield.h5 and, if it is known, convergence.json; each whole or not."""
         start = time.perf_counter()
         folder = Path(folder)
         try:
@@ -54,15 +58,23 @@ class Result:
                 write_whole(folder / "convergence.json", _json(self.convergence))
             if self.steps is not None:
                 write_whole(folder / "steps.csv", _table(self.steps))
+            if self.motions is not None:
+                write_whole(folder / motions.FILE, motions.csv_text(self.motions).encode())
+            if self.verdict is not None:
+                self.write_verdict(folder / self.VERDICT)
             self.summary["wall_time_s"]["write"] = time.perf_counter() - start
             write_whole(folder / "summary.json", _json(self.summary))
         except OSError as error:
             raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
 
+    def write_verdict(self, path):
+        """Writes the verdict alone. Raises OSError."""
+        write_whole(Path(path), _json(self.verdict))
+
     @classmethod
     def read(cls, folder):
         """The result that ``write`` left in ``folder``. An older version's gets what has come since, by
-        its default. Raises InputError.
+        its default; its motions and verdict are None. Raises InputError.
         """
         from . import convergence
 
@@ -85,6 +97,9 @@ class Result:
         data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
         result = cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
         result.convergence = convergence.read(folder / "convergence.json", job)
+        result.motions = motions.read(folder / motions.FILE)
+        if (folder / cls.VERDICT).exists():
+            result.verdict = schemas.read_json(folder / cls.VERDICT)
         return result
 
 

@@ -27,10 +27,13 @@ def _run(arguments):
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
-        _report(result.summary, arguments.output)
+        _report(result, arguments.output)
 
 
-def _report(summary, output):
+def _report(result, output):
+    from .. import verdict
+
+    summary = result.summary
     for warning in summary["warnings"]:
         print(f"warning: {warning}", file=sys.stderr)
     deviation = summary["deviation_mm"]
@@ -41,3 +44,4 @@ def _report(summary, output):
         f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "
         f"results in {output}"
     )
+    print(verdict.text(result.verdict))

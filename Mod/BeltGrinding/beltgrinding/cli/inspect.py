@@ -23,6 +23,31 @@ def add(commands):
     cut.add_argument("--mode", choices=("unrolled", "shape"), default="unrolled", help="of the SVG")
     cut.add_argument("--exaggeration", type=float, help="of the heights in the shape's SVG")
     cut.set_defaults(do=_section)
+    judge = commands.add_parser(
+        "verdict",
+        help="judge a result, also by other tolerances (docs/verification.md)",
+        description="Judges the result in a folder again, writes its verdict.json and says it in a "
+        "few lines.",
+    )
+    judge.add_argument("result", help="folder that run wrote")
+    judge.add_argument("--job", help="job.json whose key inspection is taken in place of its own")
+    judge.add_argument("-o", "--output", help="file for the verdict in place of verdict.json there")
+    judge.set_defaults(do=_verdict)
+
+
+def _verdict(arguments):
+    from .. import InputError, job, verdict
+    from ..result import Result
+
+    result = Result.read(arguments.result)
+    given = job.load(arguments.job) if arguments.job else job.validate(result.job)
+    result.verdict = verdict.of_result(result, inspection=given["inspection"])
+    path = Path(arguments.output or Path(arguments.result) / result.VERDICT)
+    try:
+        result.write_verdict(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    print(verdict.text(result.verdict))
 
 
 def _section(arguments):

@@ -11,7 +11,7 @@ def add(commands):
     preset.set_defaults(do=_presets)
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument(
-        "name", nargs="?", choices=("job", "contact", "presets", "raster"), default="job"
+        "name", nargs="?", choices=("job", "contact", "presets", "raster", "verdict"), default="job"
     )
     printed.set_defaults(do=_schema)
 

@@ -6,11 +6,23 @@ from .. import InputError
 from ..objects import robot_path
 from .compat import QtGui, translate
 from .form import Form
-from .panel import Panel
+from .panel import Panel, edit
 from .pose_walk import PoseTable, PoseWalk
 
 SHOWN_PROBLEMS = 200
 TABLE_HEIGHT = 260  # pixels
+_open = []  # the panel that is open
+
+
+def show_pose(obj, index, opening):
+    """Selects the pose ``index`` (from 0) of a RobotPath in its panel, if that is open or with
+    ``opening``, which opens it.
+    """
+    if opening and not _open:
+        edit(obj)
+    for panel in _open:
+        if panel.obj == obj and index < obj.PoseCount:
+            panel.walk.go(index)
 
 
 class ProgramPanel(Panel):
@@ -46,6 +58,7 @@ class ProgramPanel(Panel):
         form.changed = self.changed
         self.finish()
         self.show()
+        _open.append(self)
 
     def changed(self):
         if self.obj.Source != self.source:
@@ -97,4 +110,5 @@ class ProgramPanel(Panel):
         )
 
     def close(self):
+        _open.remove(self)
         self.walk.release()

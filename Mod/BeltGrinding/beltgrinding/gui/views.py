@@ -21,6 +21,7 @@ __all__ = [
     "SectionView",
     "SimulationView",
     "StockView",
+    "VerdictView",
 ]
 
 
@@ -140,6 +141,33 @@ class RasterPathView(RobotPathView):
         from .raster_panel import RasterPanel
 
         return RasterPanel(obj)
+
+
+class VerdictView(Undrawn):
+    """The icon says when the result is out of date; a double click shows the dock."""
+
+    ICON = "BeltGrinding_Verdict"
+    COMMANDS = ("BeltGrinding_Zones", "BeltGrinding_Deviation")
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
+        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+
+    def updateData(self, obj, name):
+        if name == "OutOfDate" and getattr(self, "view", None) is not None:
+            self.view.signalChangeIcon()
+
+    def doubleClicked(self, view):
+        from .verdict_dock import show_verdict
+
+        show_verdict(view.Object)
+        return True
+
+    def setEdit(self, view, mode=0):
+        return None
+
+    def verb(self):
+        return translate("BeltGrinding", "Show verdict")
 
 
 class SimulationView(Undrawn):

@@ -25,6 +25,7 @@ from . import (
     robot_path,
     section as sections,
     simulation as results,
+    verdict as verdicts,
 )
 from . import stock as stocks
 from . import ground_mesh, scanned
@@ -220,6 +221,33 @@ def make_deviation(job):
             found.Proxy.update(found)
     job.Document.recompute()
     return found
+
+
+def make_verdict(job):
+    """Adds the verdict on the job's simulation, or returns the one that is there. It follows the
+    result and the job's tolerances.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None or not simulation.Fingerprint:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    found = child(job, verdicts.Verdict)
+    if found is None:
+        found = job.Document.addObject("App::FeaturePython", "Verdict")
+        with _removed_on_error(found):
+            verdicts.Verdict(found)
+            found.Simulation = simulation
+            job.addObject(found)
+            found.Proxy.update(found)
+    job.Document.recompute()
+    return found
+
+
+def set_zones(job, zones):
+    """Gives a job tolerance zones: a list of dicts as the key inspection.zones of a job file, faces
+    numbered from 1 (docs/verification.md).
+    """
+    job_object.set_zones(job, zones)
+    job.Document.recompute()
 
 
 def make_section(job, point=None, normal=None, start=None, end=None, **properties):

@@ -5,7 +5,7 @@ import hashlib
 import FreeCAD
 import numpy as np
 
-from .. import InputError, frames
+from .. import InputError, core, frames
 
 GRID = 5  # points per direction and face, and per edge, that tell shapes apart
 RESOLUTION = 1e-6  # mm; below it, two shapes are the same
@@ -21,6 +21,11 @@ def placed_shape(obj):
     shape = shape.copy()
     shape.Placement = obj.getGlobalPlacement()
     return shape
+
+
+def core_shape(shape):
+    """core.Shape of a Part shape."""
+    return core.Shape.from_brep(shape.exportBrepToString(), "design")
 
 
 def faces_digest(faces):

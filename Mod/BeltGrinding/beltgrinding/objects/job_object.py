@@ -20,6 +20,7 @@ from .section import Section
 from .simulation import Simulation
 from .stock import Stock
 from . import told
+from .verdict import Verdict
 
 KEYS = (
     Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
@@ -28,6 +29,7 @@ KEYS = (
     Key("ToleranceLower", "Distance", "Tolerance", "inspection.tolerance_mm.0"),
     Key("ToleranceUpper", "Distance", "Tolerance", "inspection.tolerance_mm.1"),
     Key("ColourLimit", "Length", "Tolerance", "inspection.colour_limit_mm"),
+    Key("Zones", "JSON", "Tolerance", "inspection.zones"),
     Key("Law", "Enumeration", "Law", "law.model"),
     Key("LawCoefficient", "Float", "Law", "law.coefficient_mm2_per_N"),
     Key("PressureThreshold", "Pressure", "Law", "law.pressure_threshold_MPa"),
@@ -93,10 +95,12 @@ class BeltGrindingJob(Proxy):
             deviation.Proxy.update(deviation)
         for section in children(obj, Section):
             section.Proxy.update(section)
+        for verdict in children(obj, Verdict):
+            verdict.Proxy.update(verdict)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:
             raise InputError(f"{obj.Label}: ToleranceLower lies above ToleranceUpper")
-        design(obj)
+        jobs.check_zones(zones(obj), design(obj)[1])
 
 
 def children(job, proxy):
@@ -122,6 +126,21 @@ def inspection(job):
     data = {}
     to_job(job, KEYS, data)
     return data["inspection"]
+
+
+def zones(job):
+    """The tolerance zones of a job, as its key inspection.zones has them."""
+    return inspection(job)["zones"]
+
+
+def set_zones(job, found):
+    """Gives a job tolerance zones. Raises InputError, and leaves the old ones, for wrong ones."""
+    from .. import schemas
+
+    rule = schemas.schema("job")["properties"]["inspection"]["properties"]["zones"]
+    found = schemas.checked(list(found), rule, "zones")
+    jobs.check_zones(found, design(job)[1])
+    job.Zones = json.dumps(found) if found else ""
 
 
 def design(job):
@@ -150,6 +169,19 @@ def shape_of(links, label):
         shapes.append(shape)
         offset += count
     return (shapes[0] if len(shapes) == 1 else Part.Compound(shapes)), sorted(numbers)
+
+
+def face_numbers(job, obj, subs):
+    """Numbers from 1, as ``design`` has them, of faces of one of the job's objects; none of another
+    object. Raises InputError.
+    """
+    offset = 0
+    for one, _ in _by_object(job.DesignFaces):
+        count = len(one.Shape.Faces)
+        if one == obj:
+            return [number + offset for number in _face_numbers(job.Label, obj, subs, count)]
+        offset += count
+    return []
 
 
 def face_name(job, index):
@@ -248,6 +280,7 @@ def to_data(job, folder):
         program.update(_overrides(path))
         program["name"] = path.Label
         program["poses"] = list_poses(path.Proxy.arrays(path))
+        program["unresolved"] = len(path.Problems)
         if len(program["poses"]) < 2:
             raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
     return data

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import core
+from ..poses import program_name
 from . import told
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -32,6 +33,17 @@ OUTPUTS = (
     Output("RemainingCut", "Float", "Result", "of the belt in the end, percent of a fresh one"),
     Output("BeltUse", "String", "Result", "what the belt did, as JSON", True),
     Output("EventData", "String", "Result", "the events as JSON", True),
+    Output("VerdictData", "String", "Result", "the verdict of the run and its limits, JSON", True),
+    Output("UnresolvedMotions", "Integer", "Result", "places of the programs not resolved"),
+    Output("Programs", "StringList", "Result", "names of the programs", True),
+    Output("MotionPrograms", "IntegerList", "Result", "program of every motion, from 0", True),
+    Output("MotionPoses", "IntegerList", "Result", "pose that every motion leads to, from 0", True),
+    Output(
+        "MotionLines", "IntegerList", "Result", "source line of every motion; 0: not known", True
+    ),
+    Output(
+        "MotionPoints", "VectorList", "Result", "contact point at the end of every motion", True
+    ),
     Output("Fingerprint", "String", "Result", "hash of the inputs", True),
 )
 
@@ -69,6 +81,17 @@ class Simulation(Proxy):
         steps = json.loads(attributes)["steps"]
         return recording, {name: np.array(values) for name, values in steps.items()}
 
+    def motions(self, obj):
+        """As ``beltgrinding.motions`` has them; None where an older version made the result."""
+        if not obj.MotionPoses:
+            return None
+        return {
+            "program": np.array(obj.MotionPrograms),
+            "pose": np.array(obj.MotionPoses),
+            "line": np.array(obj.MotionLines),
+            "point": np.array([tuple(point) for point in obj.MotionPoints]).reshape(-1, 3),
+        }
+
     def events(self, obj):
         """List of dicts: kind, program, pose, line, time (s), duration (s), value, message."""
         return json.loads(obj.EventData or "[]")
@@ -87,7 +110,8 @@ def store(obj, result, fingerprint):
     s = result.summary
     obj.RemovedVolume, obj.StockVolume = s["removed_volume_mm3"], s["stock_volume_mm3"]
     obj.DesignArea = s["design_area_mm2"]
-    obj.ProcessTime, obj.WallTime = s["process_time_s"], sum(s["wall_time_s"].values())
+    # The wall time tells results apart: rounded, it comes back from a file as it was.
+    obj.ProcessTime, obj.WallTime = s["process_time_s"], round(sum(s["wall_time_s"].values()), 6)
     obj.Samples, obj.Steps = s["samples"], s["steps"]
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
     obj.Events = [describe(event, result.job) for event in result.events]
@@ -100,8 +124,24 @@ def store(obj, result, fingerprint):
     obj.BeltUse = json.dumps({"during": during, "job": kept})
     obj.EventData = json.dumps(result.events)
     told.store(obj, result)
+    _store_verdict(obj, result)
     obj.Fingerprint = fingerprint
     obj.OutOfDate = False
+
+
+def _store_verdict(obj, result):
+    """The verdict of the run, and what it takes to judge again."""
+    obj.UnresolvedMotions = result.summary.get("unresolved_motions", 0)
+    obj.Programs = [program_name(result.job, i) for i in range(len(result.job["programs"]))]
+    motions = result.motions or {"program": [], "pose": [], "line": [], "point": []}
+    for name in ("program", "pose", "line"):
+        values = [int(value) for value in motions[name]]
+        setattr(obj, f"Motion{name.title()}s", values)
+    obj.MotionPoints = [tuple(map(float, point)) for point in motions["point"]]
+    inspection = result.job["inspection"]
+    kept = {key: inspection.get(key, []) for key in ("tolerance_mm", "zones")}
+    judged = {"inspection": kept, "verdict": result.verdict} if result.verdict else {}
+    obj.VerdictData = json.dumps(judged)
 
 
 def _store_recording(obj, result, folder):

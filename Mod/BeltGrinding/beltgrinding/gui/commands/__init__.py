@@ -2,7 +2,7 @@
 
 import FreeCADGui as Gui
 
-from . import files, paths, results, set_up, tell
+from . import files, paths, results, set_up, tell, verification
 
 WORK = (  # in the order of work: toolbar and menu
     set_up.NewJob,
@@ -13,6 +13,7 @@ WORK = (  # in the order of work: toolbar and menu
     set_up.Cell,
     results.Simulate,
     results.Deviation,
+    verification.Verdict,
     results.Section,
     results.Playback,
     tell.Report,
@@ -20,6 +21,7 @@ WORK = (  # in the order of work: toolbar and menu
 MORE = (  # menu only
     paths.FollowPath,
     set_up.Belt,
+    verification.Zones,
     files.Calibrate,
     results.Contact,
     tell.CheckSettings,

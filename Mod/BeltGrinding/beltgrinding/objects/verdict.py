@@ -1,0 +1,167 @@
+"""The verdict in the document: in tolerance or not, where not, and which motions did it."""
+
+import json
+
+from .. import InputError, core, verdict as verdicts
+from .geometry import core_shape
+from .properties import Output, add_outputs
+from .proxy import Proxy
+from .section import field_of
+
+OUTPUTS = (
+    Output("Overall", "String", "Verdict", "pass, fail or unknown"),
+    Output("OutOfDate", "Bool", "Verdict", "an input of the simulation has changed since"),
+    Output("FaceVerdicts", "StringList", "Verdict", "a line for every face"),
+    Output("ZoneVerdicts", "StringList", "Verdict", "a line for every zone"),
+    Output("FacesFailed", "Integer", "Verdict", "faces that fail"),
+    Output("ZonesFailed", "Integer", "Verdict", "zones that fail"),
+    Output("InTolerance", "Float", "Figures", "share of the inspected area, percent"),
+    Output("AboveTolerance", "Float", "Figures", "share with too much left, percent"),
+    Output("BelowTolerance", "Float", "Figures", "share cut too deep, percent"),
+    Output("Worst", "Distance", "Figures", "deviation farthest beyond its limit, or next to it"),
+    Output("WorstBeyond", "Distance", "Figures", "how far; negative: what is left to the limit"),
+    Output("WorstPoint", "VectorDistance", "Figures", "where that is"),
+    Output("ClustersAbove", "Integer", "Figures", "connected areas with too much left"),
+    Output("ClustersBelow", "Integer", "Figures", "connected areas cut too deep"),
+    Output(
+        "LargestCluster", "Area", "Figures", "area of the largest connected place out of tolerance"
+    ),
+    Output("UntouchedArea", "Area", "Figures", "where the wheel never was"),
+    Output("RemovedVolume", "Volume", "Figures", "removed by grinding"),
+    Output("ExcessVolume", "Volume", "Figures", "left above the design"),
+    Output("GougeVolume", "Volume", "Figures", "missing below the design"),
+    Output(
+        "WavinessAcross", "Distance", "Figures", "largest Wt of a face across the feed; 0: none"
+    ),
+    Output("WavinessAlong", "Distance", "Figures", "largest Wt of a face along the feed; 0: none"),
+    Output("MissedRays", "Integer", "Doubts", "samples where no stock was found"),
+    Output("DefectiveSamples", "Integer", "Doubts", "stock below the design from the start"),
+    Output(
+        "UnresolvedMotions",
+        "Integer",
+        "Doubts",
+        "places of the programs that were not resolved; -1: not known",
+    ),
+    Output("ExtrapolatedLawEvents", "Integer", "Doubts", "events outside of what was measured"),
+    Output("NotConverged", "Integer", "Doubts", "contacts that did not converge"),
+    Output("Notes", "StringList", "Doubts", "what could not be judged, and why"),
+    Output("Data", "String", "Verdict", "all of it as JSON", True),
+    Output("Shown", "String", "Verdict", "what was judged, and how", True),
+)
+
+
+class Verdict(Proxy):
+    """Proxy of the App::FeaturePython; judges what its ``Simulation`` holds by the job's zones."""
+
+    TYPE = "BeltGrinding::Verdict"
+    VIEW = "VerdictView"
+
+    def add_properties(self, obj):
+        if "Simulation" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyLink", "Simulation", "Verdict", "the result judged")
+            obj.setEditorMode("Simulation", 1)
+        add_outputs(obj, OUTPUTS)
+
+    def execute(self, obj):
+        self.update(obj)
+
+    def data(self, obj):
+        """The verdict as ``beltgrinding.verdict`` gives it; None if there is none yet."""
+        return json.loads(obj.Data) if obj.Data else None
+
+    def update(self, obj):
+        """Judges again if the result or a tolerance is another one."""
+        simulation, job = obj.Simulation, obj.getParentGroup()
+        if simulation is None or job is None or not simulation.Fingerprint:
+            return
+        if obj.OutOfDate != simulation.OutOfDate:
+            obj.OutOfDate = simulation.OutOfDate
+        inspection = _judged_by(job)
+        shown = json.dumps([simulation.Fingerprint, simulation.WallTime, inspection])
+        if shown == obj.Shown:
+            return
+        told = json.loads(simulation.VerdictData or "{}")
+        if told.get("inspection") != inspection:
+            told = {"verdict": judge(job, simulation, inspection)}
+        show(obj, told["verdict"])
+        obj.Shown = shown
+
+
+def _judged_by(job):
+    from .job_object import inspection
+
+    found = inspection(job)
+    return {key: found[key] for key in ("tolerance_mm", "zones")}
+
+
+def judge(job, simulation, inspection):
+    """The verdict on a Simulation by other tolerances. Raises InputError."""
+    field = field_of(simulation)
+    if field is None:
+        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+    data = {
+        "design": {},
+        "programs": [{"name": name} for name in simulation.Programs],
+        "inspection": inspection,
+    }
+    shape = None
+    if any("thickness_mm" in zone for zone in inspection["zones"]):
+        from .job_object import design
+
+        shape = core_shape(design(job)[0])
+    return verdicts.verdict(
+        data,
+        field,
+        simulation.Proxy.events(simulation),
+        simulation.Proxy.motions(simulation),
+        simulation.UnresolvedMotions,
+        shape,
+    )
+
+
+def show(obj, found):
+    """Puts a verdict into the object."""
+    obj.Overall = found["overall"]
+    obj.FaceVerdicts = [f"Face{one['face']}: {describe(one)}" for one in found["faces"]]
+    obj.ZoneVerdicts = [f"{one['name'] or 'elsewhere'}: {describe(one)}" for one in found["zones"]]
+    obj.FacesFailed = sum(one["verdict"] == "fail" for one in found["faces"])
+    obj.ZonesFailed = sum(one["verdict"] == "fail" for one in found["zones"])
+    for name in ("in", "above", "below"):
+        setattr(obj, f"{name.title()}Tolerance", 100.0 * found[f"{name}_share"])
+    worst = found["worst"] or {"value_mm": 0.0, "beyond_mm": 0.0, "point_mm": (0.0, 0.0, 0.0)}
+    obj.Worst, obj.WorstBeyond = worst["value_mm"], worst["beyond_mm"]
+    obj.WorstPoint = tuple(worst["point_mm"])
+    counted = found["clusters_in_all"]
+    obj.ClustersAbove, obj.ClustersBelow = counted["above"]["count"], counted["below"]["count"]
+    obj.LargestCluster = found["clusters"][0]["area_mm2"] if found["clusters"] else 0.0
+    obj.UntouchedArea = found["untouched_area_mm2"] or 0.0
+    for name in ("removed", "excess", "gouge"):
+        setattr(obj, f"{name.title()}Volume", found[f"{name}_volume_mm3"])
+    for direction in ("across", "along"):
+        waves = [face["waviness"][direction] for face in found["faces"]]
+        largest = max((wave["Wt_mm"] for wave in waves if wave), default=0.0)
+        setattr(obj, f"Waviness{direction.title()}", largest)
+    obj.MissedRays, obj.DefectiveSamples = found["missed_rays"], found["defective_samples"]
+    unresolved = found["unresolved_motions"]
+    obj.UnresolvedMotions = -1 if unresolved is None else unresolved
+    obj.ExtrapolatedLawEvents = found["extrapolated_law_events"]
+    obj.NotConverged = found["not_converged_events"]
+    obj.Notes = found["notes"]
+    obj.Data = json.dumps(found)
+
+
+def describe(region):
+    """One line for a face or a zone."""
+    if region["worst"] is None:
+        return f"{region['verdict']}, nothing was inspected"
+    worst = region["worst"]
+    return (
+        f"{region['verdict']}, {100 * region['in_share']:.2f} % in tolerance, worst "
+        f"{worst['value_mm']:+.4f} mm ({worst['beyond_mm']:+.4f} mm beyond)"
+    )
+
+
+def cluster_of_samples(job, simulation):
+    """(field, number of the cluster, from 0, of every sample; core.NO_CLUSTER: in tolerance)."""
+    field, inspection = field_of(simulation), _judged_by(job)
+    return field, verdicts.judge({"inspection": inspection}, field)["cluster"]

@@ -1,0 +1,70 @@
+"""The verdict in words."""
+
+from pathlib import Path
+
+
+def text(verdict):
+    """A few lines that say it all."""
+    failed = [one for one in verdict["zones"] if one["verdict"] != "pass"]
+    bad = [one["face"] for one in verdict["faces"] if one["verdict"] == "fail"]
+    lines = [f"verdict: {verdict['overall'].upper()}"]
+    if bad:
+        lines[0] += f", {len(bad)} of {len(verdict['faces'])} faces are not in tolerance"
+    for zone in failed:
+        name = "elsewhere" if zone["name"] is None else f"zone '{zone['name']}'"
+        if zone["worst"] is None:
+            lines.append(f"  {name}: nothing could be inspected")
+            continue
+        if zone["verdict"] == "unknown":
+            lines.append(f"  {name}: in tolerance, but not everything could be inspected")
+            continue
+        worst = zone["worst"]
+        lines.append(
+            f"  {name}: {100 * zone['above_share']:.2f} % of the area above and "
+            f"{100 * zone['below_share']:.2f} % below tolerance, at worst {worst['value_mm']:+.3f} mm, "
+            f"{max(worst['beyond_mm'], 0.0):.3f} mm beyond, on face {worst['face']}"
+        )
+        thick = zone["thickness"]
+        if thick and thick["verdict"] == "fail":
+            lines.append(
+                f"    thickness out of tolerance on {100 * thick['out_share']:.2f} % of the area, at "
+                f"worst {thick['worst']['value_mm']:+.3f} mm"
+            )
+    for cluster in verdict["clusters"][:3]:
+        lines.append(f"  {cluster['number']}. {_told(cluster, verdict['programs'])}")
+    doubts = [
+        ("rays that met no stock", verdict["missed_rays"]),
+        ("samples with defective stock", verdict["defective_samples"]),
+        ("events outside of the law's range", verdict["extrapolated_law_events"]),
+        ("contacts not converged", verdict["not_converged_events"]),
+        ("places of the programs not resolved", verdict["unresolved_motions"]),
+    ]
+    told = [f"{count} {what}" for what, count in doubts if count]
+    if verdict["unresolved_motions"] is None:
+        told.append("the programs could not be read again")
+    if told:
+        lines.append(f"  in doubt: {', '.join(told)}")
+    return "\n".join(lines + [f"  note: {note}" for note in verdict["notes"]])
+
+
+def _told(cluster, programs):
+    x, y, z = cluster["worst"]["point_mm"]
+    told = (
+        f"{cluster['area_mm2']:.1f} mm2 {'too high' if cluster['side'] == 'above' else 'too deep'}, "
+        f"at worst {cluster['worst']['value_mm']:+.3f} mm at ({x:.1f}, {y:.1f}, {z:.1f})"
+    )
+    if (cluster["untouched_share"] or 0.0) > 0.5:
+        told += f"; {100 * cluster['untouched_share']:.0f} % of it was never touched"
+    elif cluster["motions"]:
+        most = cluster["motions"][0]
+        if cluster["motion_count"] > 1:
+            told += f"; {cluster['motion_count']} motions"
+        told += f"; {100 * most['share']:.0f} % of it by {_place(most, programs)}"
+    return told
+
+
+def _place(motion, programs):
+    if motion["program"] is None:
+        return f"motion {motion['motion']}"
+    place = f"line {motion['line']}" if motion["line"] else f"pose {motion['pose'] + 1}"
+    return f"{Path(programs[motion['program']]['name']).name}, {place}"

@@ -2,7 +2,6 @@
 
 SCRIPT = """
 import os
-import subprocess
 import FreeCAD, FreeCADGui, Mesh, Part
 from support.hands import *
 import beltgrinding
@@ -49,8 +48,6 @@ assert deviation.ColourBy == "difference"
 FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
 FreeCADGui.SendMsgToActiveView("ViewFit")
 settle()
-if os.environ.get("PICTURE"):
-    subprocess.run(["import", "-window", "root", os.environ["PICTURE"]])
 press("Cancel")
 assert not getattr(doc.Simulation, "ScanFigures", "")
 assert deviation.ColourBy == "deviation"

@@ -190,6 +190,29 @@ void GapMap::raise(const Eigen::ArrayXd& values, std::span<float> largest) const
     }
 }
 
+std::optional<std::uint32_t> GapMap::sample_near(double s, double y) const {
+    std::optional<std::uint32_t> found;
+    double least = kNone;
+    for (const Footprint& f : footprints_) {
+        const double away = std::hypot(f.s - s, f.y - y);
+        if (!f.nearest || away >= least) continue;
+        least = away;
+        found = f.sample;
+    }
+    return found;
+}
+
+Eigen::Vector2d GapMap::slope_near(double s, double y, double reach) const {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    int count = 0;
+    for (const Footprint& f : footprints_) {
+        if (!f.nearest || std::hypot(f.s - s, f.y - y) > reach) continue;
+        sum += Eigen::Vector2d(f.slope_s / grid_.ds, f.slope_y / grid_.dy);
+        ++count;
+    }
+    return sum / count;
+}
+
 Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
                         const ContactGrid& to) {
     if (from == to) return values;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,13 @@ class GapMap {
     /// Raises `largest` (one per sample of the field) to what `values` (one per cell) are at each
     /// sample, where that is more.
     void raise(const Eigen::ArrayXd& values, std::span<float> largest) const;
+
+    /// The sample of the nearest layer that lies nearest to (s, y), mm; none if the map is empty.
+    std::optional<std::uint32_t> sample_near(double s, double y) const;
+
+    /// Mean slopes of the design surface's gap along s and y, over the samples within `reach` mm of
+    /// (s, y); NaN where there is none. By the samples' own normals: grinding does not change them.
+    Eigen::Vector2d slope_near(double s, double y, double reach) const;
 
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();

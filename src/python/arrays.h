@@ -48,6 +48,7 @@ void bind_base(py::module_& m);
 void bind_geometry(py::module_& m);
 void bind_height_field(py::module_& m);
 void bind_contact(py::module_& m);
+void bind_events(py::module_& m);
 void bind_surrogate(py::module_& m);
 void bind_calibration(py::module_& m);
 void bind_recording(py::module_& m);

@@ -92,6 +92,11 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.wear = wear_from(take(d, "wear", py::dict()));
     o.belt = belt_from(take(d, "belt", py::dict()));
     o.heat_limit = take(d, "heat_limit", o.heat_limit);
+    o.pressure_limit = take(d, "pressure_limit", o.pressure_limit);
+    o.orientation_jump = take(d, "orientation_jump", o.orientation_jump);
+    o.tilt_limit = take(d, "tilt_limit", o.tilt_limit);
+    const Eigen::ArrayXf limits = take(d, "lower_limits", Eigen::ArrayXf());
+    o.lower_limits.assign(limits.begin(), limits.end());
     for (const auto& shifted : take(d, "shifted_laws", py::list())) {
         o.shifted_laws.push_back(law_from(shifted.cast<py::dict>()));
     }
@@ -115,22 +120,6 @@ py::array_t<Scalar> column(const std::vector<StepRecord>& steps, Get get) {
 }
 
 }  // namespace
-
-py::list events_to_list(const std::vector<Event>& events) {
-    py::list list;
-    for (const Event& e : events) {
-        py::dict d;
-        d["kind"] = e.kind;
-        d["pose"] = e.pose;
-        d["line"] = e.line;
-        d["time"] = e.time;
-        d["duration"] = e.duration;
-        d["value"] = e.value;
-        d["message"] = e.message;
-        list.append(d);
-    }
-    return list;
-}
 
 namespace {
 
@@ -156,6 +145,7 @@ py::dict to_dict(const SimulationResult& result) {
     wall["removal"] = result.removal_s;
     wall["refit"] = result.refit_s;
     wall["trace"] = result.trace_s;
+    wall["events"] = result.events_s;
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;

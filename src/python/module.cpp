@@ -81,6 +81,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_contact(m);
     bind_surrogate(m);
     bind_calibration(m);
+    bind_events(m);
     bind_recording(m);
     bind_simulation(m);
     bind_inspection(m);

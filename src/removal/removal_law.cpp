@@ -78,15 +78,19 @@ void LocalLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
     rate *= factor;
 }
 
-std::string LocalLaw::outside(double peak_pressure, const ProcessState& state) const {
+std::optional<OutsideRange> LocalLaw::outside(double peak_pressure,
+                                              const ProcessState& state) const {
     const LocalLawParameters& p = parameters_;
-    std::ostringstream text;
-    text.precision(3);
+    std::optional<OutsideRange> found;
     const auto look = [&](const Curve& curve, double value, double unit, const char* what,
                           const char* name) {
-        if (curve.empty() || curve.measured(value) || !text.str().empty()) return;
+        if (curve.empty() || curve.measured(value) || found) return;
+        std::ostringstream text;
+        text.precision(3);
         text << what << " of " << value / unit << " " << name << " lies outside the measured "
              << curve.lower() / unit << " to " << curve.upper() / unit << " " << name;
+        const double limit = value > curve.upper() ? curve.upper() : curve.lower();
+        found = OutsideRange{text.str(), name, value / unit, limit / unit};
     };
     if (!p.pressure_curve.empty() && peak_pressure / p.land_share > p.pressure_curve.upper()) {
         look(p.pressure_curve, peak_pressure / p.land_share, 1.0, "the peak pressure", "MPa");
@@ -94,7 +98,7 @@ std::string LocalLaw::outside(double peak_pressure, const ProcessState& state) c
     look(p.speed_curve, state.belt_speed, 1000.0, "the belt speed", "m/s");
     look(p.feed_curve, state.feed, 1.0, "the feed", "mm/s");
     look(p.land_curve, p.land_share, 1.0, "the land share", "");
-    return text.str();
+    return found;
 }
 
 std::string LocalLaw::describe() const {

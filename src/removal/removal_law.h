@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "removal/curve.h"
@@ -16,6 +17,14 @@ struct ProcessState {
     double contact_area = 0.0;    ///< mm2
 };
 
+/// A quantity beyond the range that a law was measured in.
+struct OutsideRange {
+    std::string text;    ///< one sentence
+    std::string unit;    ///< of the values
+    double value = 0.0;  ///< of the quantity
+    double limit = 0.0;  ///< the end of the range that it is beyond
+};
+
 /// A process law: how fast the surface recedes under each cell.
 class RemovalLaw {
   public:
@@ -23,8 +32,8 @@ class RemovalLaw {
     /// rate (mm/s) per cell from `pressure` (MPa) per cell; cells without pressure get 0.
     virtual void rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
                       Eigen::ArrayXd& rate) const = 0;
-    /// What lies outside the range that the law was measured in, one sentence; empty: nothing.
-    virtual std::string outside(double, const ProcessState&) const { return {}; }
+    /// What lies outside the range that the law was measured in, the first of several.
+    virtual std::optional<OutsideRange> outside(double, const ProcessState&) const { return {}; }
     virtual std::string describe() const = 0;
 };
 
@@ -61,7 +70,8 @@ class LocalLaw final : public RemovalLaw {
     explicit LocalLaw(LocalLawParameters parameters);
     void rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
               Eigen::ArrayXd& rate) const override;
-    std::string outside(double peak_pressure, const ProcessState& state) const override;
+    std::optional<OutsideRange> outside(double peak_pressure,
+                                        const ProcessState& state) const override;
     std::string describe() const override;
 
   private:

@@ -64,6 +64,7 @@ class Check {
         if (by_joints) ++index_;  // no event lasts over a rapid motion
         time_ += duration;
         step_.pose = static_cast<std::uint32_t>(i);
+        share_ = 1.0;
         step_.duration = by_joints ? 0.0 : duration;
         step_.time = time_ - 0.5 * step_.duration;
         const auto& given = path_.poses()[i].joints;
@@ -88,7 +89,7 @@ class Check {
         step_.pose = static_cast<std::uint32_t>(i);
         double begin = 0.0;
         for (int k = 0; k < parts; ++k) {
-            const double end = (k + 1.0) / parts;
+            const double end = share_ = (k + 1.0) / parts;
             const double finish = path_.elapsed(i, end);
             step_.duration = finish - begin;
             step_.time = time_ + 0.5 * (begin + finish);
@@ -110,9 +111,14 @@ class Check {
         return here_;
     }
 
-    void note(const char* kind, double value, const std::string& message, int part = 0,
-              bool larger_is_worse = true) {
-        events_.note(kind, index_, step_, value, message, larger_is_worse, part);
+    void note(const char* kind, double value, double limit, const std::string& message,
+              int part = 0) {
+        Event* event = events_.note(kind, index_, step_, value, part);
+        if (event == nullptr) return;
+        event->limit = limit;
+        event->message = message;
+        event->point =
+            path_.frames().work_from_contact(path_.base_from_tcp(step_.pose, share_)).translation();
     }
 
     void note_unreached(const Frame& target) {
@@ -124,7 +130,7 @@ class Check {
             text("the robot cannot reach it: %.1f mm are missing", end.position_error);
         if (end.angle_error > kFarAngle)
             message += text(" and %.1f deg", kDegrees * end.angle_error);
-        note("out_of_reach", end.position_error, message);
+        note("out_of_reach", end.position_error, Event::kNone, message);
     }
 
     void note_joints() {
@@ -143,7 +149,7 @@ class Check {
             const double back = q[j] + (q[j] < low ? 2.0 : -2.0) * M_PI;
             if (back >= low && back <= high)
                 message += text("; wound up: it would fit at %.1f deg", kDegrees * back);
-            note("joint_limit", kDegrees * beyond, message, j);
+            note("joint_limit", kDegrees * beyond, 0.0, message, j);
         }
     }
 
@@ -157,7 +163,7 @@ class Check {
             for (int j = first; j < first + kWristJoint; ++j)
                 message += text(", joint %d turns %.0f deg", j + 1, kDegrees * turned[j]);
             note(first == 0 ? "arm_flip" : "wrist_flip", kDegrees * std::abs(turned[worst]),
-                 message);
+                 kDegrees * options_.flip, message);
         }
         const double time = std::max(step_.duration, turn / kTurnSpeed);
         if (time <= 0.0) return;
@@ -166,7 +172,7 @@ class Check {
             const double ratio = limit > 0.0 ? std::abs(turned[j]) / time / limit : 0.0;
             if (ratio <= 1.0 + kSpeedTolerance) continue;
             note(
-                "joint_speed", ratio,
+                "joint_speed", ratio, 1.0,
                 text(
                     "joint %d would have to turn at %.0f deg/s, %.2f times its greatest speed; the "
                     "robot will be slower than programmed or stop",
@@ -187,8 +193,8 @@ class Check {
         int part = 0;
         for (const auto& kind : kinds) {
             if (kind.angle < options_.singularity) {
-                note("singularity", kDegrees * kind.angle, text(kind.what, kDegrees * kind.angle),
-                     part, false);
+                note("singularity", kDegrees * kind.angle, kDegrees * options_.singularity,
+                     text(kind.what, kDegrees * kind.angle), part);
             }
             ++part;
         }
@@ -201,6 +207,7 @@ class Check {
     EventLog events_;
     ReachResult result_;
     PathStep step_;
+    double share_ = 0.0;  // of the motion's way that is done
     double time_ = 0.0;
     std::size_t index_ = 0;
     std::optional<ArmSolution> at_;  // the last configuration that is known

@@ -34,6 +34,7 @@ class Pressing {
     /// mm along z from the programmed pose to the wheel as pressed.
     double approach() const { return placed_ + solution_.approach; }
     GapMap& map() { return map_; }
+    const GapMap& map() const { return map_; }
     std::size_t localised() const { return hits_.size(); }
 
   private:

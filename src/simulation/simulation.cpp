@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "heightfield/kdop_tree.h"
 #include "simulation/pressing.h"
+#include "simulation/process_monitor.h"
 #include "simulation/trace_keeper.h"
-#include "toolpath/event_log.h"
 
 namespace beltgrinding {
 namespace {
@@ -44,6 +43,18 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     if (!std::isfinite(options.heat_limit) || options.heat_limit < 0.0) {
         throw InputError("the limit of heat must be zero (none) or positive");
     }
+    const std::size_t limits = options.lower_limits.size();
+    if (limits > 1 && limits != field.size()) {
+        throw InputError("the lower limits are neither one for all nor one per sample");
+    }
+    for (const double limit :
+         {options.pressure_limit, options.orientation_jump, options.tilt_limit}) {
+        if (!std::isfinite(limit) || limit < 0.0) {
+            throw InputError(
+                "the limits of pressure, orientation jump and tilt must be zero (none) or "
+                "positive");
+        }
+    }
     if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
         throw InputError("the belt's wear factor must be zero or positive");
     }
@@ -53,13 +64,6 @@ void refuse_force_of_rigid(const ContactModel& model, const SimulationOptions& o
     if (model.rigid() && options.force_control) {
         throw InputError("a geometric (rigid) tool has no force; set the control to position");
     }
-}
-
-std::string newtons(const char* before, double force, const char* after) {
-    std::ostringstream text;
-    text.precision(3);
-    text << before << force << after;
-    return text.str();
 }
 
 /// Restores the heights unless told to keep them: a cancelled or failed run leaves no trace.
@@ -152,31 +156,6 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
     return volume;
 }
 
-/// Notes what the process does that it should not: burning, leaving what was measured.
-void note_process(const ContactSolution& contact, const RemovalLaw& law, const PathStep& step,
-                  std::size_t index, const SimulationOptions& options,
-                  const SimulationResult& result, EventLog& events) {
-    const double heat = contact.peak_pressure * options.belt_speed;
-    if (options.heat_limit > 0.0 && heat > options.heat_limit) {
-        std::ostringstream text;
-        text.precision(3);
-        text << "pressure times belt speed reaches " << 1e-3 * heat
-             << " MPa m/s, above the limit of " << 1e-3 * options.heat_limit
-             << "; lower the force or the belt speed";
-        events.note("burn_risk", index, step, 1e-3 * heat, text.str());
-    }
-    const ProcessState state{options.belt_speed, 1.0, step.feed, contact.force, contact.area};
-    const std::string outside = law.outside(contact.peak_pressure, state);
-    if (!outside.empty()) {
-        events.note("law_out_of_range", index, step, contact.peak_pressure,
-                    outside + "; the curve's last value is used");
-    }
-    if (!options.wear.measured(result.belt)) {
-        events.note("belt_out_of_range", index, step, result.belt.work,
-                    "the belt has done more than its wear was measured for; change it");
-    }
-}
-
 }  // namespace
 
 SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
@@ -201,7 +180,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     HeightGuard guard(field);
     RecordingGuard recording_guard(options.recording);
     if (options.recording != nullptr) options.recording->begin(field, path.duration());
-    EventLog events(path);
+    ProcessMonitor monitor(field, path, steps, options, law);
     std::optional<TraceKeeper> trace;
     if (options.trace) trace.emplace(field);
     std::unique_ptr<SegmentTree> tree;
@@ -237,39 +216,21 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
             record.approach = static_cast<float>(pressing.approach());
             record.contact_area = static_cast<float>(contact.area);
             record.peak_pressure = static_cast<float>(contact.peak_pressure);
-            if (!contact.converged) {
-                events.note("not_converged", i, step, contact.iterations,
-                            "the contact did not converge; refine the contact grid or raise the "
-                            "tolerance");
+            {
+                const Stopwatch watch(result.events_s);
+                monitor.pressed(i, pressing, state, result.belt);
             }
-            if (state == Pressing::State::kBeyondTravel) {
-                const bool low = contact.force < step.force;
-                // On the way to the surface and off it, less than the commanded force is no fault.
-                if (!low || !step.plunging) {
-                    events.note(
-                        low ? "force_not_reached" : "force_exceeded", i, step, contact.force,
-                        newtons("the force control ran to the end of its travel at ", contact.force,
-                                " N; correct the pose or enlarge the travel"),
-                        !low);
-                }
-            }
-            note_process(contact, law, step, i, options, result, events);
             const double volume = grind(field, pressing, law, step, options,
                                         trace ? &*trace : nullptr, changed, result);
             record.removal_rate = static_cast<float>(volume / step.duration);
-            const Stopwatch watch(result.refit_s);
-            std::sort(changed.begin(), changed.end());
-            changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-            double deepest = 0.0;
-            for (const std::uint32_t s : changed) deepest = std::min(deepest, field.height[s]);
-            if (deepest < -field.depth) {
-                events.note("depth_exceeded", i, step, deepest,
-                            newtons("ground ", -deepest,
-                                    " mm below the design, deeper than the "
-                                    "segments reach"),
-                            false);
+            {
+                const Stopwatch watch(result.refit_s);
+                std::sort(changed.begin(), changed.end());
+                changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+                tree->refit(field, changed);
             }
-            tree->refit(field, changed);
+            const Stopwatch watch(result.events_s);
+            monitor.ground(i, changed);
         }
         if (trace && !changed.empty()) {
             const Stopwatch watch(result.trace_s);
@@ -290,7 +251,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
         result.removed_volume += field.area[s] * (guard.before()[s] - field.height[s]);
     }
     context.report(1.0);
-    result.events = events.take();
+    result.events = monitor.take();
     if (options.recording != nullptr) options.recording->end(field);
     if (trace) {
         trace->keep(field);

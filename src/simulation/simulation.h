@@ -42,6 +42,11 @@ struct SimulationOptions {
     BeltWear wear;                 ///< how k_t falls with use
     BeltState belt;                ///< what the belt has done before
     double heat_limit = 0.0;       ///< MPa mm/s, largest p V_b without a risk of burning; 0: none
+    double pressure_limit = 0.0;   ///< MPa, beyond it is an event; 0: none
+    double orientation_jump = 0.0;  ///< rad between neighbouring poses at feed, an event; 0: none
+    double tilt_limit = 0.0;  ///< rad of the contact's centre round the rim, an event; 0: none
+    /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
+    std::vector<float> lower_limits = {};
     /// The law, moved by one standard deviation along each direction in which it is uncertain.
     std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws;
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
@@ -65,7 +70,7 @@ struct SimulationResult {
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     /// s of wall time by phase
     double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0,
-           trace_s = 0;
+           trace_s = 0, events_s = 0;
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, frames, inputs, law as laws, motions, robot as robots, schemas
-from . import verdict as verdicts
+from . import InputError, core, events as event_lists, frames, inputs, law as laws, motions
+from . import robot as robots, schemas, verdict as verdicts
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -134,7 +134,7 @@ def _run(job, context, warnings, recording):
     wheel, compliance, law, options = engine_arguments(job)
     options["first_motion"] = 0
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
-    events, steps, process_time, models = [], None, 0.0, {}
+    found, steps, process_time, models = [], None, 0.0, {}
     for i, path in enumerate(paths):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
@@ -142,9 +142,8 @@ def _run(job, context, warnings, recording):
             result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
         except InputError as error:
             raise InputError(f"{program_name(job, i)}: {error}") from None
-        found = [*(reached[i]["events"] if reached else []), *result["events"]]
-        for event in sorted(found, key=lambda event: event["time"]):
-            events.append({"program": i, **event, "time": event["time"] + process_time})
+        reach_events = reached[i]["events"] if reached else []
+        found.append((i, process_time, [*reach_events, *result["events"]]))
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
         rows["time"] = rows["time"] + process_time
@@ -159,6 +158,7 @@ def _run(job, context, warnings, recording):
     phases.restart()
     if shifts.shape[1]:
         field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))
+    events = event_lists.merge(found)
     summary = summarise(job, field, events)
     phases.end("inspect")
     summary.update(
@@ -194,9 +194,6 @@ def summarise(job, field, events):
     """The figures of a ground field, as summary.json has them."""
     lower, upper = job["inspection"]["tolerance_mm"]
     s = core.deviation_statistics(field, lower, upper)
-    kinds = {}
-    for event in events:
-        kinds[event["kind"]] = kinds.get(event["kind"], 0) + 1
     uncertainty = {}
     if "sd_mean" in s:
         uncertainty = {
@@ -215,7 +212,7 @@ def summarise(job, field, events):
         **uncertainty,
         "missed_rays": s["missed"],
         "defective_samples": s["defective"],
-        "events": kinds,
+        "events": event_lists.count(events),
         "versions": core.versions(),
     }
 
@@ -356,6 +353,10 @@ def engine_arguments(job):
         "wear": laws.engine_wear(job["law"]),
         "belt": laws.engine_belt(machine["belt"]),
         "heat_limit": 1000.0 * job["law"]["heat_limit_MPa_m_s"],
+        "pressure_limit": float(job["law"]["pressure_limit_MPa"]),
+        "orientation_jump": math.radians(job["simulation"]["orientation_jump_deg"]),
+        "tilt_limit": math.radians(job["simulation"]["tilt_limit_deg"]),
+        "lower_limits": [float(job["inspection"]["tolerance_mm"][0])],
         "shifted_laws": laws.shifted_laws(job["law"]),
         "contact_spacing": float(machine["contact_spacing_mm"]),
         "contact_tolerance": float(machine["contact_tolerance"]),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, motions, schemas
+from . import InputError, core, events, motions, schemas
 
 
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
@@ -95,7 +95,8 @@ class Result:
                 f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
             ) from None
         data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
-        result = cls(job, field, data["summary.json"], data["events.json"], _read_table(folder))
+        found = events.complete(data["events.json"])
+        result = cls(job, field, data["summary.json"], found, _read_table(folder))
         result.convergence = convergence.read(folder / "convergence.json", job)
         result.motions = motions.read(folder / motions.FILE)
         if (folder / cls.VERDICT).exists():

@@ -93,12 +93,12 @@ TEST(LocalLaw, CurvesReplaceThePowersAndKnowTheirRange) {
     EXPECT_NEAR(rate_of(p, 0.1, state), 1.3 * linear, 1e-12);
 
     const LocalLaw law(p);
-    EXPECT_EQ(law.outside(0.2, state), "");
-    EXPECT_NE(law.outside(0.4, state).find("0.05 to 0.3 MPa"), std::string::npos);
+    EXPECT_FALSE(law.outside(0.2, state));
+    EXPECT_NE(law.outside(0.4, state)->text.find("0.05 to 0.3 MPa"), std::string::npos);
     state.feed = 10.0;
-    EXPECT_NE(law.outside(0.2, state).find("the feed of 10"), std::string::npos);
+    EXPECT_NE(law.outside(0.2, state)->text.find("the feed of 10"), std::string::npos);
     state.belt_speed = 5000.0;
-    EXPECT_NE(law.outside(0.2, state).find("10 to 30 m/s"), std::string::npos);
+    EXPECT_NE(law.outside(0.2, state)->text.find("10 to 30 m/s"), std::string::npos);
 }
 
 TEST(RemovalLaw, RefusesNonsense) {

@@ -11,7 +11,10 @@ def add(commands):
     preset.set_defaults(do=_presets)
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")
     printed.add_argument(
-        "name", nargs="?", choices=("job", "contact", "presets", "raster", "verdict"), default="job"
+        "name",
+        nargs="?",
+        choices=("job", "contact", "presets", "raster", "events", "verdict"),
+        default="job",
     )
     printed.set_defaults(do=_schema)
 

@@ -93,7 +93,7 @@ def _raster(arguments):
 
 
 def _reach(arguments):
-    from .. import InputError, job, robot
+    from .. import InputError, events as event_lists, job, robot
     from ..result import write_whole
 
     given = job.load(arguments.job)
@@ -110,5 +110,6 @@ def _reach(arguments):
             raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
     for warning in warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    events = [{"program": i, **event} for i, one in enumerate(found) for event in one["events"]]
+    begins = [sum(path.duration() for path in paths[:i]) for i in range(len(paths))]
+    events = event_lists.merge([(i, begins[i], one["events"]) for i, one in enumerate(found)])
     print(json.dumps({**robot.summary(given["robot"], found), "events": events}, indent=2))

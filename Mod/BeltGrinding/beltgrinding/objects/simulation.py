@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import core
+from .. import core, events as event_lists
 from ..poses import program_name
 from . import told
 from .properties import Output, add_outputs
@@ -93,8 +93,8 @@ class Simulation(Proxy):
         }
 
     def events(self, obj):
-        """List of dicts: kind, program, pose, line, time (s), duration (s), value, message."""
-        return json.loads(obj.EventData or "[]")
+        """List of dicts, as events.schema.json says."""
+        return event_lists.complete(json.loads(obj.EventData or "[]"))
 
 
 def store(obj, result, fingerprint):

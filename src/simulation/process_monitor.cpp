@@ -1,0 +1,363 @@
+#include "simulation/process_monitor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr std::size_t kPause = 4;  // steps: noise at a threshold makes one event, not many
+constexpr double kMetre = 1e-3;    // of a mm
+// Share of an even distribution that the outermost cells must carry to be pressed: below, it is the
+// last of a pressure that fades out before the edge.
+constexpr double kPressedEdge = 0.25;
+constexpr double kOuterShare = 0.1;  // of the width: what the edge's load is told for
+// Times the even share: where both edges are pressed and neither carries more, the whole width is
+// in use, as of a cylinder on a plane, and all is well.
+constexpr double kEven = 1.5;
+constexpr int kHollowCells = 2;  // that are not touched between touched ones, at least
+// By how much more than the rim a hollow must turn: a share of the rim's turn; rad where the rim is
+// straight.
+constexpr double kHollow = 0.02;
+constexpr double kSlopeReach = 2.0;  // cells over whose samples a slope is averaged
+constexpr double kStill = 1e-9;      // mm, no way
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+    std::array<char, 240> buffer;
+    std::snprintf(buffer.data(), buffer.size(), format, values...);
+    return buffer.data();
+}
+
+}  // namespace
+
+ProcessMonitor::ProcessMonitor(const HeightField& field, const ToolPath& path,
+                               const std::vector<PathStep>& steps, const SimulationOptions& options,
+                               const RemovalLaw& law)
+    : field_(field),
+      path_(path),
+      steps_(steps),
+      options_(options),
+      law_(law),
+      events_(path, kPause),
+      touched_(steps.size(), 0) {
+    if (options.lower_limits.empty()) return;
+    below_.resize(field.size());
+    for (std::uint32_t s = 0; s < field.size(); ++s) below_[s] = field.height[s] < lower_limit(s);
+}
+
+double ProcessMonitor::lower_limit(std::uint32_t sample) const {
+    const auto& limits = options_.lower_limits;
+    return limits[limits.size() == 1 ? 0 : sample];
+}
+
+void ProcessMonitor::put(Event& event, std::uint32_t sample) const {
+    event.point = field_.top(sample);
+    event.face = field_.face[sample] + 1;
+}
+
+void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, double y) const {
+    if (const auto sample = pressing.map().sample_near(s, y)) put(event, *sample);
+}
+
+void ProcessMonitor::pressed(std::size_t index, const Pressing& pressing, Pressing::State state,
+                             const BeltState& belt) {
+    touched_[index] = 1;
+    if (pressing.rigid()) return;  // nothing is known of its pressure
+    if (state == Pressing::State::kBeyondTravel) note_force(index, pressing);
+    note_limits(index, pressing, belt);
+    note_distribution(index, pressing);
+    note_hollow(index, pressing, false);
+    note_hollow(index, pressing, true);
+}
+
+void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
+    const PathStep& step = steps_[index];
+    const double force = pressing.solution().force;
+    const bool low = force < step.force;
+    // On the way to the surface and off it, less than the commanded force is no fault.
+    if (low && step.plunging) return;
+    Event* event = events_.note(low ? "force_not_reached" : "force_exceeded", index, step, force);
+    if (event == nullptr) return;
+    event->limit = step.force;
+    event->message =
+        text("%.3g N in place of %.3g N: the force control is at the end of its travel, %.3g mm %s",
+             force, step.force, options_.force_travel,
+             pressing.approach() > 0.0 ? "towards the work" : "away from the work");
+    put(*event, pressing, 0.0, 0.0);
+}
+
+void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
+                                 const BeltState& belt) {
+    const PathStep& step = steps_[index];
+    const ContactSolution& contact = pressing.solution();
+    const auto put_at_peak = [&](Event& event) {
+        Eigen::Index cell = 0;
+        contact.pressure.maxCoeff(&cell);
+        const ContactGrid& grid = pressing.map().grid();
+        put(event, pressing, grid.s(static_cast<int>(cell) % grid.nx),
+            grid.y(static_cast<int>(cell) / grid.nx));
+    };
+    if (!contact.converged) {
+        if (Event* event = events_.note("not_converged", index, step, contact.iterations)) {
+            event->message =
+                text("the contact did not converge in %d iterations", contact.iterations);
+            put_at_peak(*event);
+        }
+    }
+    const double peak = contact.peak_pressure;
+    if (options_.pressure_limit > 0.0 && peak > options_.pressure_limit) {
+        if (Event* event = events_.note("over_pressure", index, step, peak)) {
+            event->limit = options_.pressure_limit;
+            event->message = text("the pressure reaches %.3g MPa, above the limit of %.3g MPa",
+                                  peak, options_.pressure_limit);
+            put_at_peak(*event);
+        }
+    }
+    const double heat = kMetre * peak * options_.belt_speed;
+    const double heat_limit = kMetre * options_.heat_limit;
+    if (heat_limit > 0.0 && heat > heat_limit) {
+        if (Event* event = events_.note("burn_risk", index, step, heat)) {
+            event->limit = heat_limit;
+            event->message = text(
+                "pressure times belt speed reaches %.3g MPa m/s, above the limit of %.3g MPa m/s",
+                heat, heat_limit);
+            put_at_peak(*event);
+        }
+    }
+    const ProcessState state{options_.belt_speed, 1.0, step.feed, contact.force, contact.area};
+    if (const auto outside = law_.outside(peak, state)) {
+        const double ratio = outside->value / outside->limit;
+        const double badness = ratio > 0.0 ? std::abs(std::log(ratio)) : HUGE_VAL;
+        Event* event = events_.note("law_out_of_range", index, step, outside->value, 0, badness);
+        if (event != nullptr) {
+            event->limit = outside->limit;
+            event->unit = outside->unit;
+            event->message = outside->text + "; the curve's last value is used";
+            put_at_peak(*event);
+        }
+    }
+    if (!options_.wear.measured(belt)) {
+        if (Event* event = events_.note("belt_out_of_range", index, step, belt.work)) {
+            event->message =
+                text("the belt has done more than its wear was measured for: %.4g J", belt.work);
+        }
+    }
+}
+
+void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressing) {
+    const ContactSolution& contact = pressing.solution();
+    const GapMap& map = pressing.map();
+    const ContactGrid& grid = map.grid();
+    std::vector<double> by_column(static_cast<std::size_t>(grid.ny), 0.0);  // share of the force
+    double centre = 0.0, total = 0.0;
+    for (int j = 0; j < grid.ny; ++j) {
+        const auto row = Eigen::seqN(j * grid.nx, grid.nx);
+        const Eigen::ArrayXd force = contact.pressure(row) * map.coverage()(row);
+        const double sum = force.sum();
+        if (!(sum > 0.0)) continue;
+        by_column[static_cast<std::size_t>(j)] = sum;
+        total += sum;
+        centre +=
+            (force * Eigen::ArrayXd::LinSpaced(grid.nx, grid.s(0), grid.s(grid.nx - 1))).sum();
+    }
+    if (!(total > 0.0)) return;
+    for (double& share : by_column) share /= total;
+    centre /= total;
+    note_edges(index, pressing, by_column);
+    const double tilt = std::abs(centre) / options_.wheel.radius;
+    if (!(options_.tilt_limit > 0.0) || tilt <= options_.tilt_limit) return;
+    if (Event* event = events_.note("tilted_contact", index, steps_[index], kDegrees * tilt)) {
+        event->limit = kDegrees * options_.tilt_limit;
+        event->message =
+            text("the wheel touches %.1f deg round its rim from the programmed contact point, %s",
+                 kDegrees * tilt, centre > 0.0 ? "along the belt's travel" : "against it");
+        put(*event, pressing, centre, 0.0);
+    }
+}
+
+void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
+                                const std::vector<double>& by_column) {
+    const ContactGrid& grid = pressing.map().grid();
+    const double pressed = kPressedEdge / grid.ny;
+    const std::array<bool, 2> on = {by_column.front() > pressed, by_column.back() > pressed};
+    if (!on[0] && !on[1]) return;
+    std::array<double, 2> outer = {0.0, 0.0};
+    const int columns = std::max(1, static_cast<int>(std::lround(kOuterShare * grid.ny)));
+    for (int j = 0; j < columns; ++j) {
+        outer[0] += by_column[static_cast<std::size_t>(j)];
+        outer[1] += by_column[static_cast<std::size_t>(grid.ny - 1 - j)];
+    }
+    const double even = static_cast<double>(columns) / grid.ny;
+    const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
+    if (on[0] && on[1] && outer[more] <= kEven * even) return;
+    const double share = 100.0 * outer[more];
+    Event* event =
+        events_.note("edge_contact", index, steps_[index], share, static_cast<int>(more));
+    if (event == nullptr) return;
+    event->limit = 100.0 * even;
+    event->message = text(
+        "the wheel presses with its edge at %cy: the outer tenth of its width carries %.0f %% of "
+        "the force there, %.0f %% if it were even",
+        more == 1 ? '+' : '-', share, event->limit);
+    put(*event, pressing, 0.0, more == 1 ? grid.y(grid.ny - 1) : grid.y(0));
+}
+
+// A stretch of cells without pressure between pressed ones, in a row along the rim or across it. It
+// is the surface's form, not a groove that was ground before, if the design's normals at both ends
+// turn towards each other by more than the rim's do. With theta and alpha half the turn of the
+// rim's and of the surface's normals, an arc of radius rho over the same chord has rho sin alpha =
+// R sin theta.
+void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bool across) {
+    const GapMap& map = pressing.map();
+    const ContactGrid& grid = map.grid();
+    const Eigen::ArrayXd& pressure = pressing.solution().pressure;
+    const int lines = across ? grid.nx : grid.ny, cells = across ? grid.ny : grid.nx;
+    int longest = 0, at_line = 0, at_end = 0;
+    for (int line = 0; line < lines; ++line) {
+        int open = -1;  // cells since the last pressed one; -1: none yet
+        for (int cell = 0; cell < cells; ++cell) {
+            const int k = across ? cell * grid.nx + line : line * grid.nx + cell;
+            if (pressure[k] > 0.0) {
+                if (open > longest) longest = open, at_line = line, at_end = cell;
+                open = 0;
+            } else if (open >= 0) {
+                ++open;
+            }
+        }
+    }
+    if (longest < kHollowCells) return;
+    const auto place = [&](double cell) {
+        const double s = across ? grid.s(at_line) : grid.s(0) + cell * grid.ds;
+        const double y = across ? grid.y(0) + cell * grid.dy : grid.y(at_line);
+        return Eigen::Vector2d(s, y);
+    };
+    const int begin = at_end - longest - 1;
+    const Eigen::Vector2d from = place(begin), to = place(at_end), middle = 0.5 * (from + to);
+    const double reach = kSlopeReach * std::max(grid.ds, grid.dy);
+    const int axis = across ? 1 : 0;
+    const double closing = std::atan(map.slope_near(from.x(), from.y(), reach)[axis]) -
+                           std::atan(map.slope_near(to.x(), to.y(), reach)[axis]);
+    const double span = (to - from).norm();
+    const double radius = across ? options_.wheel.crown_radius : options_.wheel.radius;
+    const double turn = radius > 0.0 ? 0.5 * span / radius : 0.0;
+    // Also false where a slope is not known.
+    if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
+    const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * span;
+    const double hollow = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
+    Event* event = events_.note("wheel_too_large", index, steps_[index], hollow, across ? 1 : 0);
+    if (event == nullptr) return;
+    if (radius > 0.0) event->limit = radius;
+    event->message = text(
+        "%s, the surface is hollow with a radius of about %.3g mm: the wheel spans %.3g mm "
+        "without touching",
+        across ? "across the wheel" : "along the belt", hollow, span);
+    put(*event, pressing, middle.x(), middle.y());  // for the face
+    // No sample is in reach there: it is the rim's point over the hollow.
+    const double angle = middle.x() / options_.wheel.radius;
+    const double r = options_.wheel.radius - options_.wheel.drop(middle.y());
+    event->point = steps_[index].work_from_contact *
+                   Vec3(r * std::sin(angle), middle.y(),
+                        pressing.approach() - options_.wheel.radius + r * std::cos(angle));
+}
+
+void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> changed) {
+    const PathStep& step = steps_[index];
+    double deepest = 0.0, worst = 0.0;
+    std::uint32_t deepest_at = 0, worst_at = 0;
+    bool fresh = false;  // a sample was within its limits before
+    for (const std::uint32_t s : changed) {
+        const double height = field_.height[s];
+        if (height < deepest) deepest = height, deepest_at = s;
+        if (below_.empty() || height >= lower_limit(s)) continue;
+        if (below_[s] == 0) {
+            below_[s] = 1;
+            fresh = true;
+        }
+        if (height - lower_limit(s) < worst) worst = height - lower_limit(s), worst_at = s;
+    }
+    if (fresh) {
+        if (Event* event = events_.note("gouge", index, step, field_.height[worst_at], 0, -worst)) {
+            event->limit = lower_limit(worst_at);
+            event->message = text("ground to %.3f mm, below the lower limit of %.3g mm",
+                                  field_.height[worst_at], event->limit);
+            put(*event, worst_at);
+        }
+    }
+    if (deepest < -field_.depth) {
+        if (Event* event = events_.note("depth_exceeded", index, step, deepest)) {
+            event->limit = -field_.depth;
+            event->message =
+                text("ground %.3g mm below the design, deeper than the segments reach", -deepest);
+            put(*event, deepest_at);
+        }
+    }
+}
+
+void ProcessMonitor::note_orientation_jumps() {
+    if (!(options_.orientation_jump > 0.0)) return;
+    const auto& poses = path_.poses();
+    double time = 0.0;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        PathStep step;
+        step.pose = static_cast<std::uint32_t>(i);
+        step.duration = path_.duration(i);
+        step.time = time + 0.5 * step.duration;
+        time += step.duration;
+        const double angle = angle_between(poses[i - 1].base_from_tcp, poses[i].base_from_tcp);
+        if (poses[i].rapid || angle <= options_.orientation_jump) continue;
+        // Each is a mistake of its own: steps of numbers far apart are never one event.
+        Event* event = events_.note("orientation_jump", i * (kPause + 1), step, kDegrees * angle);
+        if (event == nullptr) continue;
+        event->limit = kDegrees * options_.orientation_jump;
+        event->message = text("the tool turns by %.1f deg from pose to pose", kDegrees * angle);
+        event->point = path_.frames().work_from_contact(path_.base_from_tcp(i, 0.5)).translation();
+    }
+}
+
+// Between two contacts of a pass. A pass ends with a rapid motion, where the wheel lifts off along
+// its pressing direction, and where it turns back.
+void ProcessMonitor::note_lost_contact() {
+    const auto& poses = path_.poses();
+    std::vector<std::uint32_t> rapids(poses.size(), 0);  // up to the pose
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        rapids[i] = rapids[i - 1] + (poses[i].rapid ? 1u : 0u);
+    }
+    const auto position = [&](std::size_t i) { return steps_[i].work_from_contact.translation(); };
+    std::size_t last = steps_.size();  // the last contact of this pass; none
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        if (touched_[i] == 0) continue;
+        const std::size_t before = std::exchange(last, i);
+        if (before >= steps_.size() || i == before + 1) continue;
+        if (rapids[steps_[i].pose] != rapids[steps_[before].pose]) continue;
+        const Vec3 heading =
+            before > 0 ? Vec3(position(before) - position(before - 1)) : Vec3(Vec3::Zero());
+        bool lost = true;
+        for (std::size_t k = before + 1; k < i && lost; ++k) {
+            const bool pressing = !options_.force_control || steps_[k].force > 0.0;
+            const bool back = heading.dot(position(k) - position(k - 1)) < -kStill;
+            lost = pressing && !steps_[k].plunging && !back;
+        }
+        if (!lost) continue;
+        double way = 0.0;
+        for (std::size_t k = before + 1; k < i; ++k) {
+            way += steps_[k].feed * steps_[k].duration;
+            Event* event = events_.note("loss_of_contact", k, steps_[k], way);
+            if (event == nullptr) continue;
+            event->message = text("the wheel loses the work for %.3g mm of its way", way);
+            event->point = position(before + (k - before + 1) / 2);
+        }
+    }
+}
+
+std::vector<Event> ProcessMonitor::take() {
+    note_orientation_jumps();
+    note_lost_contact();
+    return events_.take();
+}
+
+}  // namespace beltgrinding

@@ -90,5 +90,6 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_picture(m);
     bind_verdict(m);
     bind_robot(m);
+    bind_collision(m);
     bind_toolpath(m);
 }

@@ -194,7 +194,7 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     }
     const double even = static_cast<double>(columns) / grid.ny;
     const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
-    if (on[0] && on[1] && outer[more] <= kEven * even) return;
+    if (outer[more] <= (on[0] && on[1] ? kEven : 1.0) * even) return;
     const double share = 100.0 * outer[more];
     Event* event =
         events_.note("edge_contact", index, steps_[index], share, static_cast<int>(more));

@@ -9,8 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
-from . import InputError, core, events as event_lists, frames, inputs, law as laws, motions
-from . import robot as robots, schemas, verdict as verdicts
+from . import (
+    InputError,
+    collision,
+    core,
+    events as event_lists,
+    frames,
+    inputs,
+    law as laws,
+    motions,
+    robot as robots,
+    schemas,
+    verdict as verdicts,
+)
 from .poses import program_arrays, program_name
 from .result import Result, colour_scale
 
@@ -42,7 +53,7 @@ def validate(job, folder="."):
     Raises InputError naming the key that is unknown, missing or wrong.
     """
     job = schemas.checked(job, schema(), "job")
-    for holder in [job["design"], job["stock"], *job["programs"]]:
+    for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
         if "file" in holder:
             holder["file"] = str(Path(folder, holder["file"]).resolve())
     compliance = job["belt_machine"]["compliance"]
@@ -55,6 +66,7 @@ def validate(job, folder="."):
         raise InputError("stock: a mesh stock needs the key 'file'")
     if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
         raise InputError("stock: a solid stock needs exactly one of 'file' or 'brep'")
+    collision.validate(job["cell"]["bodies"])
     robots.validate(job["robot"])
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
@@ -128,8 +140,10 @@ def _run(job, context, warnings, recording):
     phases.end("read")
     field = make_field(job, shape, warnings, context.part(0.0, 0.2))
     phases.end("sample")
-    apply_stock(field, job["stock"], warnings, context.part(0.2, 0.3))
+    apply_stock(field, job["stock"], warnings, context.part(0.2, 0.27))
     phases.end("stock")
+    met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3))
+    phases.end("collisions")
 
     wheel, compliance, law, options = engine_arguments(job)
     options["first_motion"] = 0
@@ -142,8 +156,8 @@ def _run(job, context, warnings, recording):
             result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
         except InputError as error:
             raise InputError(f"{program_name(job, i)}: {error}") from None
-        reach_events = reached[i]["events"] if reached else []
-        found.append((i, process_time, [*reach_events, *result["events"]]))
+        lists = [one[i]["events"] for one in (reached, met) if one]
+        found.append((i, process_time, sum(lists, result["events"])))
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
         rows["time"] = rows["time"] + process_time
@@ -173,6 +187,7 @@ def _run(job, context, warnings, recording):
             "remaining_cut": remaining_cut(job, options["belt"]),
         },
         robot=robots.summary(job["robot"], reached),
+        clearances=collision.summary(met, paths),
         unresolved_motions=unresolved,
     )
     result = Result(job, field, summary, events, steps, recording)

@@ -22,6 +22,7 @@ from beltgrinding import (
     poses,
     schemas,
 )  # noqa: E402
+from test_document import BLOCK  # noqa: E402
 from test_job import DOWN, plate_job  # noqa: E402
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
@@ -195,3 +196,55 @@ def test_a_real_program_over_a_real_part():
         frame, _ = path.frame_at(t)
         inside = np.linalg.inv(frame) @ np.append(middle, 1.0)
         assert not (np.abs(inside[:2]) < 59).all() or not -200 < inside[2] < -16
+
+
+def test_bodies_of_a_document_are_those_of_its_job(freecad):
+    freecad.run(
+        BLOCK
+        + """
+doc = FreeCAD.newDocument("cell")
+job = make(block(doc))
+machine = doc.BeltMachine
+first = doc.addObject("Part::Feature", "First")
+first.Label, first.Shape = "clamp", Part.makeBox(25, 40, 40)
+first.Placement.Base = (95, 0, 60)
+second = doc.addObject("Part::Feature", "Second")
+second.Label, second.Shape = "clamp", Part.makeBox(1, 1, 1)
+third = doc.addObject("Mesh::Feature", "Third")
+third.Label, third.Mesh = "part", Mesh.createBox(10, 10, 10)
+third.Placement.Base = (500, 0, 0)
+machine.BodiesAtPart = [first]
+machine.BodiesInBase = [second, third]
+simulation = beltgrinding.simulate(job)
+hits = [e for e in simulation.Proxy.events(simulation) if e["kind"] == "collision"]
+assert [e["bodies"] for e in hits] == [["clamp 2", "wheel"]], hits
+assert abs(hits[0]["time"] - (95 - 50 - 10) / 30) < 0.01
+assert not simulation.OutOfDate
+
+beltgrinding.export_job(job, "job.json")
+given = json.loads(Path("job.json").read_text())["cell"]
+named = {b["name"]: b["frame"] for b in given["bodies"]}
+assert named == {"clamp": "base", "part 2": "base", "clamp 2": "part"}, named
+assert given["clearance_mm"] == machine.Clearance.Value == 2.0
+result = beltgrinding.run("job.json")
+assert [e["bodies"] for e in result.events if e["kind"] == "collision"] == [["clamp 2", "wheel"]]
+
+# The job's file makes the same document.
+other = FreeCAD.newDocument("again")
+again = beltgrinding.open_job(other, "job.json")
+assert len(other.BeltMachine.BodiesInBase) == 2 and len(other.BeltMachine.BodiesAtPart) == 1
+box = other.BeltMachine.BodiesAtPart[0].Shape.BoundBox
+assert abs(box.XMin - 95) < 1e-9 and abs(box.ZMax - 100) < 1e-9
+mesh = other.BeltMachine.BodiesInBase[1].Mesh
+assert abs(mesh.BoundBox.XMin - 500) < 1e-3 and mesh.CountFacets == 12
+second_run = beltgrinding.simulate(again)
+kinds = [e["kind"] for e in second_run.Proxy.events(second_run)]
+assert kinds.count("collision") == 1
+
+# A body that moves makes the result out of date.
+first.Placement.Base = (300, 0, 60)
+doc.recompute()
+assert simulation.OutOfDate
+assert "collision" not in [e.split(":")[0] for e in beltgrinding.simulate(job).Events]
+"""
+    )

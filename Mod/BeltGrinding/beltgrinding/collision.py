@@ -11,14 +11,14 @@ import numpy as np
 
 from . import InputError, core, frames
 
-PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
+RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel
 LEAST_AROUND = 12  # corners of a wheel's body
 
 
 def validate(bodies):
     """Raises InputError for what the schema cannot say of a job's bodies."""
-    names = [PART, STOCK, WHEEL]
+    names = list(RESERVED)
     for i, body in enumerate(bodies):
         if ("file" in body) == ("brep" in body):
             raise InputError(f"cell.bodies.{i}: give exactly one of 'file' or 'brep'")

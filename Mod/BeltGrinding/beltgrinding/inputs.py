@@ -19,6 +19,11 @@ def digests(job):
             found.append(_file(key, Path(job[key]["file"])))
         elif "brep" in job[key]:
             found.append(_text(f"{key}.brep", job[key]["brep"]))
+    for i, body in enumerate(job["cell"].get("bodies", [])):
+        if "file" in body:
+            found.append(_file(f"cell.bodies[{i}]", Path(body["file"])))
+        else:
+            found.append(_text(f"cell.bodies[{i}].brep", body["brep"]))
     for i, program in enumerate(job["programs"]):
         if "file" in program:
             found += [_file(f"programs[{i}]", path) for path in _program_files(program["file"])]

@@ -19,6 +19,7 @@ from ..result import Result, write_whole
 from . import (
     belt as belts,
     belt_machine,
+    bodies,
     deviation as deviations,
     job_object,
     raster_path,
@@ -324,8 +325,9 @@ def export_job(job, path):
     path = Path(path)
     try:
         data = job_object.to_data(job, path.resolve().parent)
-        if "file" in data["stock"]:
-            data["stock"]["file"] = _relative(data["stock"]["file"], path.resolve().parent)
+        for holder in (data["stock"], *data["cell"]["bodies"]):
+            if "file" in holder:
+                holder["file"] = _relative(holder["file"], path.resolve().parent)
         write_whole(path, (json.dumps(data) + "\n").encode())
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
@@ -343,15 +345,8 @@ def import_result(job, folder):
     """
     result = Result.read(folder)
     with job_object.scratch_folder() as scratch:
-        same = _inputs(job_object.to_data(job, scratch)) == _inputs(result.job)
+        same = job_object.inputs(job_object.to_data(job, scratch)) == job_object.inputs(result.job)
     return store_result(job, result, job_object.fingerprint(job) if same else "other inputs")
-
-
-def _inputs(data):
-    """What the result depends on: no tolerance, no names and places of files."""
-    data = {key: value for key, value in data.items() if key != "inspection"}
-    data["stock"] = {key: value for key, value in data["stock"].items() if key != "file"}
-    return data
 
 
 def open_job(doc, path):
@@ -393,6 +388,7 @@ def _open_job(doc, data, path, made):
         setattr(machine, name, placement_from_job(data["cell"].get(key)))
     for name, (key, _) in belt_machine.ROBOT_FRAMES.items():
         setattr(machine, name, placement_from_job(data["robot"].get(key)))
+    bodies.from_job(doc, machine, data["cell"]["bodies"], made)
     if any(data["belt_machine"]["belt"].values()):
         made.append(make_belt(job))
         from_job(machine.Belt, belts.KEYS, data)

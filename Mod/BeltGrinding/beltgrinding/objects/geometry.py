@@ -1,6 +1,7 @@
 """Shapes and placements of document objects, as the simulator takes them."""
 
 import hashlib
+from pathlib import Path
 
 import FreeCAD
 import numpy as np
@@ -26,6 +27,27 @@ def placed_shape(obj):
 def core_shape(shape):
     """core.Shape of a Part shape."""
     return core.Shape.from_brep(shape.exportBrepToString(), "design")
+
+
+def export_solid(obj, folder, name):
+    """{"brep": ...} of a Part object, {"file": ...} of a Mesh object, written to ``folder`` under
+    ``name``; in the document's coordinates, mm. Raises InputError."""
+    if not hasattr(obj, "Mesh"):
+        return {"brep": placed_shape(obj).exportBrepToString()}
+    mesh = obj.Mesh.copy()
+    mesh.Placement = obj.getGlobalPlacement()
+    path = Path(folder) / f"{name}.ply"
+    mesh.write(str(path))
+    return {"file": str(path)}
+
+
+def geometry_digest(obj):
+    """What tells the shape or mesh of an object, and its place, apart from others."""
+    if hasattr(obj, "Mesh"):
+        mesh = obj.Mesh
+        figures = (mesh.CountPoints, mesh.CountFacets, mesh.Area, mesh.Volume)
+        return f"{figures} {obj.getGlobalPlacement().toMatrix().A}"
+    return faces_digest(placed_shape(obj).Faces)
 
 
 def faces_digest(faces):

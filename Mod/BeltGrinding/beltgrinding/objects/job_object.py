@@ -9,6 +9,7 @@ import Part
 
 from .. import InputError, core, job as jobs
 from ..poses import list_poses
+from . import bodies
 from .belt_machine import BeltMachine
 from .deviation import Deviation
 from .ground_mesh import GroundMesh
@@ -259,6 +260,7 @@ def fingerprint(job):
     shape, data["design"]["faces"] = design(job)
     chosen = set(data["design"]["faces"])
     data["design"]["digest"] = faces_digest(f for i, f in enumerate(shape.Faces, 1) if i in chosen)
+    data["cell"]["bodies"] = bodies.digest(child(job, BeltMachine))
     data["programs"] = [
         {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
     ]
@@ -275,6 +277,7 @@ def to_data(job, folder):
     data["design"]["brep"] = shape.exportBrepToString()
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.to_job(stock, folder)
+    data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), folder)
     paths = _paths(job)
     data["programs"] = [{"poses": []} for _ in paths]
     # The poses come from properties that hold nothing but numbers, and they may be many.
@@ -287,6 +290,19 @@ def to_data(job, folder):
         if len(program["poses"]) < 2:
             raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
     return data
+
+
+def inputs(data):
+    """What of a job's plain data the result depends on: no tolerance, no names and places of files."""
+    data = {key: value for key, value in data.items() if key != "inspection"}
+    data["stock"] = _without_file(data["stock"])
+    placed = [_without_file(body) for body in data["cell"].get("bodies", [])]
+    data["cell"] = {**data["cell"], "bodies": placed}
+    return data
+
+
+def _without_file(data):
+    return {key: value for key, value in data.items() if key != "file"}
 
 
 def tool_paths(job):

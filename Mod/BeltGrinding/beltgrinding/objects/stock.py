@@ -3,10 +3,15 @@
 import hashlib
 import os
 from functools import lru_cache
-from pathlib import Path
 
 from .. import InputError
-from .geometry import faces_digest, placed_shape, placement_to_job
+from .geometry import (
+    export_solid,
+    faces_digest,
+    geometry_digest,
+    placed_shape,
+    placement_to_job,
+)
 from .properties import Key, add_keys, check_limits, get_value
 from .proxy import Proxy, checking
 
@@ -69,11 +74,8 @@ class Stock(Proxy):
             return f"{file} {obj.FilePlacement.toMatrix().A}"
         if obj.Source is None:
             return "none"
-        placement = obj.Source.getGlobalPlacement().toMatrix().A
         if hasattr(obj.Source, "Mesh"):
-            mesh = obj.Source.Mesh
-            figures = (mesh.CountPoints, mesh.CountFacets, mesh.Area, mesh.Volume)
-            return f"{figures} {placement}"
+            return geometry_digest(obj.Source)
         return faces_digest(_shape(obj).Faces)
 
     def to_job(self, obj, folder):
@@ -84,7 +86,7 @@ class Stock(Proxy):
         elif obj.Kind == "mesh":
             _require_mesh(obj)
             if obj.Source is not None:
-                job["file"] = _write_mesh(obj, Path(folder))
+                job.update(export_solid(obj.Source, folder, "stock"))
                 job["unit_mm"] = 1.0
             else:
                 job["file"] = obj.File
@@ -118,11 +120,3 @@ def _require_mesh(obj):
 def _shape(obj):
     _require_solid(obj)
     return placed_shape(obj.Source)
-
-
-def _write_mesh(obj, folder):
-    mesh = obj.Source.Mesh.copy()
-    mesh.Placement = obj.Source.getGlobalPlacement()
-    path = folder / "stock.ply"
-    mesh.write(str(path))
-    return str(path)

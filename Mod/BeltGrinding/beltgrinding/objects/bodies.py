@@ -46,7 +46,7 @@ def from_job(doc, machine, bodies, made):
         if Path(body.get("file", "")).suffix.lower() in MESH_SUFFIXES:
             mesh = collision.read_body({**body, "placement": None}, body["name"], [])
             obj = doc.addObject("Mesh::Feature", "Body")
-            obj.Mesh = Mesh.Mesh(mesh.vertices[mesh.triangles].tolist())
+            obj.Mesh = Mesh.Mesh(mesh.vertices[mesh.triangles].reshape(-1, 3).tolist())
         else:
             obj = doc.addObject("Part::Feature", "Body")
             shape = Part.Shape()
@@ -54,6 +54,6 @@ def from_job(doc, machine, bodies, made):
             obj.Shape = shape
         made.append(obj)
         obj.Label = body["name"]
-        obj.Placement = placement_from_job(body.get("placement"))
+        obj.Placement = placement_from_job(body.get("placement")).multiply(obj.Placement)
         name = properties[body["frame"]]
         setattr(machine, name, [*getattr(machine, name), obj])

@@ -16,6 +16,7 @@ from . import InputError, core, events, motions, schemas
 LATER = {
     "belt": {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0, "remaining_cut": 1.0},
     "robot": {},
+    "clearances": [],
 }
 
 

@@ -166,7 +166,7 @@ def _without_bulk(job):
     for part in ("design", "stock"):
         job[part] = {k: v for k, v in job[part].items() if k not in bulk}
     job["programs"] = [{k: v for k, v in p.items() if k not in bulk} for p in job["programs"]]
-    bodies = [{k: v for k, v in b.items() if k not in bulk} for b in job["cell"]["bodies"]]
+    bodies = [{k: v for k, v in b.items() if k not in bulk} for b in job["cell"].get("bodies", [])]
     job["cell"] = {**job["cell"], "bodies": bodies}
     return job
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <thread>
 
 #include "base/error.h"
@@ -286,19 +287,21 @@ TEST(Collision, EndsSoonAfterACancel) {
     for (int k = 0; k < 20000; ++k) poses.push_back(pose({k % 2 ? 30.0 : -30.0, 0, 0.001 * k}));
     const ToolPath path(poses, {});
     const RunContext context;
+    // The processor's time: what else the machine does meanwhile does not count.
+    std::clock_t cancelled = 0;
     std::thread stopper([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        cancelled = std::clock();
         context.cancel();
     });
-    const auto begin = std::chrono::steady_clock::now();
     EXPECT_THROW(check_collisions(path,
                                   {body("part", Carrier::kBase, sphere({0, 25, 0}, 20, 100)),
                                    body("tool", Carrier::kTool, sphere({0, 0, 0}, 5, 60))},
                                   {}, context),
                  Cancelled);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const std::clock_t ended = std::clock();
     stopper.join();
-    EXPECT_LT(took.count(), 0.3 + 0.2);
+    EXPECT_LT(static_cast<double>(ended - cancelled) / CLOCKS_PER_SEC, 0.2);
     EXPECT_THROW(check_collisions(path, {}, {-1.0}), InputError);
 }
 

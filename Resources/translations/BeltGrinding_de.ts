@@ -1055,6 +1055,30 @@
         <source>zones that fail</source>
         <translation>Zonen, die nicht bestehen</translation>
     </message>
+    <message>
+        <source>an event where neighbouring poses of a feed motion are turned further against each other, degrees; 0: none</source>
+        <translation>ein Ereignis, wo benachbarte Posen einer Vorschubbewegung weiter gegeneinander gedreht sind, Grad; 0: keines</translation>
+    </message>
+    <message>
+        <source>an event where the wheel touches further round its rim from the programmed contact point, degrees; 0: none</source>
+        <translation>ein Ereignis, wo die Scheibe am Umfang weiter weg vom programmierten Kontaktpunkt berührt, Grad; 0: keines</translation>
+    </message>
+    <message>
+        <source>an event where two bodies that move against each other come nearer, mm</source>
+        <translation>ein Ereignis, wo zwei gegeneinander bewegte Körper sich näher kommen, mm</translation>
+    </message>
+    <message>
+        <source>how far below the belt&apos;s surface the wheel begins that must not touch the part, mm; what lies nearer to the surface may, as it grinds</source>
+        <translation>wie tief unter der Bandoberfläche die Scheibe beginnt, die das Teil nicht berühren darf, mm; was näher an der Oberfläche liegt, darf es, denn es schleift</translation>
+    </message>
+    <message>
+        <source>largest pressure, beyond which is an event, MPa; 0: none</source>
+        <translation>größter Druck, darüber ein Ereignis, MPa; 0: keiner</translation>
+    </message>
+    <message>
+        <source>whether wheel, part and bodies are followed for collisions</source>
+        <translation>ob Scheibe, Teil und Körper auf Kollisionen verfolgt werden</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3183,6 +3207,146 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>{}: write the faces&apos; numbers, such as 1 2 5.</source>
         <translation>{}: Schreiben Sie die Nummern der Flächen, etwa 1 2 5.</translation>
+    </message>
+    <message>
+        <source>All events ({})</source>
+        <translation>Alle Ereignisse ({})</translation>
+    </message>
+    <message>
+        <source>Any</source>
+        <translation>Alle</translation>
+    </message>
+    <message>
+        <source>Arm flip</source>
+        <translation>Arm klappt um</translation>
+    </message>
+    <message>
+        <source>Belt out of range</source>
+        <translation>Band außer Bereich</translation>
+    </message>
+    <message>
+        <source>Burn risk</source>
+        <translation>Brandgefahr</translation>
+    </message>
+    <message>
+        <source>Collision</source>
+        <translation>Kollision</translation>
+    </message>
+    <message>
+        <source>Collisions</source>
+        <translation>Kollisionen</translation>
+    </message>
+    <message>
+        <source>Depth exceeded</source>
+        <translation>Tiefe überschritten</translation>
+    </message>
+    <message>
+        <source>Errors</source>
+        <translation>Fehler</translation>
+    </message>
+    <message>
+        <source>Force exceeded</source>
+        <translation>Kraft überschritten</translation>
+    </message>
+    <message>
+        <source>Force not reached</source>
+        <translation>Kraft nicht erreicht</translation>
+    </message>
+    <message>
+        <source>From {:.2f} s, for {:.2f} s; pose {}</source>
+        <translation>Ab {:.2f} s, für {:.2f} s; Pose {}</translation>
+    </message>
+    <message>
+        <source>Gouge</source>
+        <translation>Zu tief geschliffen</translation>
+    </message>
+    <message>
+        <source>Joint limit</source>
+        <translation>Achsgrenze</translation>
+    </message>
+    <message>
+        <source>Joint speed</source>
+        <translation>Achsgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Law out of range</source>
+        <translation>Gesetz außer Bereich</translation>
+    </message>
+    <message>
+        <source>Look for collisions</source>
+        <translation>Kollisionen suchen</translation>
+    </message>
+    <message>
+        <source>Loss of contact</source>
+        <translation>Kontaktverlust</translation>
+    </message>
+    <message>
+        <source>Near miss</source>
+        <translation>Zu nah</translation>
+    </message>
+    <message>
+        <source>Not converged</source>
+        <translation>Nicht konvergiert</translation>
+    </message>
+    <message>
+        <source>Note</source>
+        <translation>Hinweis</translation>
+    </message>
+    <message>
+        <source>Notes</source>
+        <translation>Hinweise</translation>
+    </message>
+    <message>
+        <source>Orientation jump</source>
+        <translation>Orientierungssprung</translation>
+    </message>
+    <message>
+        <source>Out of reach</source>
+        <translation>Außer Reichweite</translation>
+    </message>
+    <message>
+        <source>Over-pressure</source>
+        <translation>Überdruck</translation>
+    </message>
+    <message>
+        <source>Pressure limit (0: none)</source>
+        <translation>Druckgrenze (0: keine)</translation>
+    </message>
+    <message>
+        <source>Singularity</source>
+        <translation>Singularität</translation>
+    </message>
+    <message>
+        <source>Tilted contact</source>
+        <translation>Schräger Kontakt</translation>
+    </message>
+    <message>
+        <source>Try:</source>
+        <translation>Versuchen:</translation>
+    </message>
+    <message>
+        <source>Warning</source>
+        <translation>Warnung</translation>
+    </message>
+    <message>
+        <source>Warnings</source>
+        <translation>Warnungen</translation>
+    </message>
+    <message>
+        <source>Wheel too large</source>
+        <translation>Scheibe zu groß</translation>
+    </message>
+    <message>
+        <source>Wheel&apos;s body below its surface</source>
+        <translation>Scheibenkörper unter der Oberfläche</translation>
+    </message>
+    <message>
+        <source>Wheel&apos;s edge presses</source>
+        <translation>Scheibenkante drückt</translation>
+    </message>
+    <message>
+        <source>Wrist flip</source>
+        <translation>Handachsen klappen um</translation>
     </message>
 </context>
 <context>

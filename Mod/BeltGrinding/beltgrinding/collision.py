@@ -12,7 +12,8 @@ import numpy as np
 from . import InputError, core, frames
 
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
-DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel
+DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
+LARGE = 1e-4  # of its size: the chord error of what is larger
 LEAST_AROUND = 12  # corners of a wheel's body
 
 
@@ -47,7 +48,7 @@ def bodies(job, shape, warnings, context=None):
     """The bodies of a validated job as ``core.check_collisions`` takes them."""
     stock = job["stock"]
     grown = max(0.0, stock["allowance_mm"]) if stock["kind"] == "allowance" else 0.0
-    mesh = core.triangulate(shape, DEFLECTION, context)
+    mesh = _triangulate(shape, context)
     found = [{"name": PART, "frame": "part", "mesh": mesh, "margin": grown}]
     if stock["kind"] != "allowance":
         mesh = read_body(stock, "stock", warnings, context)
@@ -76,9 +77,15 @@ def read_body(body, name, warnings, context=None):
     else:
         shape = core.Shape.read(body["file"])
     warnings += [f"{name}: {text}" for text in shape.warnings()]
-    mesh = core.triangulate(shape, DEFLECTION, context)
+    mesh = _triangulate(shape, context)
     points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
     return core.TriangleMesh(points.astype(np.float32), mesh.triangles)
+
+
+def _triangulate(shape, context):
+    low, high = shape.extents()
+    size = float(np.linalg.norm(np.subtract(high, low)))
+    return core.triangulate(shape, max(DEFLECTION, LARGE * size), context)
 
 
 def wheel_body(wheel, inset):

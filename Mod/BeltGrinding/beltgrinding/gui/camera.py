@@ -26,18 +26,17 @@ def look_at(normal):
     view.setAnimationEnabled(animated)
 
 
-def _upright(normal):
+def _upright(normal, upright=FreeCAD.Vector(0, 0, 1)):
     """Orientation (FreeCAD.Rotation) of a camera that looks against ``normal``, upright where it can."""
-    upright = FreeCAD.Vector(0, 0, 1)
     if normal.getAngle(upright) < 0.05 or normal.getAngle(-upright) < 0.05:
-        upright = FreeCAD.Vector(0, 1, 0)
+        upright = FreeCAD.Vector(upright.y, upright.z, upright.x)
     side = upright.cross(normal).normalize()
     return FreeCAD.Rotation(side, upright, normal, "ZXY")
 
 
-def fly_to(view, point, normal, size):
+def fly_to(view, point, normal, size, up=(0, 0, 1)):
     """Moves a 3D view's camera to look against ``normal`` at ``point`` (both three numbers, document's
-    frame), with ``size`` mm in its height; at once where the view's animation is off.
+    frame), with ``size`` mm in its height and ``up`` upwards; at once where the view's animation is off.
     """
     point, normal = FreeCAD.Vector(*point), FreeCAD.Vector(*normal).normalize()
     camera = view.getCameraNode()
@@ -47,7 +46,7 @@ def fly_to(view, point, normal, size):
         distance = 0.5 * size / math.tan(0.5 * camera.heightAngle.getValue())
     end = {
         "position": point + normal * distance,
-        "turn": _upright(normal),
+        "turn": _upright(normal, FreeCAD.Vector(*up)),
         "distance": distance,
         "height": size,
     }

@@ -101,6 +101,11 @@ class CellPanel(Panel):
         for widget in (self.frame, self.list):
             layout.addWidget(widget)
         layout.addLayout(row)
+        form = Form(self.obj, translate("BeltGrinding", "Collisions"))
+        form.add("CheckCollisions", translate("BeltGrinding", "Look for collisions"))
+        form.add("Clearance", translate("BeltGrinding", "Clearance"))
+        form.add("WheelInset", translate("BeltGrinding", "Wheel's body below its surface"))
+        layout.addWidget(form)
         self.fill()
         return box
 

@@ -9,10 +9,13 @@ import numpy as np
 from pivy import coin
 
 from ..frames import work_from_frames
-from ..objects.belt_machine import BODIES
+from ..collision import WHEEL
+from ..objects import bodies
 from .robot_view import RobotView
-from .shapes3d import axes, body, separator, set_matrix, unpickable, wheel
+from .shapes3d import axes, body, material, separator, set_matrix, unpickable, wheel
 
+PLACES = {"wheel": "contact"}  # where a body goes, if it is not called as in a job
+ALARM, TINT = (0.86, 0.12, 0.10), "BeltGrindingTint"
 CELL = {
     "holding": "tool_in_hand",
     **dict.fromkeys(
@@ -36,6 +39,7 @@ class CellView:
         for name, things in self.things.items():
             nodes = [self.places[name]] if name in self.places else []
             self.root.addChild(separator(*nodes, things))
+        self.bodies, self.tinted = {}, ()  # {name: node}; names
         self.robot = RobotView()
         self.root.addChild(self.robot.root)
         self.scenes = [
@@ -80,13 +84,29 @@ class CellView:
         size = 50.0
         if self.machine is not None:
             size = self.machine.WheelRadius.Value
-            self.things["contact"].addChild(wheel(self.machine))
-            for name, (frame, _) in BODIES.items():
-                for obj in getattr(self.machine, name):
-                    self.things[frame].addChild(body(obj))
+            self.bodies = {WHEEL: wheel(self.machine)}
+            self.things["contact"].addChild(self.bodies[WHEEL])
+            for name, frame, obj in bodies.listed(self.machine):
+                self.bodies[name] = body(obj)
+                self.things[PLACES.get(frame, frame)].addChild(self.bodies[name])
+            self.tint(self.tinted)
             self.robot.choose(self.machine.Proxy.robot(self.machine))
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
+
+    def tint(self, names):
+        """Draws the bodies of these names, as events have them, in a warning colour; the others in
+        their own."""
+        self.tinted = tuple(names)
+        for name, node in self.bodies.items():
+            first = node.getChild(0)
+            if first.getName() == TINT:
+                node.removeChild(first)
+            if name in self.tinted:
+                colour = material(ALARM, 0.4)
+                colour.setName(TINT)
+                colour.setOverride(True)
+                node.insertChild(colour, 0)
 
     def cell(self):
         return CELL if self.machine is None else self.machine.Proxy.cell(self.machine)

@@ -22,6 +22,7 @@ class LawForms(QtGui.QWidget):
         self.law.add("LawCoefficient", translate("BeltGrinding", "K"), unit="mm²/N")
         # Above the rows that come and go: hidden ones leave a gap.
         self.law.add("HeatLimit", translate("BeltGrinding", "Heat limit"), unit="MPa m/s")
+        self.law.add("PressureLimit", translate("BeltGrinding", "Pressure limit (0: none)"))
         self.law.add("PressureExponent", translate("BeltGrinding", "Exponent of pressure"))
         self.law.add("ReferencePressure", translate("BeltGrinding", "Reference pressure"))
         self.law.add("PressureThreshold", translate("BeltGrinding", "Threshold pressure"))
@@ -61,7 +62,7 @@ class LawForms(QtGui.QWidget):
 
     def arrange(self):
         """Shows the fields of the chosen law, and of the curves' alternatives those in use."""
-        obj, rows = self.obj, {"Law", "HeatLimit"}
+        obj, rows = self.obj, {"Law", "HeatLimit", "PressureLimit"}
         if obj.Law != "geometric":
             rows.add("LawCoefficient")
         if obj.Law == "local":

@@ -7,16 +7,16 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from .. import Cancelled, InputError
+from ..objects import job_object
 from ..objects.job_object import child
 from ..objects.simulation import Simulation
 from .compat import QtCore, QtGui, buttons, translate
+from .event_moment import EventMoment
+from .event_table import EventTable
 from .icons import icon
 from .runner import Runner
 from .status_progress import StatusProgress
 from .time_left import TimeLeft, duration
-
-SHOWN_EVENTS = 1000
-TABLE_HEIGHT = 320  # pixels
 
 
 class SimulationPanel:
@@ -49,20 +49,9 @@ class SimulationPanel:
         self.figures.setWordWrap(True)
         self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         body.addWidget(self.figures)
-        self.table = QtGui.QTableWidget(0, 4)
-        self.table.setObjectName("events")
-        self.table.setHorizontalHeaderLabels(
-            [
-                translate("BeltGrinding", "Time, s"),
-                translate("BeltGrinding", "Pose"),
-                translate("BeltGrinding", "Line"),
-                translate("BeltGrinding", "Event"),
-            ]
-        )
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(3, QtGui.QHeaderView.Stretch)
-        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.moment = EventMoment(job)
+        self.table = EventTable(lambda number: job_object.face_name(self.job, number - 1))
+        self.table.chosen = self.show_moment
         self.table.hide()
         body.addWidget(self.table, 1)
         body.addStretch()
@@ -79,6 +68,8 @@ class SimulationPanel:
 
     def start(self):
         """Begins a run; what is missing is said in the panel."""
+        self.moment.close()
+        self.moment = EventMoment(self.job)
         try:
             self.runner = Runner(self.job, self.progress, self.done)
         except InputError as error:
@@ -154,25 +145,19 @@ class SimulationPanel:
             + ("" if simulation.Events else "\n" + translate("BeltGrinding", "No events."))
             + "".join(f"\n⚠ {warning}" for warning in simulation.Warnings[:10])
         )
-        events = simulation.Proxy.events(simulation)[:SHOWN_EVENTS]
+        events = simulation.Proxy.events(simulation)
         self.table.setVisible(bool(events))
-        self.table.setRowCount(len(events))
-        for i, event in enumerate(events):
-            kind = event["kind"].replace("_", " ")
-            cells = (
-                f"{event['time']:.2f}",
-                str(event["pose"] + 1),
-                str(event["line"] or ""),
-                f"{kind}: {event['message']}",
-            )
-            for k, text in enumerate(cells):
-                item = QtGui.QTableWidgetItem(text)
-                item.setToolTip(text)
-                self.table.setItem(i, k, item)
-        self.table.resizeColumnsToContents()
-        self.table.resizeRowsToContents()
+        self.table.show_events(events)
+
+    def show_moment(self, event):
+        """Shows a chosen event in the 3D view."""
+        try:
+            self.moment.show(event)
+        except InputError as error:  # the job has changed since
+            self._say(str(error), True)
 
     def deviation(self):
+        self.moment.close()
         Gui.Control.closeDialog()
         Gui.runCommand("BeltGrinding_Deviation")
 
@@ -196,6 +181,7 @@ class SimulationPanel:
 
     def reject(self):
         """Close: a run that still goes on is cancelled."""
+        self.moment.close()
         if self.runner:
             self._remove_status()
             self.runner.abandon()  # this panel's widgets are gone before the run has ended

@@ -20,7 +20,7 @@ namespace {
 constexpr double kCornerTurn = 1.5;
 // Relative: how sure the least distance is beyond the clearance, and how exact each look is there.
 // A search that may stop so far from the truth is many times faster.
-constexpr double kLeastAccuracy = 0.5;
+constexpr double kLeastAccuracy = 0.75;
 constexpr double kLookError = 0.2;
 constexpr int kPolish = 24;         // looks around the nearest place, each cuts its stretch to 0.62
 constexpr double kStride = 2.0;     // mm between two looks at bodies that touch or nearly do

@@ -53,7 +53,7 @@ struct CollisionResult {
 /// Mirtich 1996; Zhang, Lee, Kim: Interactive continuous collision detection for non-convex
 /// polyhedra, 2006). A stretch is halved until that bound proves it clear or it is shorter than the
 /// resolution, so no motion is too fast. The least distance of a pair is within the resolution if
-/// it is below the clearance; beyond, no half of it is undercut, and mostly it is exact.
+/// it is below the clearance; beyond, a quarter of it is proved, and mostly it is exact.
 ///
 /// Results do not depend on the number of threads. Throws InputError (no mesh, bad options) and
 /// Cancelled.

@@ -125,8 +125,6 @@ camera = view.getCamera()
 kinds = field("eventKind")
 kinds.setCurrentIndex(kinds.findData("collision"))
 field("events").selectRow(0)
-from beltgrinding.gui.camera import Flight
-wait(lambda: Flight.running is None)
 picture("workbench-events")
 view.setCamera(camera)
 press("Deviation")

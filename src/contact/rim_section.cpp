@@ -100,6 +100,14 @@ double WheelRimDesign::thickness() const {
     return sum;
 }
 
+double WheelRimDesign::softest() const {
+    double compliance = 0.0;
+    for (const RimLayer& layer : layers) {
+        compliance += layer.thickness / layer.elasticity.youngs_modulus;
+    }
+    return 1.0 / compliance;
+}
+
 void WheelRimDesign::validate() const {
     const auto positive = [](double value, const std::string& what) {
         if (!std::isfinite(value) || value <= 0.0) {

@@ -21,6 +21,9 @@ struct WheelRimDesign {
     std::vector<RimLayer> layers;  ///< from the core outwards, at least one
 
     double thickness() const;
+    /// MPa/mm of the layers pressed one on the other, free to bulge: the softest that the rim can
+    /// be. The layers must be valid.
+    double softest() const;
     /// Throws InputError naming the layer and value that is none; Poisson's ratio up to 0.499.
     void validate() const;
 };

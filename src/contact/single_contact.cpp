@@ -15,9 +15,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kFirstCells = 48;  // along the circumference
 constexpr int kMaxCells = 4096;
 constexpr int kMaxPlacements = 30;
-constexpr double kPlaced = 1e-5;       // mm that the wheel may still be off its place
-constexpr int kPointsPerSide = 8;      // of a cell, for the share that the workpiece covers
-constexpr double kLargestAngle = 1.2;  // rad; farther round the wheel nothing touches
+constexpr double kPlaced = 1e-5;          // mm that the wheel may still be off its place
+constexpr int kPointsPerSide = 8;         // of a cell, for the share that the workpiece covers
+constexpr double kLargestAngle = 1.2;     // rad; farther round the wheel nothing touches
+constexpr double kCellsPerRadius = 20.0;  // at least, along the circumference
+constexpr double kCellsPerContact = 64.0;
 
 /// Radius at which the ray from the wheel's centre (moved by `placed` along z) at the angle s / R
 /// meets the workpiece, mm; +inf if it does not.
@@ -46,15 +48,14 @@ class Press {
         if (!std::isfinite(contact_.spacing) || contact_.spacing <= 0.0) {
             throw InputError("contact: the grid's spacing must be positive, in millimetres");
         }
-        problem_.grid.ny =
-            std::max(1, static_cast<int>(std::lround(contact_.wheel.width / contact_.spacing)));
+        const double across = std::round(contact_.wheel.width / contact_.spacing);
+        problem_.grid.ny = static_cast<int>(std::clamp(across, 1.0, 1.0 * kMaxCells));
         problem_.grid.dy = contact_.wheel.width / problem_.grid.ny;
-        problem_.grid.ds = contact_.spacing;
+        problem_.grid.ds = std::min(contact_.spacing, contact_.wheel.radius / kCellsPerRadius);
         problem_.tolerance = contact_.tolerance;
         problem_.force = contact_.force;
-        const int most = std::min(
-            kMaxCells,
-            static_cast<int>(2.0 * kLargestAngle * contact_.wheel.radius / contact_.spacing));
+        const double round = 2.0 * kLargestAngle * contact_.wheel.radius / problem_.grid.ds;
+        const int most = static_cast<int>(std::min(round, 1.0 * kMaxCells));
         for (int nx = kFirstCells;; nx *= 2) {
             problem_.grid.nx = std::min(nx, most);
             SingleContactResult result = press();
@@ -181,10 +182,14 @@ void Workpiece::validate() const {
     if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
 }
 
-double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force) {
+double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force,
+                            double softest) {
+    // A Winkler layer on a plane: F = 2/3 k w a^3 / R (Johnson, Contact Mechanics, 4.3).
+    const double half_length = std::cbrt(1.5 * force * wheel.radius / (wheel.width * softest));
     SingleContact contact;
     contact.wheel = wheel;
-    contact.spacing = std::max(0.5, wheel.width / 64);
+    contact.spacing =
+        std::max({0.5, wheel.width / kCellsPerContact, 2.0 * half_length / kCellsPerContact});
     contact.force = force;
     contact.tolerance = 1e-3;
     contact.approach = press(contact, model).solution.approach;

@@ -46,7 +46,9 @@ struct SingleContactResult {
 SingleContactResult press(const SingleContact& contact, ContactModel& model);
 
 /// Stiffness (MPa/mm) of the elastic foundation that meets a plane under `force` (N) at the same
-/// approach as `model` does. Its patch is still another: see docs/methods.md.
-double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force);
+/// approach as `model` does. Its patch is still another: see docs/methods.md. `softest`: MPa/mm,
+/// below what `model` can have; the grid is made to hold the contact of such a foundation.
+double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force,
+                            double softest);
 
 }  // namespace beltgrinding

@@ -105,7 +105,8 @@ std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const Conta
     if (model == "elastic_foundation") {
         if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
         WheelRim rim(design, belt);
-        return std::make_unique<ElasticFoundation>(foundation_stiffness(wheel, rim, force));
+        return std::make_unique<ElasticFoundation>(
+            foundation_stiffness(wheel, rim, force, design.softest()));
     }
     throw InputError("compliance: there is no model '" + model +
                      "'; use wheel_rim, bonded_layer, half_space, elastic_foundation, "

@@ -20,6 +20,7 @@ constexpr double kRecession = 0.1;
 constexpr int kMaxParts = 200;  // of a step
 // The wheel's cells must each hold samples: never finer than this many sample spacings.
 constexpr double kSamplesPerCell = 1.5;
+constexpr double kMostCellsAcross = 2000;
 constexpr double kJoule = 1e-3;           // of a N mm
 constexpr std::size_t kReportEvery = 16;  // steps between two looks at progress and cancel
 
@@ -58,6 +59,26 @@ void validate(const HeightField& field, const SimulationOptions& options) {
     if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
         throw InputError("the belt's wear factor must be zero or positive");
     }
+}
+
+/// mm, of the wheel's grid. Throws InputError if the wheel's roundness would be lost in it, or if
+/// its cells would be too many across.
+double contact_cell(const HeightField& field, const SimulationOptions& options) {
+    const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
+    std::ostringstream text;
+    text.precision(3);
+    if (cell > options.wheel.radius) {
+        text << "the contact's cells of " << cell << " mm are larger than the wheel's radius of "
+             << options.wheel.radius << " mm; lower "
+             << (cell > options.contact_spacing ? "the samples' spacing" : "the contact spacing");
+        throw InputError(text.str());
+    }
+    if (options.wheel.width / cell > kMostCellsAcross) {
+        text << "contact cells of " << cell << " mm are too many across a wheel of "
+             << options.wheel.width << " mm; raise the contact spacing, or check the wheel's width";
+        throw InputError(text.str());
+    }
+    return cell;
 }
 
 void refuse_force_of_rigid(const ContactModel& model, const SimulationOptions& options) {
@@ -188,7 +209,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
         const Stopwatch watch(result.build_s);
         tree = std::make_unique<SegmentTree>(field, context);
     }
-    const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
+    const double cell = contact_cell(field, options);
     refuse_force_of_rigid(model, options);
     Pressing pressing(options, cell, model);
     std::vector<std::uint32_t> changed;
@@ -277,8 +298,7 @@ PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size
     PoseContact contact;
     contact.commanded = at.force >= 0.0 ? at.force : options.force;
     const SegmentTree tree(field);
-    Pressing pressing(options, std::max(options.contact_spacing, kSamplesPerCell * field.spacing),
-                      model);
+    Pressing pressing(options, contact_cell(field, options), model);
     SimulationResult phases;
     const auto state = pressing.press(
         field, tree, path.frames().work_from_contact(at.base_from_tcp), contact.commanded, phases);

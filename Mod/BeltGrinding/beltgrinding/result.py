@@ -4,6 +4,8 @@ import copy
 import io
 import json
 import os
+import shutil
+import tempfile
 import time
 from pathlib import Path
 
@@ -11,13 +13,26 @@ import numpy as np
 
 from . import InputError, core, events, motions, schemas
 
-
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
 LATER = {
     "belt": {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0, "remaining_cut": 1.0},
     "robot": {},
     "clearances": [],
 }
+
+FILES = (  # of a result
+    "deviation.ply",
+    "heightfield.h5",
+    "events.json",
+    "steps.csv",
+    "motions.csv",
+    "verdict.json",
+    "convergence.json",
+    "summary.json",
+)
+OF_THE_LAST = ("scan.json",)  # what was made of a result before, and does not belong to a new one
+PART = ".part-"  # a folder with what is not yet whole
+LEFT_OVER = 3600.0  # s; a folder of that age is a killed run's
 
 
 class Result:
@@ -43,30 +58,47 @@ class Result:
         self.recording = recording
 
     def write(self, folder):
-        """Writes summary.json, events.json, verdict.json, steps.csv, motions.csv, deviation.ply,
-        heightfield.h5 and, if it is known, convergence.json; each whole or not."""
+        """Writes the files of ``FILES``, all of them whole or none: until all are written they lie in
+        a folder beside. The last to change its place is summary.json; without it a folder is no
+        result.
+        """
         start = time.perf_counter()
         folder = Path(folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            lower, upper, limit = colour_scale(self.job)
-            ply = core.deviation_ply(self.field, lower, upper, limit, True)
-            write_whole(folder / "deviation.ply", ply)
-            self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
-            write_whole(folder / "events.json", _json(self.events))
-            (folder / "convergence.json").unlink(missing_ok=True)
-            if self.convergence is not None:
-                write_whole(folder / "convergence.json", _json(self.convergence))
-            if self.steps is not None:
-                write_whole(folder / "steps.csv", _table(self.steps))
-            if self.motions is not None:
-                write_whole(folder / motions.FILE, motions.csv_text(self.motions).encode())
-            if self.verdict is not None:
-                self.write_verdict(folder / self.VERDICT)
-            self.summary["wall_time_s"]["write"] = time.perf_counter() - start
-            write_whole(folder / "summary.json", _json(self.summary))
+            _remove_left_over(folder)
+            with tempfile.TemporaryDirectory(prefix=PART, dir=folder) as part:
+                self._write_files(Path(part))
+                self.summary["wall_time_s"]["write"] = time.perf_counter() - start
+                write_whole(Path(part, FILES[-1]), _json(self.summary))
+                for path in Path(part).iterdir():
+                    _put_on_disk(path)  # the file system would do it between two changes of place
+                (folder / FILES[-1]).unlink(missing_ok=True)
+                for name in FILES:
+                    if Path(part, name).exists():
+                        os.replace(Path(part, name), folder / name)
+                    else:
+                        (folder / name).unlink(missing_ok=True)  # of another run
+                for name in OF_THE_LAST:
+                    (folder / name).unlink(missing_ok=True)
         except OSError as error:
             raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+
+    def _write_files(self, folder):
+        """All but summary.json."""
+        lower, upper, limit = colour_scale(self.job)
+        ply = core.deviation_ply(self.field, lower, upper, limit, True)
+        write_whole(folder / "deviation.ply", ply)
+        self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
+        write_whole(folder / "events.json", _json(self.events))
+        if self.steps is not None:
+            write_whole(folder / "steps.csv", _table(self.steps))
+        if self.convergence is not None:
+            write_whole(folder / "convergence.json", _json(self.convergence))
+        if self.motions is not None:
+            write_whole(folder / motions.FILE, motions.csv_text(self.motions).encode())
+        if self.verdict is not None:
+            self.write_verdict(folder / self.VERDICT)
 
     def write_verdict(self, path):
         """Writes the verdict alone. Raises OSError."""
@@ -80,6 +112,11 @@ class Result:
         from . import convergence
 
         folder = Path(folder)
+        if folder.is_dir() and not (folder / FILES[-1]).exists():
+            raise InputError(
+                f"{folder}: holds no result: no run has ended there, or one was broken off while it "
+                "wrote; run the job again"
+            )
         data = {}
         for name in ("summary.json", "events.json"):
             try:
@@ -110,6 +147,18 @@ def colour_scale(job):
     lower, upper = job["inspection"]["tolerance_mm"]
     limit = max(job["inspection"]["colour_limit_mm"], 1.01 * max(abs(lower), abs(upper)))
     return lower, upper, limit
+
+
+def _put_on_disk(path):
+    with open(path, "rb") as file:
+        os.fsync(file.fileno())
+
+
+def _remove_left_over(folder):
+    """What killed runs could not tidy up themselves."""
+    for part in folder.glob(PART + "*"):
+        if time.time() - part.stat().st_mtime > LEFT_OVER:
+            shutil.rmtree(part, ignore_errors=True)
 
 
 def write_whole(path, data):

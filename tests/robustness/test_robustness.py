@@ -1,0 +1,79 @@
+"""Short runs of fuzz_jobs.py and kill.py, and proof that their oracles see what they are for."""
+
+import shutil
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from support.freecad import SHARED
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import fuzz_jobs  # noqa: E402
+import kill  # noqa: E402
+
+JOBS = 25
+GROUND = 8  # at least so many of them grind
+
+
+def test_random_jobs():
+    if not (SHARED / "data" / "cad").is_dir():
+        pytest.skip(f"no parts at {SHARED}")
+    found = list(fuzz_jobs.run_all(range(JOBS), environment={"BELTGRINDING_SHARED": str(SHARED)}))
+    wrong = [f"job {number}: {words}" for number, words, finding in found if finding]
+    assert not wrong, "\n".join([*wrong, "replay with fuzz_jobs.py --replay NUMBER"])
+    assert len(found) == JOBS
+    assert sum(words == "ground" for _, words, _ in found) >= GROUND
+
+
+def result(**changes):
+    """A sound result of two samples, or one with ``changes`` in its field and steps."""
+    field = dict(
+        height=np.array([0.1, 0.2]),
+        stock_height=np.array([0.3, 0.3], np.float32),
+        areas=np.array([1.0, 1.0], np.float32),
+        flags=np.zeros(2, np.uint8),
+    )
+    steps = {name: np.array([0.3]) for name in ("force", "contact_area", "peak_pressure")}
+    steps.update(duration=np.array([1.0]), removal_rate=np.array([0.3]))
+    summary = {"removed_volume_mm3": 0.3, "deviation_mm": {"mean": 0.1}}
+    for part in (field, steps, summary):
+        part.update((name, changes.pop(name)) for name in list(changes) if name in part)
+    return SimpleNamespace(
+        field=SimpleNamespace(**field), steps=steps, summary=summary, events=[], **changes
+    )
+
+
+def test_a_sound_result_passes():
+    fuzz_jobs._check_result(result())
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        ({"height": np.array([np.nan, 0.2])}, "height holds a value that is not finite"),
+        ({"height": np.array([0.4, 0.2])}, "a height grew by 0.1"),
+        ({"force": np.array([-1.0])}, "force of a step is negative"),
+        ({"removed_volume_mm3": 0.31}, "the summary says 0.31"),
+        ({"removal_rate": np.array([0.29])}, "the steps add up to 0.29"),
+        ({"deviation_mm": {"mean": float("inf")}}, "deviation_mm.mean is inf"),
+    ],
+)
+def test_a_wrong_result_is_a_finding(changes, words):
+    with pytest.raises(fuzz_jobs.Finding, match=words):
+        fuzz_jobs._check_result(result(**changes))
+
+
+def test_killed_runs_leave_whole_results():
+    counts = kill.kill_runs(8, 1, 1.0)
+    assert sum(counts.values()) == 8 and counts.get("a whole result", 0) > 0
+
+
+def test_killed_documents_open():
+    if shutil.which("freecadcmd") is None:
+        pytest.skip("freecadcmd is not installed")
+    assert sum(kill.kill_documents(2, 1, 3.0).values()) == 2

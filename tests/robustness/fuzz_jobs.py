@@ -26,6 +26,7 @@ for folder in (HERE, HERE.parents[1] / "Mod" / "BeltGrinding"):
         sys.path.insert(0, str(folder))
 
 LIMIT = 120.0  # s of wall time for one job; sanitizers and busy machines included
+PRELOAD = "BELTGRINDING_FUZZ_PRELOAD"  # libraries that the worker loads first: a sanitizer's
 STRICT = "BELTGRINDING_FUZZ_THREADS"  # set: every job runs again on one thread
 
 
@@ -132,7 +133,7 @@ def run_all(numbers, limit=LIMIT, environment=None):
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE if environment is None else None,
                 text=True,
-                env={**os.environ, **(environment or {})},
+                env=_worker_environment(environment or {}),
             )
         number = numbers.pop(0)
         start = time.monotonic()
@@ -152,6 +153,11 @@ def run_all(numbers, limit=LIMIT, environment=None):
     if worker is not None:
         worker.stdin.close()
         worker.wait()
+
+
+def _worker_environment(more):
+    preload = os.environ.get(PRELOAD)
+    return {**os.environ, **more, **({"LD_PRELOAD": preload} if preload else {})}
 
 
 def _line(worker, deadline):

@@ -370,7 +370,7 @@ class Report {
                 return a.distance < b.distance;
             });
         }
-        const EventKind& kind = event_kind(collides ? "collision" : "near_miss");
+        const EventKind kind = event_kind(collides ? "collision" : "near_miss");
         Event event;
         event.kind = kind.code;
         event.severity = kind.severity;

@@ -1,5 +1,7 @@
 #include "collision/collision_mesh.h"
 
+#include <cassert>  // FCL's headers use it without including it
+
 // The one file with FCL.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>

@@ -80,6 +80,13 @@ inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
             std::string("its attribute '") + name + "' is not a number");
 }
 
+/// A new file, empty, without times of its own: the same data make the same bytes at any time.
+inline hid_t create_file(const std::string& path) {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    if (!creation.ok() || H5Pset_obj_track_times(creation, false) < 0) return H5I_INVALID_HID;
+    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+}
+
 template <class T>
 inline void write_array(hid_t file, const char* name, const std::vector<T>& data, hid_t type,
                         hsize_t row) {

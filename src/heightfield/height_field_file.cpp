@@ -42,7 +42,7 @@ constexpr const char* kMeasured = "measured_mm";      // where a scan was compar
 constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
 
 void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
-    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Handle file(create_file(path), H5Fclose);
     require(file.ok(), "cannot be made there");
     write_scalar(file, "format", H5T_NATIVE_INT, &kFormat);
     write_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);

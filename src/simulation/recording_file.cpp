@@ -30,8 +30,7 @@ struct RecordingFile {
     }
 
     static void write(const Recording& r, const std::string& path, const std::string& attributes) {
-        const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                          H5Fclose);
+        const Handle file(create_file(path), H5Fclose);
         require(file.ok(), "cannot be made there");
         write_scalar(file, "recording_format", H5T_NATIVE_INT, &kFormat);
         write_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);

@@ -58,9 +58,18 @@ def visible(kind, *name):
     raise AssertionError(f"{name}: PySide takes a widget for one that is gone")
 
 
+def eventually(find, seconds=5):
+    """What ``find`` finds, as soon as it is something: FreeCAD 1.1 slides its docks in."""
+    end = time.monotonic() + seconds
+    while not (found := find()) and time.monotonic() < end:
+        QtGui.QApplication.processEvents()
+        time.sleep(0.01)
+    return found
+
+
 def field(name, kind=QtGui.QWidget):
     """The visible widget of this object name."""
-    found = visible(kind, name)
+    found = eventually(lambda: visible(kind, name))
     assert len(found) == 1, (name, found)
     return found[0]
 
@@ -79,11 +88,14 @@ def type_in(name, text):
 
 def press(text):
     """Presses the visible button with this text."""
-    for button in visible(QtGui.QPushButton):
-        if button.text().replace("&", "") == text:
-            button.click()
-            return settle()
-    raise AssertionError(text)
+
+    def named():
+        return [b for b in visible(QtGui.QPushButton) if b.text().replace("&", "") == text]
+
+    found = eventually(named)
+    assert found, text
+    found[0].click()
+    settle()
 
 
 def view_widget():

@@ -202,7 +202,7 @@ class SectionDock(QtGui.QDockWidget):
         length = np.linalg.norm(normal)
         names = [k for k, axis in enumerate(AXES.values()) if np.allclose(normal, axis)]
         self.kind.setCurrentIndex(4 if line else names[0] if names else 3)
-        plane = not line and length > 0
+        plane = bool(not line and length > 0)  # Qt takes no bool of numpy's
         self.slider.setEnabled(plane)
         self.offset.setEnabled(plane)
         field = objects.field_of(obj.Simulation) if obj.Simulation is not None else None

@@ -12,17 +12,11 @@ from .deviation import Deviation
 from .job_object import BeltGrindingJob, child
 from .simulation import Simulation
 from .stock import Stock
+from .verdict import Verdict
 
 MARK = "Job"  # the sheet's property that links its job
 WIDTHS = {"A": 300, "B": 130, "C": 130}  # pixels
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
-
-
-class _Verdict:
-    """What ``child`` needs to know of a Verdict, which not every document has."""
-
-    TYPE = "BeltGrinding::Verdict"
-
 
 # Heading: proxy of the object, and of every row the property, its label, and the unit that it is shown
 # in; a unit in brackets stands behind a number that has none.
@@ -56,7 +50,7 @@ SECTIONS = (
     ),
     (
         QT_TRANSLATE_NOOP("BeltGrinding", "Verdict by zones"),
-        _Verdict,
+        Verdict,
         (
             ("Overall", QT_TRANSLATE_NOOP("BeltGrinding", "Verdict"), ""),
             ("FacesFailed", QT_TRANSLATE_NOOP("BeltGrinding", "Faces out of tolerance"), ""),

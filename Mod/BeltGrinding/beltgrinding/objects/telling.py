@@ -9,6 +9,7 @@ from ..result import Result
 from . import figures, job_object, told
 from .job_object import child
 from .simulation import Simulation
+from .verdict import judge
 
 
 def make_figures(job):
@@ -56,17 +57,19 @@ def report_data(job, folder):
         data, field, json.loads(simulation.SummaryData), simulation.Proxy.events(simulation), None
     )
     result.bins = json.loads(simulation.SeriesData) if simulation.SeriesData else None
-    result.verdict = _verdict(simulation, data["inspection"])
+    result.verdict = _verdict(job, simulation, data["inspection"])
     result.convergence = told.convergence(simulation, data["inspection"])
     names = dict.fromkeys(obj.Label for obj, _ in job.DesignFaces)
     return result, ", ".join(names), notes
 
 
-def _verdict(simulation, inspection):
-    """The verdict that the simulation was stored with, if it is by the same tolerances."""
-    stored = json.loads(getattr(simulation, "VerdictData", "") or "{}")
-    judged_by = {key: inspection.get(key) for key in ("tolerance_mm", "zones")}
-    return stored["verdict"] if stored.get("inspection") == judged_by else None
+def _verdict(job, simulation, inspection):
+    """The verdict that the simulation was stored with or, by other tolerances, another one."""
+    stored = json.loads(simulation.VerdictData or "{}")
+    judged_by = {key: inspection[key] for key in ("tolerance_mm", "zones")}
+    if stored.get("inspection") == judged_by:
+        return stored["verdict"]
+    return judge(job, simulation, judged_by)
 
 
 def check_settings(job, context=None):

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import InputError, core, job as jobs
+from .. import InputError, core, job as jobs, verdict as verdicts
 from ..result import Result, colour_scale, write_whole
 from . import charts, page, pictures, spots
 from .language import Language
@@ -78,12 +78,8 @@ def load(result, title=None, notes=()):
 
 def _verdict(result, shape, notes):
     """The result's verdict; of an older one, it is found now. None where it cannot be."""
-    if getattr(result, "verdict", None) is not None:
+    if result.verdict is not None:
         return result.verdict
-    try:
-        from .. import verdict as verdicts
-    except ImportError:  # a core that cannot judge
-        return None
     try:
         return verdicts.of_result(result, shape)
     except InputError as error:

@@ -1,5 +1,6 @@
 """The steps of docs/workbench.md on the example blade, as a person does them; its pictures are taken here."""
 
+import importlib.util
 import json
 
 import numpy as np
@@ -185,6 +186,47 @@ doc.RobotPath.ViewObject.Visibility = False
 seen = pixels("reopened.png")
 red, blue = seen[:, 0], seen[:, 2]
 assert (red > blue + 60).sum() > 1500 and (blue > red + 60).sum() > 200
+"""
+    )
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("beltgrinding_scan") is None, reason="built without PCL"
+)
+def test_the_ground_part_and_its_scan(walk):
+    walk(
+        """
+doc.RobotPath.ViewObject.Visibility = False
+said = job.LawCoefficient
+job.LawCoefficient = 1.25 * said  # the real belt takes more than its law says
+menu("Simulate")
+wait(lambda: field("state").text() == "Done.", 200)
+press("Close")
+menu("Ground part as mesh")
+ground = doc.GroundPart
+tree(ground)
+assert ground.Closed and ground.ViewObject.Coloring
+seen = pixels("ground.png")
+assert (seen[:, 0] > seen[:, 2] + 60).sum() > 300
+picture("ground-mesh")
+scan = ground.Mesh.copy()
+scan.translate(0.4, -0.3, 0.5)
+scan.write(str(Path("scan.stl").resolve()))
+ground.ViewObject.Visibility = False
+doc.Design.ViewObject.Visibility = True
+
+job.LawCoefficient = said
+menu("Simulate")
+wait(lambda: field("state").text() == "Done.", 200)
+press("Deviation")
+press("OK")
+menu("Compare a scan...")
+type_in("scan", str(Path("scan.stl").resolve()))
+press("Compare")
+wait(lambda: field("figures").rowCount() == 9, 200)
+assert doc.Simulation.DifferenceMean.Value < -0.03
+picture("workbench-scan")
+press("OK")
 """
     )
 

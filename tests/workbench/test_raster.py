@@ -186,6 +186,13 @@ def test_the_step_over_comes_from_the_contact():
         raster.raster(rigid, ALONG_X)
 
 
+def test_a_wheel_that_cannot_be_is_refused_on_a_plane_too():
+    job = job_of(plate())
+    job["belt_machine"]["wheel"] = {"radius_mm": 10, "width_mm": 5}
+    with pytest.raises(InputError, match="as thick as the wheel's radius"):
+        raster.raster(job, ALONG_X)
+
+
 def test_an_even_raster_grinds_evenly():
     job = job_of(plate())
     found = raster.raster(job, {**ALONG_X, "step_over_share": 0.35})

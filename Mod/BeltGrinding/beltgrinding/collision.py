@@ -14,7 +14,7 @@ from . import InputError, core, frames
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
-LEAST_AROUND = 12  # corners of a wheel's body
+LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
 def validate(bodies):
@@ -122,8 +122,11 @@ def wheel_body(wheel, inset):
 
 
 def _chord_angle(radius):
-    """The angle of a chord that leaves a circle of ``radius`` by DEFLECTION."""
-    return 2.0 * math.acos(max(0.0, 1.0 - DEFLECTION / radius))
+    """The angle of a chord that leaves a circle of ``radius`` by DEFLECTION, or by no more than
+    MOST_AROUND corners of the whole circle let it.
+    """
+    angle = 2.0 * math.acos(max(0.0, 1.0 - DEFLECTION / radius))
+    return max(angle, 2.0 * math.pi / MOST_AROUND)
 
 
 def wheel_profile(wheel):

@@ -219,6 +219,8 @@ def contact_width(job, settings, surfaces, warnings):
     try:
         found = core.single_contact(wheel, workpiece, *arguments)
     except InputError as error:
+        if workpiece["shape"] == "plane":  # it is not the surface's curvature
+            raise
         warnings.append(
             f"the contact's width is that on a plane: on a cylinder of {1.0 / curvature:.4g} mm "
             f"radius it cannot be found ({error})"

@@ -12,6 +12,9 @@ from .proxy import Proxy
 
 OUTPUTS = (
     Output("VertexColors", "ColorList", "Mesh", "one colour per vertex", True),
+    Output("ToleranceLower", "Distance", "Tolerance", "lower limit; set it at the job"),
+    Output("ToleranceUpper", "Distance", "Tolerance", "upper limit; set it at the job"),
+    Output("ColourLimit", "Distance", "Tolerance", "deviation at which the colour ramps end"),
     Output("OutOfDate", "Bool", "Mesh", "made from another result; make it again"),
     Output("Closed", "Bool", "Mesh", "without gaps, as the design is"),
     Output("Volume", "Volume", "Mesh", "of the ground part; 0: the mesh is open"),
@@ -78,6 +81,7 @@ def make(obj):
     made = Mesh.Mesh()
     made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")
     obj.Mesh = made  # drops the colours: it comes first
+    obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
     obj.VertexColors = mesh.colours(*scale).tolist()
     obj.Closed = figures["closed"]
     obj.Volume, obj.DesignVolume = figures["volume_mm3"] or 0.0, figures["design_volume_mm3"] or 0.0

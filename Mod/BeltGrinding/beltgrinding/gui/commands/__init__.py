@@ -2,7 +2,7 @@
 
 import FreeCADGui as Gui
 
-from . import files, paths, results, set_up, tell, verification
+from . import files, measure, paths, results, set_up, tell, verification
 
 WORK = (  # in the order of work: toolbar and menu
     set_up.NewJob,
@@ -24,6 +24,8 @@ MORE = (  # menu only
     verification.Zones,
     files.Calibrate,
     results.Contact,
+    measure.GroundMesh,
+    measure.Scan,
     tell.CheckSettings,
     tell.Figures,
     paths.ReadAgain,
@@ -32,8 +34,6 @@ MORE = (  # menu only
     files.ExportJob,
     files.ImportResult,
     files.ExampleBlade,
-    results.GroundMesh,
-    results.Scan,
 )
 
 

@@ -4,7 +4,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects import api, deviation, simulation
-from ...objects.job_object import child
+from ...objects.job_object import child, children
 from ..compat import translate
 from .base import Command, active_job, transaction
 
@@ -31,9 +31,11 @@ class GroundMesh(Measured):
         job = active_job()
         with transaction(job.Document, translate("BeltGrinding", "Ground part as mesh")):
             api.make_ground_mesh(job)
-            shown = child(job, deviation.Deviation)
-            if shown is not None:  # its surface is the same; both would shimmer through each other
-                shown.ViewObject.Visibility = False
+            # Their surfaces are the same, more or less: they would shimmer through each other.
+            hidden = {obj for obj, _ in job.DesignFaces}
+            hidden.update(children(job, deviation.Deviation))
+            for one in hidden:
+                one.ViewObject.Visibility = False
 
 
 class Scan(Measured):

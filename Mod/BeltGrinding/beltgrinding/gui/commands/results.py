@@ -8,7 +8,6 @@ from ...objects.job_object import child
 from ..compat import translate
 from ..panel import edit
 from .base import Command, active_job, transaction
-from .measure import GroundMesh, Scan  # noqa: F401: of this topic, too
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

@@ -252,6 +252,7 @@ settle()
 assert seen and seen[0] is not None and seen[0] > 0, seen
 """,
         window=True,
+        fresh=True,  # the dialog has widgets of all of FreeCAD
     )
 
 

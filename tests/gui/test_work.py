@@ -222,7 +222,9 @@ assert [o.Label for o in doc.BeltGrindingJob.Group] == [
     "Stock", "Belt machine", "blade_pressure_side"]
 menu("Simulate")
 wait(lambda: doc.getObject("Simulation") is not None)
-assert not doc.Simulation.Events and doc.Simulation.RemovedVolume.Value > 1000
+assert doc.Simulation.RemovedVolume.Value > 1000
+kinds = {event["kind"] for event in doc.Simulation.Proxy.events(doc.Simulation)}
+assert kinds == {"collision", "edge_contact", "gouge", "wheel_too_large"}, kinds
 """,
         window=True,
     )

@@ -15,8 +15,9 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libcoin-dev libgl-dev qttools5-dev-tools
-    libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev libpcl-dev
+    libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
+packages_scan=(libpcl-dev) # aligning scans; large, and not needed for anything else
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib xvfb xauth libgl1-mesa-dri)
 packages_test=(weasyprint poppler-utils python3-pytest python3-h5py python3-pil calculix-ccx cloudcompare)
 
@@ -61,7 +62,11 @@ install_missing() {
 build_all() {
     local log=$root/build/build.log
     mkdir -p "$root/build"
-    if [ ! -f "$build/build.ninja" ]; then
+    local late= # what was installed since the build was configured
+    if compgen -G '/usr/lib/*/cmake/pcl/PCLConfig.cmake' >/dev/null; then
+        grep -qs '^PCL_DIR:PATH=/' "$build/CMakeCache.txt" || late=PCL
+    fi
+    if [ ! -f "$build/build.ninja" ] || [ -n "$late" ]; then
         say "Configuring the build"
         (cd "$root" && cmake --preset release) >"$log" 2>&1 || {
             tail -n 20 "$log" >&2

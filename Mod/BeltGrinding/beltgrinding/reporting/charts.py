@@ -93,7 +93,11 @@ def histogram(field, scale, words):
                     fill="#8fae8f" if good else rgb(colour),
                 )
             )
-    for value, anchor, shift in ((lower, "end", -5), (upper, "start", 5)):
+    room = 70  # of a limit's label, which stands outside of the band where there is room
+    for value, outside in ((lower, -1), (upper, 1)):
+        end = left if outside < 0 else WIDTH - right
+        side = outside if (end - x(value)) * outside > room else -outside
+        anchor, shift = ("start", 5) if side > 0 else ("end", -5)
         drawn.append(
             e("path", d=f"M{x(value):.1f} {above - 8}v{tall + 8}", stroke=INK, stroke_width=1.4)
         )

@@ -55,6 +55,13 @@ def test_events_have_the_published_form(tmp_path):
     assert Result.read(tmp_path).events == result.events
 
 
+def test_a_gouge_is_below_the_limit_of_its_zone():
+    job = bad_job()
+    job["inspection"]["zones"] = [{"name": "deep", "faces": [1], "tolerance_mm": [-0.5, 0.25]}]
+    kinds = {event["kind"] for event in beltgrinding.run(job).events}
+    assert "over_pressure" in kinds and "gouge" not in kinds
+
+
 def test_a_result_of_an_older_version_still_opens(tmp_path):
     beltgrinding.run(bad_job()).write(tmp_path)
     path = tmp_path / "events.json"

@@ -146,7 +146,7 @@ def _run(job, context, warnings, recording):
     phases.end("collisions")
 
     wheel, compliance, law, options = engine_arguments(job)
-    options["first_motion"] = 0
+    options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
     found, steps, process_time, models = [], None, 0.0, {}
     for i, path in enumerate(paths):
@@ -371,7 +371,6 @@ def engine_arguments(job):
         "pressure_limit": float(job["law"]["pressure_limit_MPa"]),
         "orientation_jump": math.radians(job["simulation"]["orientation_jump_deg"]),
         "tilt_limit": math.radians(job["simulation"]["tilt_limit_deg"]),
-        "lower_limits": [float(job["inspection"]["tolerance_mm"][0])],
         "shifted_laws": laws.shifted_laws(job["law"]),
         "contact_spacing": float(machine["contact_spacing_mm"]),
         "contact_tolerance": float(machine["contact_tolerance"]),

@@ -126,6 +126,13 @@ def judge(job, field, clusters=MOST_CLUSTERS, motions=MOST_MOTIONS):
     return core.judge(field, rest, zones, clusters, motions)
 
 
+def lower_limits(job, field):
+    """(n,) the lower limit of every sample, mm; (1,) where it is the same for all."""
+    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
+    limits = np.array([zone.get("tolerance_mm", rest)[0] for zone in (*zones, {})], np.float32)
+    return limits[core.zone_of_samples(field, _core_zones(zones, rest))] if zones else limits
+
+
 def _core_zones(zones, rest):
     found = []
     for zone in zones:

@@ -14,6 +14,7 @@ from . import InputError, core, frames
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
+INVALID = "is not a valid shape"  # in a core.Shape's warnings
 LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
@@ -34,13 +35,26 @@ def check(job, shape, paths, warnings, context=None):
     """
     if not job["cell"]["check_collisions"]:
         return []
+    if any(INVALID in text for text in shape.warnings()):
+        # OpenCASCADE's mesher may never end on its faults.
+        warnings.append("collisions are not checked: the part is not a valid shape; repair it")
+        return []
     context = context or core.RunContext()
     found = bodies(job, shape, warnings, context)
+    for body in found:
+        if not np.isfinite(body["mesh"].vertices).all():
+            raise InputError(f"cell: the body '{body['name']}' is too large; check its sizes")
     clearance = float(job["cell"]["clearance_mm"])
     results = []
     for i, path in enumerate(paths):
         part = context.part(i / len(paths), (i + 1) / len(paths))
-        results.append(core.check_collisions(path, found, clearance, context=part))
+        try:
+            results.append(core.check_collisions(path, found, clearance, context=part))
+        except MemoryError:
+            raise InputError(
+                "cell: the programs' ways are too long to be checked for collisions; check their "
+                "poses, or set cell.check_collisions to false"
+            ) from None
     return results
 
 

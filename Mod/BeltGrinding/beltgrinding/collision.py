@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from . import InputError, core, frames
+from .poses import program_name
 
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
 INVALID = "is not a valid shape"  # in a core.Shape's warnings
+LONGEST = 1e7  # s of a program, some months
 LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
@@ -48,13 +50,12 @@ def check(job, shape, paths, warnings, context=None):
     results = []
     for i, path in enumerate(paths):
         part = context.part(i / len(paths), (i + 1) / len(paths))
-        try:
-            results.append(core.check_collisions(path, found, clearance, context=part))
-        except MemoryError:
+        if not path.duration() < LONGEST:
             raise InputError(
-                "cell: the programs' ways are too long to be checked for collisions; check their "
-                "poses, or set cell.check_collisions to false"
-            ) from None
+                f"{program_name(job, i)}: the program takes {path.duration():.3g} s, too long to be "
+                "checked for collisions; check its poses and feeds"
+            )
+        results.append(core.check_collisions(path, found, clearance, context=part))
     return results
 
 

@@ -7,6 +7,7 @@ the first three columns: XYZ, ASC, TXT, CSV, PTS). Alignment is by the extension
 
 import json
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,9 @@ PLAIN_SD = 0.02  # mm at the part's radius: a freedom that is known worse is tol
 
 def extension():
     """The module ``beltgrinding_scan``. Raises InputError saying what is missing."""
+    beside = str(Path(core.__file__).parent)  # built and installed with the core
+    if beside not in sys.path:
+        sys.path.append(beside)
     try:
         import beltgrinding_scan
     except ImportError as error:

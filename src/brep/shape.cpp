@@ -207,6 +207,18 @@ Box Shape::extents() const {
     return *impl_->extents;
 }
 
+bool Shape::valid() const {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    if (!impl_->valid) {
+        try {
+            impl_->valid = BRepCheck_Analyzer(impl_->shape).IsValid();
+        } catch (const Standard_Failure&) {
+            impl_->valid = false;
+        }
+    }
+    return *impl_->valid;
+}
+
 std::vector<std::string> Shape::warnings() const {
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
@@ -224,14 +236,10 @@ std::vector<std::string> Shape::warnings() const {
             found.push_back(name + " is only " + length_text(size) +
                             " large, less than 0.1 mm: check its unit");
     }
-    try {
-        if (!BRepCheck_Analyzer(impl_->shape).IsValid())
-            found.push_back(name +
-                            " is not a valid shape by OpenCASCADE's check: results near its faults "
-                            "may be wrong");
-    } catch (const Standard_Failure&) {
-        found.push_back(name + " cannot be checked for validity");
-    }
+    if (!valid())
+        found.push_back(name +
+                        " is not a valid shape by OpenCASCADE's check: results near its faults "
+                        "may be wrong");
     for (TopExp_Explorer s(impl_->shape, TopAbs_SHELL); s.More(); s.Next()) {
         if (!BRep_Tool::IsClosed(s.Current())) {
             found.push_back(name +

@@ -36,6 +36,8 @@ class Shape {
     std::string surface_type(std::size_t face) const;
     /// Tight extents of the triangulated shape (not the pole box), mm.
     Box extents() const;
+    /// By OpenCASCADE's check. Its mesher may not end on the faults of a shape that is not.
+    bool valid() const;
     /// Things the user should know: not valid, open shell, extents beyond 10 m or below 0.1 mm
     /// (a unit mistake), zero-area faces. Each is one sentence that names the face.
     std::vector<std::string> warnings() const;

@@ -8,6 +8,7 @@
 #include <TopoDS_Shape.hxx>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -35,6 +36,7 @@ struct Shape::Impl {
     mutable std::vector<signed char> solid_sign;            ///< 0: not yet known
     mutable std::unordered_map<std::size_t, double> areas;  ///< mm2, by face
     mutable std::unique_ptr<Box> extents;
+    mutable std::optional<bool> valid;
     mutable std::unique_ptr<std::vector<std::string>> warnings;
 };
 

@@ -70,6 +70,7 @@ void bind_geometry(py::module_& m) {
                     "Reads what FreeCAD's exportBrepToString makes.")
         .def("write_brep", &Shape::write_brep)
         .def_property_readonly("face_count", &Shape::face_count)
+        .def_property_readonly("valid", &Shape::valid, "By OpenCASCADE's check.")
         .def("bounds_solid", &Shape::bounds_solid, py::arg("face"))
         .def("face_area", &Shape::face_area, py::arg("face"), "mm2")
         .def("surface_type", &Shape::surface_type, py::arg("face"))

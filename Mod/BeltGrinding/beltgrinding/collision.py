@@ -15,7 +15,6 @@ from .poses import program_name
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
-INVALID = "is not a valid shape"  # in a core.Shape's warnings
 LONGEST = 1e7  # s of a program, some months
 LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
@@ -37,8 +36,7 @@ def check(job, shape, paths, warnings, context=None):
     """
     if not job["cell"]["check_collisions"]:
         return []
-    if any(INVALID in text for text in shape.warnings()):
-        # OpenCASCADE's mesher may never end on its faults.
+    if not shape.valid:  # OpenCASCADE's mesher may never end on its faults
         warnings.append("collisions are not checked: the part is not a valid shape; repair it")
         return []
     context = context or core.RunContext()

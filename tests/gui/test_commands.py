@@ -50,7 +50,7 @@ assert len(doc.RobotPath.Poses) == 9
 
 Path("pass.csv").unlink()
 menu("Read programs again")
-boxes = [b for b in window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
+boxes = [b for b in widgets(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
 assert len(boxes) == 1 and "pass.csv" in boxes[0].text()
 assert len(doc.RobotPath.Poses) == 9
 """,
@@ -85,7 +85,7 @@ assert doc.Simulation.OutOfDate  # other inputs
 
 patch(QtGui.QFileDialog, "getExistingDirectory", staticmethod(lambda *a, **k: "nowhere"))
 menu("Import result...")
-boxes = [b for b in window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
+boxes = [b for b in widgets(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
 assert len(boxes) == 1 and "nowhere" in boxes[0].text()
 boxes[0].close()
 

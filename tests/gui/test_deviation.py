@@ -59,7 +59,7 @@ menu("Deviation")
 deviation, field_ = doc.Deviation, doc.Simulation.Proxy.field(doc.Simulation)
 type_in("ColourLimit", "0.3 mm")
 assert deviation.ColourLimit.Value == 0.3
-limits = window.findChildren(QtGui.QWidget, "ColourLimit")
+limits = widgets(QtGui.QWidget, "ColourLimit")
 field("Bounds").setCurrentIndex(1)  # by tolerance
 settle()
 assert not any(w.isVisible() for w in limits)

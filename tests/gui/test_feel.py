@@ -28,7 +28,7 @@ def drop(widget, path):
 
 frames = "{X %d,Y 20,Z 20,A 0,B 90,C 0}"
 lines = ["DEF dropped()", *(f"LIN {frames % x}" for x in (10, 20, 30)), "END"]
-drawn = next(w for w in window.findChildren(QtGui.QWidget)
+drawn = next(w for w in widgets(QtGui.QWidget)
     if w.isVisible() and w.metaObject().className() == "QOpenGLWidget")
 for number, (widget, suffix) in enumerate(((window, ".src"), (drawn, ".SRC"))):
     path = Path(f"dropped{number}{suffix}")
@@ -265,18 +265,18 @@ doc.recompute()
 menu("Simulate")
 texts = []
 def told():
-    shown = window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")
+    shown = widgets(QtGui.QWidget, "BeltGrinding_Progress")
     if shown:
         texts.append(shown[0].text.text())
     return doc.getObject("Simulation") is not None or any("left" in t for t in texts)
 wait(told)
 assert any("left" in t for t in texts), texts[-3:]
-shown = window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")[0]
+shown = widgets(QtGui.QWidget, "BeltGrinding_Progress")[0]
 assert shown.isVisible()
 shown.findChild(QtGui.QToolButton).click()
 wait(lambda: "Cancelled" in field("state").text())
 settle()
-assert not [w for w in window.statusBar().findChildren(QtGui.QWidget, "BeltGrinding_Progress")
+assert not [w for w in widgets(QtGui.QWidget, "BeltGrinding_Progress")
     if w.isVisible()]
 """,
         window=True,
@@ -350,7 +350,7 @@ for name, bad in (("PoissonsRatio", 0.7), ("WheelRadius", 0), ("BeltWear", -1)):
     setattr(machine, name, before)
     doc.recompute()
     assert "Invalid" not in machine.State and not doc.Simulation.OutOfDate, (name, machine.State)
-report = window.findChild(QtGui.QTextEdit, "Report view")
+report = widgets(QtGui.QTextEdit, "Report view")[0]
 wait(lambda: "PoissonsRatio is 0.7; it must be" in report.toPlainText(), 10)
 """,
         window=True,

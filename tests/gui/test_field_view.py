@@ -12,7 +12,7 @@ from PySide import QtCore
 from pivy import coin
 from beltgrinding import core, InputError
 from beltgrinding.gui.field_view import FieldView
-from support.hands import settle
+from support.hands import settle, widgets
 
 kind = os.environ["KIND"]
 if kind == "environment":
@@ -181,7 +181,7 @@ other.getSceneGraph().addChild(show.node)
 settle()
 other.getSceneGraph().removeChild(show.node)
 from PySide import QtGui
-window = Gui.getMainWindow().findChild(QtGui.QMdiArea)
+window = widgets(QtGui.QMdiArea)[0]
 window.closeActiveSubWindow()
 settle()
 show.set_colours(np.full(len(show.points), 0xFF2020FF, np.uint32))

@@ -31,11 +31,11 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath"):
     if "PICTURES" in os.environ:
         screenshot(Path(os.environ["PICTURES"], f"{name}.png"))
     if name == "BeltGrindingJob":
-        labels = {w.text() for w in window.findChildren(QtGui.QLabel) if w.isVisible()}
+        labels = {w.text() for w in widgets(QtGui.QLabel) if w.isVisible()}
         assert "Abtastabstand" in labels and "Sample spacing" not in labels, labels
         type_in("LawCoefficient", "0,07")  # a comma, as Germans write it
         assert doc.BeltGrindingJob.LawCoefficient == 0.07
-    buttons = [b for b in window.findChildren(QtGui.QPushButton) if b.isVisible()]
+    buttons = [b for b in widgets(QtGui.QPushButton) if b.isVisible()]
     next(b for b in buttons if b.text().replace("&", "") in ("OK", "Ok")).click()
     settle()
 
@@ -44,7 +44,7 @@ Gui.Selection.clearSelection()
 Gui.Selection.addSelection(doc.BeltMachine)
 tips = set()
 def seen():
-    for view in window.findChildren(QtGui.QTreeView):
+    for view in widgets(QtGui.QTreeView):
         if view.metaObject().className() != "Gui::PropertyEditor::PropertyEditor":
             continue
         model = view.model()

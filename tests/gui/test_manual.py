@@ -34,7 +34,7 @@ def simulated():
 def tree(obj):
     \"\"\"Waits until the tree, which FreeCAD brings up to date now and then, shows an object.\"\"\"
     exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
-    trees = window.findChildren(QtGui.QTreeWidget)
+    trees = widgets(QtGui.QTreeWidget)
     wait(lambda: any(widget.findItems(obj.Label, exactly, 0) for widget in trees), 10)
 
 def pixels(name, at=None):
@@ -223,7 +223,7 @@ press("OK")
 menu("Compare a scan...")
 type_in("scan", str(Path("scan.stl").resolve()))
 press("Compare")
-told = window.findChild(QtGui.QLabel, "note")
+told = widgets(QtGui.QLabel, "note")[0]
 wait(lambda: field("compare").isEnabled(), 200)
 assert field("figures").rowCount() == 9, told.text()
 assert doc.Simulation.DifferenceMean.Value < -0.03

@@ -37,7 +37,7 @@ scan.write(os.path.abspath("scan.stl"))
 menu("Compare a scan...")
 type_in("scan", os.path.abspath("scan.stl"))
 press("Compare")
-table, note = field("figures"), FreeCADGui.getMainWindow().findChild(QtGui.QLabel, "note")
+table, note = field("figures"), widgets(QtGui.QLabel, "note")[0]
 wait(lambda: field("compare").isEnabled())
 settle()
 assert table.rowCount() == 9, note.text()

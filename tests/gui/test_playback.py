@@ -99,7 +99,7 @@ assert dock.scene.recording.last == doc.Simulation.Steps
 field("play").click()
 FreeCAD.closeDocument(doc.Name)
 settle()
-docks = window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
+docks = widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
 assert not any(dock.isVisible() or dock.clock.isActive() or dock.scene for dock in docks)
 """,
         window=True,
@@ -121,7 +121,7 @@ assert "Recording" not in doc.Simulation.PropertiesList
 Gui.Control.closeDialog()
 menu("Playback")
 assert field("record").isVisible()
-window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")[0].close()
+widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")[0].close()
 """,
         window=True,
     )

@@ -162,7 +162,7 @@ for close in (lambda: dock.close(), lambda: FreeCAD.closeDocument(doc.Name)):
     close()
     wait(lambda: not runner.thread.is_alive())
     settle()
-    docks = window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
+    docks = widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
     assert not any(d.isVisible() for d in docks)
     if FreeCAD.listDocuments():
         assert doc.getObject("Simulation") is None
@@ -188,7 +188,7 @@ def play():
 
 # An input changes: said at once, and taken back by undo.
 play()
-assert not window.findChildren(QtGui.QLabel, "playbackOutOfDate")[0].isVisible()
+assert not widgets(QtGui.QLabel, "playbackOutOfDate")[0].isVisible()
 doc.openTransaction("force")
 doc.BeltMachine.Force = "20 N"
 doc.commitTransaction()
@@ -227,7 +227,7 @@ assert dock.runner is None and "belt machine" in dock.state.text()
 doc.removeObject(job.Name)
 settle()
 dock.close()
-docks = window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
+docks = widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
 assert not any(d.isVisible() for d in docks)
 
 # The document is closed while it plays.
@@ -237,7 +237,7 @@ dock = record()
 play()
 FreeCAD.closeDocument(doc.Name)
 settle()
-docks = window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
+docks = widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
 assert not any(d.isVisible() or d.clock.isActive() or d.scene for d in docks)
 """,
         window=True,

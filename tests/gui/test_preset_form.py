@@ -53,7 +53,7 @@ doc.redo()
 menu("Belt machine")
 choose_preset("materialPreset", "Nickel alloy")
 assert "No source was found" in field("materialPresetHint").text()
-assert not [b for b in window.findChildren(QtGui.QPushButton, "UseBeltSpeed") if b.isVisible()]
+assert not [b for b in widgets(QtGui.QPushButton, "UseBeltSpeed") if b.isVisible()]
 press("Cancel")
 """,
         window=True,
@@ -78,7 +78,7 @@ type_in("YoungsModulus", "7 MPa")  # entered directly: it counts, and the hardne
 assert abs(megapascals(machine) - 7) < 1e-6 and field("ShoreA").text() == ""
 field("Compliance").setCurrentIndex(machine.getEnumerationsOfProperty("Compliance").index("geometric"))
 settle()
-assert not [w for w in window.findChildren(QtGui.QLineEdit, "ShoreA") if w.isVisible()]
+assert not [w for w in widgets(QtGui.QLineEdit, "ShoreA") if w.isVisible()]
 press("Cancel")
 """,
         window=True,

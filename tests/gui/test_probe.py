@@ -44,9 +44,9 @@ assert max(abs(reading["point"][0] - 30), abs(reading["point"][1] - 20)) <= 0.6
 assert abs(reading["stock"] - reading["removed"] - reading["deviation"]) < 1e-9
 
 press("OK")
-assert not [w for w in window.findChildren(QtGui.QLabel, "readingAtCursor") if w.isVisible()]
+assert not [w for w in widgets(QtGui.QLabel, "readingAtCursor") if w.isVisible()]
 click_at(*view.getPointOnScreen(FreeCAD.Vector(2, 2, 20)))  # nobody listens any more
-assert not window.findChildren(QtGui.QLabel, "reading")
+assert not widgets(QtGui.QLabel, "reading")
 menu("Deviation")
 
 # The verdict follows the tolerance in the panel.

@@ -22,7 +22,7 @@ assert path.PassCount > 0 and number() == str(path.PassCount), field("note").tex
 assert "Contact across the pass" in field("note").text()
 type_in("StepOver", "8 mm")
 wait(lambda: path.PassCount == 5)
-assert not [w for w in window.findChildren(QtGui.QWidget, "StepOverShare") if w.isVisible()]
+assert not [w for w in widgets(QtGui.QWidget, "StepOverShare") if w.isVisible()]
 field("Along").setCurrentIndex(2)
 type_in("Direction_x", "0")
 type_in("Direction_z", "1")

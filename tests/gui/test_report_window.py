@@ -37,7 +37,7 @@ doc.recompute()
 opened.clear()
 name_file(Path("told.pdf").resolve(), "PDF (*.pdf)")
 menu("Report...")
-wait(lambda: opened or window.findChildren(QtGui.QMessageBox), 120)
+wait(lambda: opened or widgets(QtGui.QMessageBox), 120)
 assert "An input has changed" in Path("told.html").read_text()
 try:
     import weasyprint

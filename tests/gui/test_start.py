@@ -10,8 +10,8 @@ CHOOSE = """
 from support.hands import *
 Gui.activateWorkbench("BeltGrindingWorkbench")
 settle()
-boxes = window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error")
-report = window.findChild(QtGui.QTextEdit, "Report view").toPlainText()
+boxes = widgets(QtGui.QMessageBox, "BeltGrinding_Error")
+report = widgets(QtGui.QTextEdit, "Report view")[0].toPlainText()
 """
 
 
@@ -58,7 +58,7 @@ boxes[0].close()
 Gui.activateWorkbench("PartWorkbench")
 Gui.activateWorkbench("BeltGrindingWorkbench")
 settle()
-assert not any(b.isVisible() for b in window.findChildren(QtGui.QMessageBox))
+assert not any(b.isVisible() for b in widgets(QtGui.QMessageBox))
 menu("Help")
 assert "troubleshooting" in field("BeltGrinding_ManualView").toPlainText().lower()
 """,

@@ -105,7 +105,7 @@ def test_mistakes_are_said_where_they_are_made(freecad):
         PREPARE
         + """
 def message():
-    boxes = [b for b in window.findChildren(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
+    boxes = [b for b in widgets(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
     text = boxes[-1].text()
     for box in boxes:
         box.close()
@@ -263,7 +263,7 @@ def pick(name, text):
 job.ViewObject.Proxy.doubleClicked(job.ViewObject)
 settle()
 pick("Law", "Local with exponents")
-shown = {w.objectName() for w in window.findChildren(QtGui.QWidget) if w.isVisible()}
+shown = {w.objectName() for w in widgets(QtGui.QWidget) if w.isVisible()}
 assert "Timing" in shown and "PathAcceleration" not in shown
 pick("Timing", "With acceleration and zones")
 assert field("PathAcceleration").isVisible() and field("DefaultZone").isVisible()

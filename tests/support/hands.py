@@ -46,16 +46,20 @@ def menu(text):
     settle()
 
 
-def visible(kind, *name):
-    """The visible widgets of a kind, and of an object name if one is given."""
-    for _ in range(5):
-        try:
-            return [widget for widget in window.findChildren(kind, *name) if widget.isVisible()]
-        except RuntimeError:
-            pass
-        # PySide knew a widget that is gone, and takes a new one at its address for it.
-        gc.collect()
-    raise AssertionError(f"{name}: PySide takes a widget for one that is gone")
+def widgets(kind, name=None):
+    """FreeCAD's widgets of a kind, and of an object name if one is given.
+
+    Not by the window's findChildren: PySide then keeps what it found as long as ``window``, also
+    widgets of FreeCAD's own classes of which nobody tells it that they are gone; it takes a new one
+    at the same address for the old one.
+    """
+    found = [widget for widget in QtGui.QApplication.allWidgets() if isinstance(widget, kind)]
+    return [widget for widget in found if name is None or widget.objectName() == name]
+
+
+def visible(kind, name=None):
+    """The visible ones of ``widgets``."""
+    return [widget for widget in widgets(kind, name) if widget.isVisible()]
 
 
 def eventually(find, seconds=5):
@@ -165,10 +169,10 @@ def reset():
     """Puts the window back for the next test: no document, panel, dock, message or preference."""
     Gui.Control.closeDialog()
     settle()
-    for dock in window.findChildren(QtGui.QDockWidget):
+    for dock in widgets(QtGui.QDockWidget):
         if dock.objectName().startswith("BeltGrinding_"):
             dock.close()
-    for box in window.findChildren(QtGui.QMessageBox):
+    for box in widgets(QtGui.QMessageBox):
         box.close()
         box.deleteLater()
     Gui.Selection.clearSelection()
@@ -195,7 +199,7 @@ def screenshot(path):
 def picture(name):
     """A picture of the manual: the whole screen, to build/pictures."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    bars, end = window.statusBar().findChildren(QtGui.QProgressBar), time.monotonic() + 3
+    bars, end = widgets(QtGui.QProgressBar), time.monotonic() + 3
     while any(bar.isVisible() for bar in bars) and time.monotonic() < end:
         settle()  # FreeCAD's own of loading goes a while later
     screenshot(PICTURES / f"{name}.png")

@@ -72,7 +72,7 @@ def hide(obj):
     exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
     tree = next(
         tree
-        for tree in hands.window.findChildren(QtGui.QTreeWidget)
+        for tree in hands.widgets(QtGui.QTreeWidget)
         if tree.metaObject().className() == "Gui::TreeWidget"
     )
     hands.bring_up(tree)

@@ -131,10 +131,11 @@ void bind_height_field(py::module_& m) {
     m.def(
         "apply_mesh",
         [](HeightField& field, const TriangleMesh& mesh, double above, double below,
-           const RunContext* context) {
+           const RunContext* context, double least_cosine) {
             StockOptions options;
             options.search_above = above;
             options.search_below = below;
+            options.least_cosine = least_cosine;
             StockReport report;
             {
                 const py::gil_scoped_release release;
@@ -144,7 +145,8 @@ void bind_height_field(py::module_& m) {
             return to_dict(report);
         },
         py::arg("field"), py::arg("mesh"), py::arg("search_above") = 10.0,
-        py::arg("search_below") = 2.0, py::arg("context") = nullptr, "Stock from a mesh, by rays.");
+        py::arg("search_below") = 2.0, py::arg("context") = nullptr, py::arg("least_cosine") = 0.0,
+        "Stock from a mesh, by rays; not surfaces met at a smaller cosine.");
 }
 
 }  // namespace beltgrinding::python

@@ -22,6 +22,7 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
                    const StockOptions& options) {
     const auto above = static_cast<float>(options.search_above);
     const auto below = static_cast<float>(options.search_below);
+    const auto least = static_cast<float>(options.least_cosine);
     // Outward: the first surface through which the ray leaves material; one entered before it means
     // that the design point itself lies outside of the stock, under a gap.
     bool entered = false;
@@ -30,6 +31,8 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
     for (int layer = 0; layer < kMaxLayers; ++layer) {
         const RayScene::Hit hit = scene.first(point, normal, near, above);
         if (hit.distance < 0.0F) break;
+        near = hit.distance + kAdvance;
+        if (hit.cosine < least) continue;
         if (hit.leaving) {
             if (std::isnan(best)) {
                 best = hit.distance;
@@ -41,12 +44,16 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
         } else if (std::isnan(best)) {
             entered = true;
         }
-        near = hit.distance + kAdvance;
     }
     if (!std::isnan(best) && !entered) return best;
     // Inward: the surface from which the material begins, met from outside.
-    const RayScene::Hit inward = scene.first(point, -normal, 0.0F, below);
-    if (inward.distance >= 0.0F && !inward.leaving) return -inward.distance;
+    near = 0.0F;
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+        const RayScene::Hit inward = scene.first(point, -normal, near, below);
+        if (inward.distance < 0.0F) break;
+        if (inward.cosine >= least) return inward.leaving ? std::nanf("") : -inward.distance;
+        near = inward.distance + kAdvance;
+    }
     return std::nanf("");
 }
 
@@ -62,6 +69,9 @@ void validate(const HeightField& field, const TriangleMesh& mesh, const StockOpt
     }
     if (!(options.search_above > 0.0) || !(options.search_below >= 0.0)) {
         throw InputError("stock: the search distances must be positive, in millimetres");
+    }
+    if (!(options.least_cosine >= 0.0 && options.least_cosine < 1.0)) {
+        throw InputError("stock: the least cosine must be in [0, 1)");
     }
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (!mesh.vertices[i].allFinite()) {

@@ -80,7 +80,10 @@ RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float
 #endif
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-    return {ray.ray.tfar, normal.dot(direction) > 0.0F, ray.hit.primID, ray.hit.u, ray.hit.v};
+    const float along = normal.dot(direction);
+    const float length = normal.norm() * direction.norm();
+    const float cosine = length > 0.0F ? std::abs(along) / length : 0.0F;
+    return {ray.ray.tfar, along > 0.0F, cosine, ray.hit.primID, ray.hit.u, ray.hit.v};
 }
 
 }  // namespace beltgrinding

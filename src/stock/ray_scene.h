@@ -19,6 +19,7 @@ class RayScene {
     struct Hit {
         float distance = -1.0F;  ///< mm for a unit direction; negative: none
         bool leaving = false;    ///< the ray leaves material here
+        float cosine = 0.0F;     ///< between the direction and the triangle's line of normals, >= 0
         std::uint32_t triangle = 0;
         float u = 0.0F, v = 0.0F;  ///< weights of the triangle's second and third vertex
     };

@@ -121,7 +121,9 @@ def test_a_mesh_is_met_by_rays_and_feeds_the_calibration(result, mesh, tmp_path)
     )
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)
-    assert told["kind"] == "mesh" and abs(told["difference_mm"]["mean"]) < 0.001
+    difference = told["difference_mm"]
+    assert told["kind"] == "mesh" and abs(difference["mean"]) < 0.0002
+    assert difference["min"] > -0.05  # no wall below the edge is taken for the face
     assert told == json.loads((tmp_path / "out" / "scan.json").read_text())
     kept = Result.read(tmp_path / "out")
     # At the very edge a ray grazes the faces beside it.

@@ -19,6 +19,7 @@ FREEDOMS = ("tx", "ty", "tz", "rx", "ry", "rz")  # of the work frame; rotations 
 SHARE = 0.9  # of the pairs of points, the nearest: the rest is trimmed
 DATUM_SAMPLES = 60_000  # about; more do not place a part better
 LEAST_SHARE = 0.02  # of the part's area: less of it that is not ground is no datum
+LEAST_COSINE = 0.1  # between a sample's normal and that of the scan's triangle, for a mesh
 SEARCH_MARGIN = 1.0  # mm beyond the stock's greatest height
 LEAST_SIZE = 0.02  # of the datum's: a smaller scan is one in another unit
 PLAIN_SD = 0.02  # mm at the part's radius: a freedom that is known worse is told
@@ -169,7 +170,8 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
 def measure(field, scan, work_from_scan, search_mm=None):
     """(n,) height of the scan over each sample of a core.HeightField, mm along its normal; NaN where
     the scan has nothing within ``search_mm`` of the design (default: the greatest height and stock,
-    and 1 mm). A mesh is met by the normal's ray, a cloud by the plane of the nearest points.
+    and 1 mm). A mesh is met by the normal's ray (not where it only grazes the part's next face), a cloud
+    by the plane of the nearest points.
     """
     if search_mm is None:
         greatest = max(np.abs(field.height).max(), np.abs(field.stock_height).max())
@@ -185,7 +187,11 @@ def measure(field, scan, work_from_scan, search_mm=None):
         )
     target = field.copy()
     core.apply_mesh(
-        target, core.TriangleMesh(moved.astype(np.float32), scan.triangles), search_mm, search_mm
+        target,
+        core.TriangleMesh(moved.astype(np.float32), scan.triangles),
+        search_mm,
+        search_mm,
+        least_cosine=LEAST_COSINE,
     )
     missed = (np.asarray(target.flags) & core.MISSED) != 0
     return np.where(missed, math.nan, target.height)

@@ -112,6 +112,36 @@ TEST(Stock, AScanWithAHoleAndDoubledSurfaceIsSound) {
     EXPECT_FALSE(report.warnings.empty());
 }
 
+// The wall of a step under the sample: nearly along the ray, above or below the design.
+TEST(Stock, AGrazedWallIsNoSurfaceIfToldSo) {
+    for (const bool above : {true, false}) {
+        HeightField field = plate_at(above ? 9.5F : 10.5F);
+        const auto x = static_cast<float>(field.point[field.size() / 2].x());
+        TriangleMesh mesh = box({0, 0, 0}, {30, 20, 10});
+        const float low = above ? 9.5F : 10.0F;
+        const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {{x - 0.01F, 0, low},
+                                                   {x - 0.01F, 20, low},
+                                                   {x + 0.01F, 20, low + 0.5F},
+                                                   {x + 0.01F, 0, low + 0.5F}});
+        for (const Triangle& t : {Triangle{0, 1, 2}, Triangle{0, 2, 3}}) {
+            mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+            mesh.triangles.push_back({base + t[0], base + t[2], base + t[1]});
+        }
+        const double height = above ? 0.5 : -0.5;
+        StockOptions options;
+        options.least_cosine = 0.1;
+        apply_mesh(field, mesh, options);
+        for (const double h : field.height) EXPECT_NEAR(h, height, 1e-5);
+        apply_mesh(field, mesh, {});
+        EXPECT_GT(std::abs(field.height[field.size() / 2] - height), 0.1);
+    }
+    HeightField field = plate_at(9.5);
+    StockOptions options;
+    options.least_cosine = 1.0;
+    EXPECT_THROW(apply_mesh(field, box({0, 0, 0}, {30, 20, 10}), options), InputError);
+}
+
 TEST(Stock, SearchDistancesLimitTheRays) {
     HeightField field = plate_at(2.0);
     StockOptions options;

@@ -57,6 +57,7 @@ import beltgrinding
 deviation = beltgrinding.make_deviation(job)
 verdict = beltgrinding.make_verdict(job)
 menu("Figures in a spreadsheet")
+assert Gui.activeWorkbench().name() == "BeltGrindingWorkbench"
 sheet = doc.Figures
 rows = {sheet.get(f"A{r}"): r for r in range(1, 90) if sheet.getContents(f"B{r}")}
 

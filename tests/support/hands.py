@@ -36,10 +36,11 @@ def wait(condition, seconds=60):
 def menu(text):
     """Chooses an entry of the workbench's menu."""
     settle()
-    bar = next(
-        a for a in window.menuBar().actions() if a.text().replace("&", "") == "Belt grinding"
+    bar = {a.text().replace("&", ""): a for a in window.menuBar().actions()}
+    assert "Belt grinding" in bar, list(bar)
+    action = next(
+        a for a in bar["Belt grinding"].menu().actions() if a.text().replace("&", "") == text
     )
-    action = next(a for a in bar.menu().actions() if a.text().replace("&", "") == text)
     wait(action.isEnabled, 20)  # FreeCAD looks a few times a second
     assert not action.icon().isNull() and action.toolTip()
     action.trigger()
@@ -110,17 +111,17 @@ def view_widget():
 
 def bring_up(widget):
     """Chooses the tabs, or the docks, behind which a widget lies."""
-    child = widget
-    while child is not None:
-        parent = child.parentWidget()
-        if isinstance(child, QtGui.QDockWidget):
-            child.show()
-            child.raise_()
-        if isinstance(parent, QtGui.QStackedWidget):
-            parent.setCurrentWidget(child)
-            if isinstance(parent.parentWidget(), QtGui.QTabWidget):
-                parent.parentWidget().setCurrentWidget(child)
-        child = parent
+    for dock in widgets(QtGui.QDockWidget):
+        if dock is widget or dock.isAncestorOf(widget):
+            dock.show()
+            dock.raise_()
+    # Not by parentWidget: once PySide lets go of the parent it takes the child for deleted.
+    for kind in (QtGui.QTabWidget, QtGui.QStackedWidget):
+        for pages in widgets(kind):
+            for page in range(pages.count() if pages.isAncestorOf(widget) else 0):
+                if widget.isVisibleTo(pages):
+                    break
+                pages.setCurrentIndex(page)
     settle()
     assert widget.isVisible()
 

@@ -81,4 +81,6 @@ class Figures(_OfResult):
         with transaction(job.Document, translate("BeltGrinding", "Figures")) as step:
             sheet = api.make_figures(job)
         if not step.failed:
-            sheet.ViewObject.doubleClicked()
+            view = sheet.ViewObject
+            # From 1.0 on a double click changes to the Spreadsheet workbench; 0.20 knows only that.
+            getattr(view, "showSheetMdi", view.doubleClicked)()

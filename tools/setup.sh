@@ -69,7 +69,8 @@ build_all() {
     if [ ! -f "$build/build.ninja" ] || [ -n "$late" ]; then
         say "Configuring the build"
         (cd "$root" && cmake --preset release) >"$log" 2>&1 || {
-            tail -n 20 "$log" >&2
+            grep -A 6 'CMake Error' "$log" | head -n 20 >&2
+            say "It could not be configured; the log is $log"
             return 1
         }
     fi

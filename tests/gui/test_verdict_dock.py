@@ -56,7 +56,7 @@ assert view.getViewDirection().z < -0.999
 if hasattr(camera, "height"):
     assert abs(camera.height.getValue() - 1.5 * found["clusters"][deep]["extent_mm"]) < 1e-3
 from beltgrinding.gui import verdict_dock
-scene = verdict_dock._docks[0].scene
+scene = verdict_dock.VerdictDock.current().scene
 assert scene.switch.whichChild.getValue() == -3 and scene.points.point.getNum() > 20
 screenshot("verdict2.png")
 
@@ -65,7 +65,7 @@ motions.setCurrentCell(0, 0)
 settle()
 source = field("source")  # pass.csv, its seventh line marked
 assert source.textCursor().blockNumber() + 1 == 7
-assert verdict_dock._docks[0].wheel.pose == 5
+assert verdict_dock.VerdictDock.current().wheel.pose == 5
 screenshot("verdict3.png")
 motions.cellDoubleClicked.emit(0, 0)
 settle()

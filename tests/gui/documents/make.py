@@ -8,6 +8,7 @@ from pathlib import Path
 import FreeCAD
 import FreeCADGui as Gui
 import Part
+from beltgrinding import job as jobs
 from beltgrinding.objects import api
 
 out = Path(os.environ["OUT"])
@@ -42,12 +43,12 @@ if hasattr(api, "make_section"):
 doc.recompute()
 recording = {}
 simulation = api.simulate(job, write_to=out / "result")
-if "recording" in api.jobs.run.__code__.co_varnames:
+if "recording" in jobs.run.__code__.co_varnames:
     from beltgrinding import core
     from beltgrinding.objects import job_object
 
     with job_object.scratch_folder() as folder:
-        result = api.jobs.run(job_object.to_data(job, folder), None, core.Recording())
+        result = jobs.run(job_object.to_data(job, folder), None, core.Recording())
     simulation = api.store_result(job, result, job_object.fingerprint(job))
 deviation = api.make_deviation(job)
 if hasattr(api, "make_section"):

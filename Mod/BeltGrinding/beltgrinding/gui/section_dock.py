@@ -8,32 +8,20 @@ from .. import InputError, section as sections, section_plot
 from ..objects import preferences, section as objects
 from ..objects.proxy import type_of
 from .compat import QtCore, QtGui, translate
+from .object_dock import ObjectDock
 from .section_chart import SectionChart
 
 STEPS = 1000  # of the slider
 AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 HEIGHT = 330  # pixels of the dock as it comes
-_docks = []  # the one dock, once it is made
 
 
-def show_section(obj):
-    """Shows a Section object in the dock."""
-    if not _docks:
-        _docks.append(SectionDock())
-    _docks[0].show_object(obj)
-    _docks[0].show()
-    _docks[0].raise_()
-    return _docks[0]
-
-
-class SectionDock(QtGui.QDockWidget):
-    """One dock for the window; what it shows is the Section object that was opened last."""
+class SectionDock(ObjectDock):
+    """Shows a Section object."""
 
     def __init__(self):
-        window = Gui.getMainWindow()
-        super().__init__(translate("BeltGrinding", "Cross-section"), window)
-        self.setObjectName("BeltGrinding_SectionDock")
-        self.obj, self.quiet, self.picks, self.picking = None, False, [], []
+        super().__init__(translate("BeltGrinding", "Cross-section"), "BeltGrinding_SectionDock")
+        self.quiet, self.picks, self.picking = False, [], []
         self.opened = False  # an undo step of ours
         self.low, self.high = 0.0, 0.0  # of the surface along the plane's normal, mm
         body = QtGui.QWidget()
@@ -47,9 +35,7 @@ class SectionDock(QtGui.QDockWidget):
         layout.addWidget(self.chart, 1)
         self.setWidget(body)
         self._add_controls()
-        window.addDockWidget(QtCore.Qt.BottomDockWidgetArea, self)
-        if hasattr(window, "resizeDocks"):
-            window.resizeDocks([self], [HEIGHT], QtCore.Qt.Vertical)
+        self.place(QtCore.Qt.BottomDockWidgetArea, HEIGHT)
         FreeCAD.addDocumentObserver(self)
 
     def _add_controls(self):
@@ -126,18 +112,8 @@ class SectionDock(QtGui.QDockWidget):
     # What is shown
 
     def show_object(self, obj):
-        """Shows a Section object."""
         self._stop_picking()
-        self.obj = obj
-        self.setWindowTitle(obj.Label)
-        self.refresh()
-
-    def alive(self):
-        """Whether the object shown is still in its document."""
-        try:
-            return self.obj is not None and self.obj.Document.getObject(self.obj.Name) is not None
-        except (ReferenceError, RuntimeError):
-            return False
+        super().show_object(obj)
 
     def refresh(self):
         """Shows the object as it is now."""

@@ -52,9 +52,9 @@ class SectionView(View):
             self.lines.numVertices.setValues(0, len(counts), counts)
 
     def doubleClicked(self, view):
-        from .section_dock import show_section
+        from .section_dock import SectionDock
 
-        show_section(view.Object)
+        SectionDock.open(view.Object)
         return True
 
     def verb(self):
@@ -71,9 +71,9 @@ class SectionView(View):
 
     def export(self, obj, kind):
         """Asks for a file and writes the section as "csv" or "svg"; its dock says what came of it."""
-        from .section_dock import show_section
+        from .section_dock import SectionDock
 
-        show_section(obj).export(kind)
+        SectionDock.open(obj).export(kind)
 
     def setEdit(self, view, mode=0):
         return None

@@ -4,7 +4,6 @@ import FreeCAD
 import FreeCADGui as Gui
 import numpy as np
 
-from .. import InputError
 from ..objects import verdict as objects
 from ..objects.job_object import children, face_name
 from ..objects.robot_path import RobotPath
@@ -12,6 +11,7 @@ from ..objects.section import forget_field
 from . import camera
 from .cell_view import CellView
 from .compat import QtCore, QtGui, translate
+from .object_dock import ObjectDock
 from .pose_walk import PoseTable
 from .verdict_scene import VerdictScene
 from .verdict_tables import cluster_rows, doubts, fill, headline, motion_rows, region_rows, table
@@ -21,27 +21,14 @@ SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other
 AROUND = 1.5  # times a cluster's length that the camera sees
 LEAST_SEEN = 10.0  # mm
 COLOURS = {"pass": "#1b5e20", "fail": "#b3261e", "unknown": "#8a6d00"}
-_docks = []  # the one dock, once it is made
 
 
-def show_verdict(obj):
-    """Shows a Verdict object in the dock."""
-    if not _docks:
-        _docks.append(VerdictDock())
-    _docks[0].show_object(obj)
-    _docks[0].show()
-    _docks[0].raise_()
-    return _docks[0]
-
-
-class VerdictDock(QtGui.QDockWidget):
-    """One dock for the window; what it shows is the Verdict object that was opened last."""
+class VerdictDock(ObjectDock):
+    """Shows a Verdict object."""
 
     def __init__(self):
-        window = Gui.getMainWindow()
-        super().__init__(translate("BeltGrinding", "Verdict"), window)
-        self.setObjectName("BeltGrinding_VerdictDock")
-        self.obj = self.found = self.scene = self.wheel = None
+        super().__init__(translate("BeltGrinding", "Verdict"), "BeltGrinding_VerdictDock")
+        self.found = self.scene = self.wheel = None
         self.field = self.cluster_of = None
         self.shown_path = None
         body = QtGui.QWidget()
@@ -85,27 +72,15 @@ class VerdictDock(QtGui.QDockWidget):
         self.motions.currentCellChanged.connect(lambda row, *_: self.show_motion(row))
         self.motions.cellDoubleClicked.connect(lambda row, _: self.open_program(row))
         self.poses.chosen = self._pose_chosen
-        window.addDockWidget(QtCore.Qt.RightDockWidgetArea, self)
-        if hasattr(window, "resizeDocks"):
-            window.resizeDocks([self], [WIDTH], QtCore.Qt.Horizontal)
+        self.place(QtCore.Qt.RightDockWidgetArea, WIDTH)
         FreeCAD.addDocumentObserver(self)
 
     # What is shown
 
     def show_object(self, obj):
-        """Shows a Verdict object."""
         if self.obj is not obj:
             self._forget()
-        self.obj = obj
-        self.setWindowTitle(obj.Label)
-        self.refresh()
-
-    def alive(self):
-        """Whether the object shown is still in its document."""
-        try:
-            return self.obj is not None and self.obj.Document.getObject(self.obj.Name) is not None
-        except (ReferenceError, RuntimeError):
-            return False
+        super().show_object(obj)
 
     def refresh(self):
         """Shows the object as it is now."""

@@ -158,9 +158,9 @@ class VerdictView(Undrawn):
             self.view.signalChangeIcon()
 
     def doubleClicked(self, view):
-        from .verdict_dock import show_verdict
+        from .verdict_dock import VerdictDock
 
-        show_verdict(view.Object)
+        VerdictDock.open(view.Object)
         return True
 
     def setEdit(self, view, mode=0):

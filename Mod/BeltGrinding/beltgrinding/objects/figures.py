@@ -6,10 +6,9 @@ job, not in it: a child that reads its parent would be a circle.
 
 import FreeCAD
 
-from .. import InputError
 from .belt_machine import BeltMachine
 from .deviation import Deviation
-from .job_object import BeltGrindingJob, child
+from .job_object import BeltGrindingJob, child, simulated
 from .simulation import Simulation
 from .stock import Stock
 from .verdict import Verdict
@@ -167,8 +166,7 @@ def make(job):
     """The job's sheet, made where it is missing and filled anew with what the job now has. Cells of a
     user's own in other columns than A to C stay. Raises InputError.
     """
-    if child(job, Simulation) is None:
-        raise InputError(f"{job.Label} has no result yet; simulate first")
+    simulated(job)
     sheet = find(job)
     if sheet is None:
         sheet = job.Document.addObject("Spreadsheet::Sheet", "Figures")

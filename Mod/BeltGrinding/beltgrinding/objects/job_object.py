@@ -125,6 +125,14 @@ def required(job, proxy, what):
     return found
 
 
+def simulated(job):
+    """The job's Simulation, which has a result. Raises InputError."""
+    found = child(job, Simulation)
+    if found is None or not found.Fingerprint:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    return found
+
+
 def inspection(job):
     """The part of a job under 'inspection'."""
     data = {}

@@ -22,8 +22,6 @@ OUTPUTS = (
 
 def prepare(simulation, job):
     """What ``scan.compare`` takes for a result, from the document. Raises InputError."""
-    if simulation is None or not simulation.Fingerprint:
-        raise InputError(f"{job.Label} has no result yet; simulate first")
     if simulation.OutOfDate or job_object.fingerprint(job) != simulation.Fingerprint:
         raise InputError(f"{simulation.Label} is out of date; simulate again")
     with job_object.scratch_folder() as folder:

@@ -1,14 +1,13 @@
-"""What a macro calls to tell others of a job's result: report, figures, convergence."""
+"""What a macro calls to tell others of a job's result: report, figures."""
 
 import json
 
 import FreeCAD
 
-from .. import InputError, convergence, reporting
+from .. import InputError, reporting
 from ..result import Result
 from . import figures, job_object, told
-from .job_object import child
-from .simulation import Simulation
+from .job_object import simulated
 from .verdict import judge
 
 
@@ -30,9 +29,7 @@ def report_data(job, folder):
     """(``Result``, title, notes) of the job's stored result, for ``reporting.report`` in any thread. A
     mesh stock is written to ``folder``. Raises InputError.
     """
-    simulation = child(job, Simulation)
-    if simulation is None or not simulation.Fingerprint:
-        raise InputError(f"{job.Label} has no result yet; simulate first")
+    simulation = simulated(job)
     field = simulation.Proxy.field(simulation)
     if field is None or not simulation.SummaryData:
         raise InputError(f"{simulation.Label}: it holds too little for a report; simulate again")
@@ -70,14 +67,3 @@ def _verdict(job, simulation, inspection):
     if stored.get("inspection") == judged_by:
         return stored["verdict"]
     return judge(job, simulation, judged_by)
-
-
-def check_settings(job, context=None):
-    """Runs the job coarser, as given and finer, here and now; keeps result and answer in its
-    Simulation, which it returns. See ``beltgrinding.converge``.
-    """
-    with job_object.scratch_folder() as folder:
-        result = convergence.converge(job_object.to_data(job, folder), context)
-    from .api import store_result
-
-    return store_result(job, result, job_object.fingerprint(job))

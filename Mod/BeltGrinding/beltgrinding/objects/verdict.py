@@ -2,7 +2,7 @@
 
 import json
 
-from .. import InputError, core, verdict as verdicts
+from .. import InputError, verdict as verdicts
 from .geometry import core_shape
 from .properties import Output, add_outputs
 from .proxy import Proxy

@@ -60,13 +60,13 @@ class Section(Command):
         return super().IsActive() and child(active_job(), simulation.Simulation) is not None
 
     def run(self):
-        from ..section_dock import show_section
+        from ..section_dock import SectionDock
 
         job = active_job()
         with transaction(job.Document, "Cross-section") as step:
             section = api.make_section(job)
         if not step.failed:
-            show_section(section)
+            SectionDock.open(section)
 
 
 class Playback(Command):

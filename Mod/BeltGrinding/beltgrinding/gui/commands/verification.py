@@ -40,10 +40,10 @@ class Verdict(Command):
         return super().IsActive() and child(active_job(), simulation.Simulation) is not None
 
     def run(self):
-        from ..verdict_dock import show_verdict
+        from ..verdict_dock import VerdictDock
 
         job = active_job()
         with transaction(job.Document, translate("BeltGrinding", "Verdict")) as step:
             verdict = api.make_verdict(job)
         if not step.failed:
-            show_verdict(verdict)
+            VerdictDock.open(verdict)

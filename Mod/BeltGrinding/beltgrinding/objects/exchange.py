@@ -1,0 +1,111 @@
+"""Jobs as files: writes one, and makes the objects of one. Offered by ``api``."""
+
+import json
+from pathlib import Path
+
+import FreeCAD
+import Part
+
+from .. import InputError, job as jobs
+from ..examples import blade
+from ..poses import listed_poses
+from ..result import write_whole
+from . import belt as belts, belt_machine, bodies, job_object, robot_path, stock as stocks
+from .geometry import placement_from_job
+from .properties import from_job
+from .set_up import import_program, make_belt, make_belt_machine, make_job, make_stock
+
+
+def export_job(job, path):
+    """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD; a mesh stock is
+    written beside it.
+    """
+    path = Path(path)
+    try:
+        data = job_object.to_data(job, path.resolve().parent)
+        for holder in (data["stock"], *data["cell"]["bodies"]):
+            if "file" in holder:
+                holder["file"] = _relative(holder["file"], path.resolve().parent)
+        write_whole(path, (json.dumps(data) + "\n").encode())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    return path
+
+
+def _relative(path, folder):
+    path = Path(path)
+    return path.name if path.parent == folder else str(path)
+
+
+def open_job(doc, path):
+    """Makes the objects of a job.json in a document; returns the job."""
+    data = jobs.load(path)
+    made = []
+    try:
+        return _open_job(doc, data, Path(path), made)
+    except Exception:
+        for obj in reversed(made):
+            doc.removeObject(obj.Name)
+        raise
+
+
+def open_example(folder):
+    """A new document with the example blade, whose files are written to ``folder``; its job."""
+    return open_job(FreeCAD.newDocument("Blade"), blade.make(folder))
+
+
+def _open_job(doc, data, path, made):
+    shape = jobs.read_design(data["design"])
+    part = doc.addObject("Part::Feature", "Design")
+    made.append(part)
+    part.Label = Path(data["design"].get("file", path)).stem
+    brep = Part.Shape()
+    brep.importBrepFromString(shape.write_brep())
+    part.Shape = brep
+    faces = data["design"]["faces"]
+    job = make_job(part, faces)
+    made.append(job)
+    from_job(job, job_object.KEYS, data)
+    stock = make_stock(job)
+    made.append(stock)
+    _open_stock(doc, stock, data["stock"], made)
+    machine = make_belt_machine(job)
+    made.append(machine)
+    from_job(machine, belt_machine.KEYS, data)
+    for name, (key, _) in belt_machine.FRAMES.items():
+        setattr(machine, name, placement_from_job(data["cell"].get(key)))
+    for name, (key, _) in belt_machine.ROBOT_FRAMES.items():
+        setattr(machine, name, placement_from_job(data["robot"].get(key)))
+    bodies.from_job(doc, machine, data["cell"]["bodies"], made)
+    if any(data["belt_machine"]["belt"].values()):
+        made.append(make_belt(job))
+        from_job(machine.Belt, belts.KEYS, data)
+    for i, program in enumerate(data["programs"]):
+        if "file" in program:
+            robot = import_program(job, program["file"])
+        else:
+            arrays = listed_poses(program["poses"], f"programs[{i}]")
+            robot = robot_path.make_robot_path(doc, arrays, program.get("name", "Program"))
+            robot.Machine = machine
+            job.addObject(robot)
+        made.append(robot)
+        if "force_N" in program:
+            robot.ForceOverride = f"{program['force_N']} N"
+        if "feed_mm_s" in program:
+            robot.FeedOverride = program["feed_mm_s"]
+    doc.recompute()
+    return job
+
+
+def _open_stock(doc, stock, data, made):
+    from_job(stock, stocks.KEYS, {"stock": data})
+    if data["kind"] == "mesh":
+        stock.File = data["file"]
+        stock.FilePlacement = placement_from_job(data.get("placement"))
+    elif data["kind"] == "solid":
+        solid = doc.addObject("Part::Feature", "StockSolid")
+        made.append(solid)
+        brep = Part.Shape()
+        brep.importBrepFromString(jobs.read_design(data).write_brep())
+        solid.Shape = brep
+        stock.Source = solid

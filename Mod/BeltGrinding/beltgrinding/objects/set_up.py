@@ -1,0 +1,150 @@
+"""Adds what a job consists of: part, stock, machine, belt, paths. Offered by ``api``."""
+
+from pathlib import Path
+
+import FreeCAD
+
+from .. import InputError
+from ..programs import ProgramError
+from . import belt as belts, belt_machine, job_object, raster_path, robot_path, stock as stocks
+from .job_object import child, children, simulated
+from .making import make_child, removed_on_error
+from .properties import set_by_name
+
+
+def make_job(design, faces=(), **properties):
+    """Adds a job to the design's document. ``design``: a Part object; ``faces``: names such as
+    "Face3" or numbers from 1, none for all; or ``design`` is a list of (object, names).
+    """
+    links = design if isinstance(design, (list, tuple)) else [(design, faces)]
+    links = [
+        (obj, tuple(f"Face{s}" if isinstance(s, int) else s for s in subs) or ("",))
+        for obj, subs in links
+    ]
+    if not links:
+        raise InputError("a job needs a part; give an object with a shape, or select faces")
+    job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
+    with removed_on_error(job):
+        job.Label = "Belt grinding"
+        job_object.BeltGrindingJob(job)
+        job.DesignFaces = links
+        job_object.design(job)
+        set_by_name(job, properties)
+    return job
+
+
+def make_stock(job, source=None, **properties):
+    """Adds the stock to a job, or changes the one it has. ``source``: a Part or Mesh object, or a
+    mesh's file; its kind follows from it.
+    """
+    if source is not None:
+        if isinstance(source, (str, Path)):
+            properties = {"Kind": "mesh", "File": str(Path(source).absolute()), **properties}
+        else:
+            kind = "mesh" if hasattr(source, "Mesh") else "solid"
+            properties = {"Kind": kind, "Source": source, **properties}
+    return make_child(job, stocks.Stock, "Stock", "Stock", properties)
+
+
+def make_belt_machine(job, **properties):
+    """Adds the belt machine to a job, or changes the one it has."""
+    machine = make_child(job, belt_machine.BeltMachine, "BeltMachine", "Belt machine", properties)
+    for path in children(job, robot_path.RobotPath):
+        path.Machine = machine
+    return machine
+
+
+def make_belt(job, **properties):
+    """Puts a belt, which carries its wear from run to run, on the job's machine, or changes the one
+    it has. Another job shares it by its machine's ``Belt``.
+    """
+    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    if machine.Belt is None:
+        made = job.Document.addObject("App::FeaturePython", "Belt")
+        with removed_on_error(made):
+            belts.Belt(made)
+            set_by_name(made, properties)
+            job.addObject(made)
+        machine.Belt = made
+    else:
+        set_by_name(machine.Belt, properties)
+    return machine.Belt
+
+
+def wear_belt(job):
+    """Counts what the belt did in the job's simulation, once the grind is done for real: the next
+    run meets the belt as it is then. Returns the belt.
+    """
+    simulation = simulated(job)
+    belt = make_belt(job)
+    belt.Proxy.count(belt, simulation)
+    return belt
+
+
+def import_program(job, path, **properties):
+    """Adds a robot program's file (.src, .csv) as RobotPath to a job, or to a document."""
+    document = job if isinstance(job, FreeCAD.Document) else job.Document
+    program = document.addObject("Path::FeaturePython", "RobotPath")
+    with removed_on_error(program):
+        robot_path.RobotPath(program)
+        robot_path.load_program(program, path, **properties)
+        program.Label = Path(path).stem
+        if job is not document:
+            program.Machine = child(job, belt_machine.BeltMachine)
+            job.addObject(program)
+        program.recompute()
+    return program
+
+
+def follow_path(job, source, **properties):
+    """Adds a RobotPath that follows a path object of FreeCAD: a ``Path::Feature`` (CAM), whose
+    commands say where the contact runs, or a ``Robot::TrajectoryObject``. It changes when that does.
+    """
+    program = source.Document.addObject("Path::FeaturePython", "RobotPath")
+    with removed_on_error(program):
+        robot_path.RobotPath(program)
+        program.Machine = child(job, belt_machine.BeltMachine)
+        program.SourceObject = source
+        robot_path.follow(program)
+        set_by_name(program, properties)
+        program.Label = f"{source.Label} ground"
+        job.addObject(program)
+        program.recompute()
+    return program
+
+
+def make_raster(job, faces=(), compute=True, **properties):
+    """Adds a raster path to a job: contact passes side by side on ``faces``, given as for
+    ``make_job`` (names of the first design object, or a list of (object, names)); none: the job's
+    design faces. It is laid anew when an input changes. ``compute=False`` leaves it empty until
+    the document is recomputed.
+    """
+    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    links = list(faces) or job.DesignFaces
+    if isinstance(links[0], (str, int)):
+        names = tuple(f"Face{s}" if isinstance(s, int) else s for s in links)
+        links = [(job.DesignFaces[0][0], names)]
+    path = job.Document.addObject("Path::FeaturePython", "RasterPath")
+    with removed_on_error(path):
+        raster_path.RasterPath(path)
+        path.Label = "Raster"
+        path.Faces = links
+        path.Machine = machine
+        set_by_name(path, properties)
+        job.addObject(path)
+        if compute:
+            raster_path.generate(path)
+            path.recompute()
+    return path
+
+
+def export_program(path, file, **options):
+    """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
+
+    Poses are written as they are, arcs as the chords they were cut into; the robot's tool and base
+    come from the belt machine where it has a robot. ``options``: of ``programs.write_program``.
+    """
+    try:
+        return robot_path.write(path, file, **options)
+    except ProgramError as error:
+        raise InputError(str(error)) from None

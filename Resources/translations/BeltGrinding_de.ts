@@ -1079,6 +1079,10 @@
         <source>whether wheel, part and bodies are followed for collisions</source>
         <translation>ob Scheibe, Teil und Körper auf Kollisionen verfolgt werden</translation>
     </message>
+    <message>
+        <source>shade the surface; off, every colour is exactly as in the legend</source>
+        <translation>die Fläche schattieren; aus: jede Farbe genau wie in der Legende</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -32,7 +32,66 @@ def test_the_picture_shows_both_ramps(demo):
     brown, blue = coloured(demo / "deviation.png")
     assert brown > 30000 and blue > 20000
     pictures.keep("blade-deviation", (demo / "deviation.png").read_bytes())
-    pictures.check(pictures.RELEASE, ["blade-deviation"])
+
+
+def test_the_picture_is_the_manuals(freecad, demo):
+    release = freecad.run("import FreeCAD\nprint('release', *FreeCAD.Version()[:2])")
+    names = [line.split()[1:] for line in release.splitlines() if line.startswith("release ")]
+    pictures.check([int(part) for part in names[-1]], ["blade-deviation"])
+
+
+def test_unlit_its_colours_are_those_of_the_legend(freecad):
+    freecad.run(
+        """
+from collections import Counter
+from support.hands import *
+
+job = prepare()
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.viewTop()
+view.fitAll()
+settle()
+
+def surface():
+    view.saveImage("seen.png", 400, 300, "White")
+    image = QtGui.QImage("seen.png")
+    pixels = (image.pixelColor(x, y).getRgb()[:3] for x in range(130, 270) for y in range(90, 210))
+    return Counter(pixels)
+
+wanted = {tuple(round(255 * c) for c in colour[:3]) for colour in doc.Deviation.VertexColors}
+wanted |= {tuple(c + d for c in colour) for colour in wanted for d in (-1, 1)}
+provider = doc.Deviation.ViewObject
+assert provider.Lit
+provider.Lit = False
+unlit = surface()
+most = [colour for colour, _ in unlit.most_common(3)]
+assert any(colour in wanted for colour in most), (most, sorted(wanted)[:3])
+provider.Lit = True
+assert len(surface()) > 1
+doc.saveAs("lit.FCStd")
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("lit.FCStd")
+assert doc.Deviation.ViewObject.Lit
+doc.Deviation.ViewObject.Lit = False
+doc.save()
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("lit.FCStd")
+assert not doc.Deviation.ViewObject.Lit
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.viewTop()
+view.fitAll()
+settle()
+assert any(colour in wanted for colour, _ in surface().most_common(3))
+""",
+        window=True,
+    )
 
 
 def test_the_colours_survive_reopening(freecad, demo):

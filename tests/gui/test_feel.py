@@ -28,9 +28,7 @@ def drop(widget, path):
 
 frames = "{X %d,Y 20,Z 20,A 0,B 90,C 0}"
 lines = ["DEF dropped()", *(f"LIN {frames % x}" for x in (10, 20, 30)), "END"]
-drawn = next(w for w in widgets(QtGui.QWidget)
-    if w.isVisible() and w.metaObject().className() == "QOpenGLWidget")
-for number, (widget, suffix) in enumerate(((window, ".src"), (drawn, ".SRC"))):
+for number, (widget, suffix) in enumerate(((window, ".src"), (view_widget(), ".SRC"))):
     path = Path(f"dropped{number}{suffix}")
     path.write_text("\\n".join(lines) + "\\n")
     steps, objects = doc.UndoCount, {o.Name for o in doc.Objects}
@@ -88,7 +86,8 @@ def entries(obj):
     found = QtGui.QMenu()
     obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, found)
     texts = [a.text().replace("&", "") for a in found.actions() if a.text()]
-    assert all(not a.icon().isNull() for a in found.actions() if a.text()), texts
+    plain = [a.text() for a in found.actions() if a.text() and a.icon().isNull()]
+    assert not plain, plain
     return found, texts
 
 for obj, wanted in (

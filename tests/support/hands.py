@@ -11,6 +11,7 @@ import Part
 from PySide import QtCore, QtGui
 
 window = Gui.getMainWindow()
+window.setAnimated(False)  # a dock that slides in is not where a click goes
 _patched = []  # (holder, name, what it was)
 _taken = []  # names of pictures
 PICTURES = Path(__file__).resolve().parents[2] / "build" / "pictures"
@@ -33,9 +34,22 @@ def wait(condition, seconds=60):
     settle()
 
 
+def leave_start():
+    """Brings the document up where FreeCAD's start page, which 1.1 opens late, lies over it: task
+    panels are shown beside a document only.
+    """
+    settle()
+    for area in widgets(QtGui.QMdiArea):
+        pages = area.subWindowList()
+        active = area.activeSubWindow()
+        if active is not None and active.windowTitle() == "Start" and pages[:-1]:
+            area.setActiveSubWindow(next(p for p in pages if p.windowTitle() != "Start"))
+            settle()
+
+
 def menu(text):
     """Chooses an entry of the workbench's menu."""
-    settle()
+    leave_start()
     bar = {a.text().replace("&", ""): a for a in window.menuBar().actions()}
     assert "Belt grinding" in bar, list(bar)
     action = next(
@@ -59,8 +73,13 @@ def widgets(kind, name=None):
 
 
 def visible(kind, name=None):
-    """The visible ones of ``widgets``."""
-    return [widget for widget in widgets(kind, name) if widget.isVisible()]
+    """The visible ones of ``widgets``, as one reads them."""
+
+    def place(widget):
+        corner = widget.mapToGlobal(QtCore.QPoint(0, 0))
+        return corner.y(), corner.x()
+
+    return sorted((widget for widget in widgets(kind, name) if widget.isVisible()), key=place)
 
 
 def eventually(find, seconds=5):
@@ -105,8 +124,8 @@ def press(text):
 
 def view_widget():
     """The widget in which the 3D view is drawn."""
-    drawn = visible(QtGui.QWidget)
-    return next(w for w in drawn if w.metaObject().className() == "QOpenGLWidget")
+    drawn = [w for w in visible(QtGui.QWidget) if w.metaObject().className() == "QOpenGLWidget"]
+    return max(drawn, key=lambda w: w.width() * w.height())  # 1.1 has a small one besides
 
 
 def bring_up(widget):

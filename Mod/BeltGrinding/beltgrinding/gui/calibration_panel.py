@@ -6,7 +6,7 @@ from .. import Cancelled, InputError, calibration, calibration_plot
 from ..objects import job_object, properties
 from .compat import QtCore, QtGui, buttons, translate
 from .form import MINIMUM_WIDTH
-from .icons import icon
+from .icons import qicon
 from .runner import Background
 
 WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
@@ -23,7 +23,7 @@ class CalibrationPanel:
         self.picture = QtGui.QPixmap()
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(translate("BeltGrinding", "Calibrate removal law"))
-        self.form.setWindowIcon(QtGui.QIcon(icon("BeltGrinding_Calibrate")))
+        self.form.setWindowIcon(qicon("BeltGrinding_Calibrate"))
         body = QtGui.QVBoxLayout(self.form)
         fields = QtGui.QFormLayout()
         fields.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)

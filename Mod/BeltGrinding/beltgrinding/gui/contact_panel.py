@@ -7,7 +7,7 @@ from .. import Cancelled, InputError, contact
 from ..objects import job_object
 from ..objects.robot_path import RobotPath
 from .compat import QtCore, QtGui, buttons, translate
-from .icons import icon
+from .icons import qicon
 from .runner import Background
 
 WAIT = 300  # ms after the last move of the slider
@@ -44,7 +44,7 @@ class ContactPanel:
         self.task = None
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
-        self.form.setWindowIcon(QtGui.QIcon(icon("BeltGrinding_Contact")))
+        self.form.setWindowIcon(qicon("BeltGrinding_Contact"))
         body = QtGui.QVBoxLayout(self.form)
         self.program = QtGui.QComboBox()
         self.program.setObjectName("program")

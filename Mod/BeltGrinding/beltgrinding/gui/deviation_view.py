@@ -32,12 +32,15 @@ class DeviationView(View):
             "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
         )
         view.RestOfPart = True
+        _add_lit(view)
         view.Coloring = True
 
     def attach(self, view):
         super().attach(view)
         self.legend = coin.SoSwitch()
+        self.light = coin.SoLightModel()
         self.rest = coin.SoSwitch()
+        view.RootNode.insertChild(self.light, 0)
         view.RootNode.insertChild(
             self.rest, 0
         )  # before the mesh's materials, which it would inherit
@@ -50,6 +53,9 @@ class DeviationView(View):
         return DeviationPanel(obj)
 
     def finishRestoring(self):
+        if not hasattr(self.view, "Lit"):
+            _add_lit(self.view)
+        self.update_light()
         self.colour()
         self.update_legend()
         self.update_rest()
@@ -71,6 +77,8 @@ class DeviationView(View):
             self.update_rest()
         if name == "RestOfPart":
             self.update_rest()
+        if name == "Lit":
+            self.update_light()
 
     def colour(self):
         """Draws the colours: 0.20 forgets them on reopening and whenever the mesh is set."""
@@ -78,6 +86,10 @@ class DeviationView(View):
         if len(self.view.Object.VertexColors) == self.view.Object.Mesh.CountPoints:
             self.view.Coloring = False
             self.view.Coloring = True
+
+    def update_light(self):
+        model = coin.SoLightModel
+        self.light.model = model.PHONG if self.view.Lit else model.BASE_COLOR
 
     def update_legend(self):
         obj = self.view.Object
@@ -103,3 +115,13 @@ class DeviationView(View):
         if job is not None and self.view.Visibility and self.view.RestOfPart:
             self.rest.addChild(rest_of_part(job))
             self.rest.whichChild = -3
+
+
+def _add_lit(view):
+    view.addProperty(
+        "App::PropertyBool",
+        "Lit",
+        "Deviation",
+        "shade the surface; off, every colour is exactly as in the legend",
+    )
+    view.Lit = True

@@ -6,7 +6,7 @@ import FreeCADGui as Gui
 from .. import InputError
 from .compat import QtGui, buttons, translate
 from .form import Form
-from .icons import icon
+from .icons import qicon
 
 
 class Panel:
@@ -21,7 +21,7 @@ class Panel:
         self.document = obj.Document
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
-        self.form.setWindowIcon(QtGui.QIcon(icon(icon_name)))
+        self.form.setWindowIcon(qicon(icon_name))
         self.body = QtGui.QVBoxLayout(self.form)
         self.note = QtGui.QLabel()
         self.note.setObjectName("note")

@@ -3,7 +3,7 @@
 import json
 
 from .. import Cancelled, InputError, core, presets, robot as robots
-from .compat import QtCore, QtGui, translate
+from .compat import QtGui, translate
 from .form import FrameField
 from .runner import Background
 

@@ -8,7 +8,7 @@ import FreeCADGui as Gui
 
 from .. import Cancelled, InputError
 from .compat import QtGui, buttons, translate
-from .icons import icon
+from .icons import qicon
 from .status_progress import StatusProgress
 from .time_left import TimeLeft, duration
 
@@ -25,7 +25,7 @@ class RunPanel:
         self.runner = self.status = None
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
-        self.form.setWindowIcon(QtGui.QIcon(icon(icon_name)))
+        self.form.setWindowIcon(qicon(icon_name))
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")
         self.state.setWordWrap(True)

@@ -2,8 +2,8 @@
 
 from pivy import coin
 
-from .compat import QtGui, translate
-from .icons import icon
+from .compat import translate
+from .icons import qicon
 from .shapes3d import separator, unpickable
 from .view import View
 
@@ -64,7 +64,7 @@ class SectionView(View):
         for kind in ("CSV", "SVG"):
             text = translate("BeltGrinding", "Export {}").format(f"{kind}...")
             menu.addAction(
-                QtGui.QIcon(icon("BeltGrinding_ExportJob")),
+                qicon("BeltGrinding_ExportJob"),
                 text,
                 lambda kind=kind.lower(): self.export(obj, kind),
             )

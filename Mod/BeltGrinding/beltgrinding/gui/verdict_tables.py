@@ -1,6 +1,6 @@
 """What the verdict's dock writes into its tables and labels."""
 
-from .compat import QtCore, QtGui, translate
+from .compat import QtGui, translate
 
 BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
 

@@ -3,8 +3,8 @@
 import FreeCADGui as Gui
 
 from ..objects.proxy import Stateless
-from .compat import QtGui, translate
-from .icons import icon
+from .compat import translate
+from .icons import icon, qicon
 from .panel import edit
 
 
@@ -45,7 +45,7 @@ class View(Stateless):
 
     def setupContextMenu(self, view, menu):
         """The object's own entries in the tree's context menu."""
-        menu.addAction(QtGui.QIcon(icon(self.ICON)), self.verb(), lambda: self.doubleClicked(view))
+        menu.addAction(qicon(self.ICON), self.verb(), lambda: self.doubleClicked(view))
         self.own_entries(view.Object, menu)
         if self.COMMANDS:
             menu.addSeparator()

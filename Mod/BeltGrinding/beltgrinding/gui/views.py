@@ -3,9 +3,9 @@
 from pivy import coin
 
 from ..objects.robot_path import load_program
-from .compat import QtGui, translate
+from .compat import translate
 from .deviation_view import DeviationView
-from .icons import icon
+from .icons import icon, qicon
 from .ground_mesh_view import GroundMeshView
 from .section_view import SectionView
 from .view import View
@@ -120,9 +120,7 @@ class RobotPathView(View):
     def own_entries(self, obj, menu):
         if obj.Source:
             text = translate("BeltGrinding", "Read the file again")
-            menu.addAction(
-                QtGui.QIcon(icon("BeltGrinding_ReadAgain")), text, lambda: read_again(obj)
-            )
+            menu.addAction(qicon("BeltGrinding_ReadAgain"), text, lambda: read_again(obj))
 
 
 def read_again(obj):

@@ -87,8 +87,9 @@ std::optional<OutsideRange> LocalLaw::outside(double peak_pressure,
         if (curve.empty() || curve.measured(value) || found) return;
         std::ostringstream text;
         text.precision(3);
-        text << what << " of " << value / unit << " " << name << " lies outside the measured "
-             << curve.lower() / unit << " to " << curve.upper() / unit << " " << name;
+        const std::string space = *name ? " " : "";
+        text << what << " of " << value / unit << space << name << " lies outside the measured "
+             << curve.lower() / unit << " to " << curve.upper() / unit << space << name;
         const double limit = value > curve.upper() ? curve.upper() : curve.lower();
         found = OutsideRange{text.str(), name, value / unit, limit / unit};
     };

@@ -166,7 +166,7 @@ settle()
 assert "Out of reach" in field("joints").text() and robot.root.whichChild.getValue() == -1
 press("Check the whole program")
 wait(lambda: field("checkReach").isEnabled())
-assert "out of reach" in field("reachEvents").item(0).text()
+assert "Out of reach" in field("reachEvents").item(0).text()
 press("OK")
 assert machine.BaseFromRobot.Base.x == -1500
 simulation = __import__("beltgrinding").simulate(job)

@@ -38,7 +38,7 @@ for event in events:
     found = chart.event_near(x)
     assert found is not None and abs(found["time"] - event["time"]) < 0.02
 assert all(min(abs(chart.x(e["time"]) - s) for e in events) <= 4 for s in seen)  # and none elsewhere
-assert "burn risk" in strip_chart.describe(events[0])
+assert "Burn risk" in strip_chart.describe(events[0])
 field("nextEvent").click()
 assert any(abs(dock.scene.time - e["time"]) < 1e-9 for e in events)
 chart.events = []

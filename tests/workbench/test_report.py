@@ -25,6 +25,7 @@ from beltgrinding import InputError, core, inputs, picture, result as results  #
 from beltgrinding.reporting import (
     charts,
     converged,
+    event_messages,
     facts,
     findings,
     language,
@@ -364,3 +365,48 @@ def test_command_line_writes_html_and_pdf(ground, tmp_path):
     assert cli(tmp_path / "absent").returncode == 2
     done = cli(ground / "out", "-o", tmp_path / "no" / "r.html")
     assert done.returncode == 2 and "cannot be written" in done.stderr
+
+
+def core_messages():
+    """What the core writes into events: the texts of its sources, {} for each number or name."""
+    texts = set()
+    for file in ("simulation/process_monitor", "robot/reach", "collision/collision_check"):
+        source = Path(ROOT, "src", f"{file}.cpp").read_text()
+        source = re.sub(r'"\s*\n?\s*"', "", source)  # literals side by side are one
+        texts |= set(re.findall(r'"([^"\n]*)"', source))
+    return {text for text in texts if "%" in text}
+
+
+def test_every_message_of_the_core_has_a_form():
+    forms = [re.sub(r"\{\w\}", "{}", form) for form in event_messages.FORMS]
+    found = core_messages()
+    assert len(found) > 15
+    for text in found:
+        plain = re.sub(r"%[-+.\d]*[a-z]", "{}", text).replace("%%", "%").strip(" ,;")
+        for part in plain.split("; "):
+            # What is put in besides numbers, as "along the belt", is a form of its own.
+            pattern = re.escape(part).replace(re.escape("{}"), ".*")
+            assert any(re.search(pattern, form) for form in forms), text
+
+
+def test_messages_of_events_are_told_in_german():
+    words = language.Language("de")
+
+    def told(text):
+        return event_messages.message({"message": text}, words)
+
+    assert told("ground to -0.123 mm, below the lower limit of -0.05 mm") == (
+        "bis −0,123 mm geschliffen, unter die untere Grenze von −0,05 mm"
+    )
+    assert told("housing and 3 come within 1.25 mm of each other in a rapid motion") == (
+        "housing und 3 kommen einander in einer Eilbewegung auf 1,25 mm nahe"
+    )
+    assert told(
+        "joint 2 at 130.0 deg, 5.0 deg beyond its limit of 125.0 deg; wound up: it would fit at -230.0 deg"
+    ).endswith("; verdreht: Bei −230,0 Grad würde es passen")
+    assert told("the pressure reaches 1.2e+03 MPa, above the limit of 1 MPa").startswith(
+        "der Druck"
+    )
+    assert told("something of another version") == "something of another version"
+    text = "ground to -0.123 mm, below the lower limit of -0.05 mm"
+    assert event_messages.message({"message": text}, language.Language("en")) == text

@@ -123,10 +123,11 @@ class EventTable(QtGui.QWidget):
                 line = f"{event['program'] + 1}: {line}"
             where = self.face_name(event["face"]) if event["face"] else ", ".join(event["bodies"])
             short = where.rpartition(".")[2] if event["face"] else where  # Face1 of Part.Face1
+            message = event_texts.message(event)
             cells = (f"{event['time']:.2f}", event_texts.title(event["kind"]), short, line)
             for k, text in enumerate(cells):
                 item = QtGui.QTableWidgetItem(text)
-                item.setToolTip(f"{where}: {event['message']}" if where else event["message"])
+                item.setToolTip(f"{where}: {message}" if where else message)
                 if k in (0, 3):
                     item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
                 table.setItem(i, k, item)
@@ -175,11 +176,13 @@ def details(event):
     lines = [
         f"<b style='color:{colour}'>{names[event['severity']][0]}: "
         f"{_escape(event_texts.title(event['kind']))}</b>",
-        _escape(_sentence(event["message"])),
+        _escape(_sentence(event_texts.message(event))),
     ]
     if event["advice"]:
         hint = translate("BeltGrinding", "Try:")
-        lines.append(f"<i>{_escape(hint)} {_escape(_sentence(event['advice'], False))}</i>")
+        lines.append(
+            f"<i>{_escape(hint)} {_escape(_sentence(event_texts.advice(event), False))}</i>"
+        )
     when = translate("BeltGrinding", "From {:.2f} s, for {:.2f} s; pose {}").format(
         event["time"], event["duration"], event["pose"] + 1
     )

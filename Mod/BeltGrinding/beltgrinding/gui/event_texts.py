@@ -1,6 +1,8 @@
-"""What the kinds of events are called, in the language of the window."""
+"""Events in words, in the language of the window."""
 
+from ..reporting import event_messages
 from .compat import translate
+from .spoken import words
 
 
 def titles():
@@ -43,3 +45,13 @@ def severities():
 def title(code):
     """The title of a kind; of one that is not known, its code in words."""
     return titles().get(code) or code.replace("_", " ").capitalize()
+
+
+def message(event):
+    """What happened, as the core says it."""
+    return event_messages.message(event, words())
+
+
+def advice(event):
+    """What to try, "" if nothing is known."""
+    return words()(event["advice"])

@@ -10,15 +10,8 @@ from ..objects import job_object, telling
 from .commands.base import report as say
 from .compat import QtCore, QtGui, translate
 from .runner import Background
+from .spoken import language
 from .status_progress import StatusProgress
-
-LANGUAGE = "User parameter:BaseApp/Preferences/General"
-
-
-def language():
-    """The report's language: German where FreeCAD's is, else English."""
-    chosen = FreeCAD.ParamGet(LANGUAGE).GetString("Language", "English")
-    return "de" if chosen in ("German", "Deutsch") else "en"
 
 
 class ReportWriter(Background):

@@ -3,6 +3,7 @@
 import json
 
 from .. import Cancelled, InputError, core, presets, robot as robots
+from . import event_texts
 from .compat import QtGui, translate
 from .form import FrameField
 from .runner import Background
@@ -126,8 +127,8 @@ class RobotBox(QtGui.QGroupBox):
         self.events = result["events"][:SHOWN_EVENTS]
         self.list.clear()
         for event in self.events:
-            kind = event["kind"].replace("_", " ")
-            self.list.addItem(f"{event['pose'] + 1}: {kind}: {event['message']}")
+            kind, message = event_texts.title(event["kind"]), event_texts.message(event)
+            self.list.addItem(f"{event['pose'] + 1}: {kind}: {message}")
         if not self.events:
             self.list.addItem(
                 translate("BeltGrinding", "The robot follows the whole program; nothing to report.")

@@ -5,11 +5,10 @@ from ..objects import told
 from ..objects.job_object import child, inspection
 from ..objects.simulation import Simulation
 from ..reporting import converged
-from ..reporting.language import Language
 from .compat import QtGui, translate
-from .report_writer import language
 from .run_panel import BAD, RunPanel
 from .runner import Runner
+from .spoken import words
 
 TABLE_HEIGHT = 320  # pixels
 
@@ -27,7 +26,7 @@ class SettingsCheckPanel(RunPanel):
     def __init__(self, job):
         title = translate("BeltGrinding", "Check settings")
         super().__init__(job, title, "BeltGrinding_CheckSettings")
-        self.words = Language(language())
+        self.words = words()
         body = QtGui.QVBoxLayout(self.form)
         about = QtGui.QLabel(
             translate(

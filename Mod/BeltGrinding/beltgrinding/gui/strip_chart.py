@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from . import event_texts
 from .compat import QtCore, QtGui, translate
 
 ROWS = (  # column of the steps, unit, colour
@@ -177,4 +178,4 @@ def describe(event):
     where = translate("BeltGrinding", "{:.2f} s, pose {}").format(event["time"], event["pose"] + 1)
     if event["line"]:
         where += translate("BeltGrinding", ", line {}").format(event["line"])
-    return f"{event['kind'].replace('_', ' ')} ({where})\n{event['message']}"
+    return f"{event_texts.title(event['kind'])} ({where})\n{event_texts.message(event)}"

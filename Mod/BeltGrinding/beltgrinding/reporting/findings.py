@@ -9,6 +9,7 @@ from .. import core
 from ..poses import program_name
 from . import charts, facts, judged
 from .converged import convergence_part
+from .event_messages import message
 from .layout import section, table
 from .markup import e
 
@@ -215,7 +216,7 @@ def events(content, words):
             [_severity(first[kind], words), e("b", words(kind_text(kind)))],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
-            [first[kind]["message"], _advice(first[kind], words)],
+            [message(first[kind], words), _advice(first[kind], words)],
         )
         for kind in order
     ]
@@ -296,7 +297,7 @@ def all_events(content, words):
             words(kind_text(event["kind"])),
             where_short(event, content.result.job, words),
             "" if event.get("face") is None else f"Face{event['face']}",
-            event["message"],
+            message(event, words),
         )
         for event in found[:MOST_EVENTS]
     ]

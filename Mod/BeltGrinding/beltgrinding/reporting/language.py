@@ -36,6 +36,10 @@ class Language:
         if value is None or not math.isfinite(value):
             return DASH
         text = f"{round(value, decimals) + 0.0:{'+' if sign else ''}.{decimals}f}"
+        return self.decimal(text)
+
+    def decimal(self, text):
+        """A number that is written already, with the language's own signs."""
         return text.replace("-", MINUS).replace(".", POINTS[self.code])
 
     def figures(self, value, count=4):
@@ -44,7 +48,7 @@ class Language:
             return DASH
         text = f"{value:.{count}g}"
         mantissa, e, power = text.partition("e")
-        mantissa = mantissa.replace("-", MINUS).replace(".", POINTS[self.code])
+        mantissa = self.decimal(mantissa)
         if not e:
             return mantissa
         raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

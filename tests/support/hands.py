@@ -34,22 +34,22 @@ def wait(condition, seconds=60):
     settle()
 
 
-def leave_start():
-    """Brings the document up where FreeCAD's start page, which 1.1 opens late, lies over it: task
-    panels are shown beside a document only.
+def to_view():
+    """Brings the 3D view up where another page lies over it, as a sheet, or FreeCAD's start page,
+    which 1.1 opens late: that shows task panels beside a 3D view only.
     """
     settle()
     for area in widgets(QtGui.QMdiArea):
-        pages = area.subWindowList()
         active = area.activeSubWindow()
-        if active is not None and active.windowTitle() == "Start" and pages[:-1]:
-            area.setActiveSubWindow(next(p for p in pages if p.windowTitle() != "Start"))
+        views = [page for page in area.subWindowList() if " : " in page.windowTitle()]
+        if views and active not in views:
+            area.setActiveSubWindow(views[-1])
             settle()
 
 
 def menu(text):
     """Chooses an entry of the workbench's menu."""
-    leave_start()
+    to_view()
     bar = {a.text().replace("&", ""): a for a in window.menuBar().actions()}
     assert "Belt grinding" in bar, list(bar)
     action = next(

@@ -3352,6 +3352,30 @@ im Mittel {} abgetragen</translation>
         <source>Wrist flip</source>
         <translation>Handachsen klappen um</translation>
     </message>
+    <message>
+        <source>Hold</source>
+        <translation>Festhalten</translation>
+    </message>
+    <message>
+        <source>Nearest</source>
+        <translation>Nächste</translation>
+    </message>
+    <message>
+        <source>of the pairs of points, the nearest: the rest, as a table or a clamp, does not count</source>
+        <translation>von den Punktpaaren die nächsten: Der Rest, etwa ein Tisch oder eine Spannpratze, zählt nicht</translation>
+    </message>
+    <message>
+        <source>what stays as it starts: translations along the part&apos;s axes, rotations about them</source>
+        <translation>was bleibt, wie es beginnt: Verschiebungen längs der Achsen des Teils, Drehungen um sie</translation>
+    </message>
+    <message>
+        <source>The limits have changed since the simulation: the verdict is by the new ones, the events of gouges by the old.</source>
+        <translation>Die Grenzen sind seit der Simulation andere: Das Urteil gilt nach den neuen, zu tiefe Stellen sind nach den alten gemeldet.</translation>
+    </message>
+    <message>
+        <source>The limits have changed since: gouges are told by the old ones.</source>
+        <translation>Die Grenzen sind seither andere: Zu tiefe Stellen sind nach den alten gemeldet.</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

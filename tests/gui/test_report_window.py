@@ -138,6 +138,15 @@ assert doc.Simulation.FineEnough == "no"
 menu("Check settings...")
 assert field("state").text().startswith("No")
 press("Close")
+
+from beltgrinding.gui import simulation_panel
+from beltgrinding.objects import job_object, telling
+simulation_panel.show_result(doc.Simulation)
+assert field("state").text().startswith("The limits have changed")
+press("Close")
+with job_object.scratch_folder() as folder:
+    (note,) = telling.report_data(job, folder)[2]
+assert note.startswith("The limits have changed")
 doc.BeltMachine.Force = "20 N"
 doc.recompute()
 assert doc.Simulation.FineEnough == "not checked"

@@ -44,6 +44,7 @@ class ScanPanel(Panel):
             translate("BeltGrinding", "numbers of the faces that the scan is laid on, as 1,2,5")
         )
         rows.addRow(translate("BeltGrinding", "Datum faces"), self.datum)
+        self._add_alignment(rows)
         self.body.addLayout(rows)
         self.button = QtGui.QPushButton(translate("BeltGrinding", "Compare"))
         self.button.setObjectName("compare")
@@ -59,6 +60,40 @@ class ScanPanel(Panel):
         self.body.addWidget(self.table, 1)
         self.finish()
         self._enable()
+
+    def _add_alignment(self, rows):
+        """What of the start is kept, and how much of the scan decides."""
+        held = QtGui.QWidget()
+        held.setObjectName("held")
+        held.setToolTip(
+            translate(
+                "BeltGrinding",
+                "what stays as it starts: translations along the part's axes, rotations about them",
+            )
+        )
+        grid = QtGui.QGridLayout(held)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(2)
+        self.held = {}
+        for i, name in enumerate(scan.FREEDOMS):
+            text = f"{'Δ' if name[0] == 't' else '∠'}{name[1].upper()}"
+            self.held[name] = QtGui.QCheckBox(text)
+            self.held[name].setObjectName(name)
+            grid.addWidget(self.held[name], i // 3, i % 3)
+        rows.addRow(translate("BeltGrinding", "Hold"), held)
+        self.share = QtGui.QDoubleSpinBox()
+        self.share.setObjectName("share")
+        self.share.setRange(1.0, 100.0)
+        self.share.setDecimals(0)
+        self.share.setSuffix(" %")
+        self.share.setValue(100.0 * scan.SHARE)
+        self.share.setToolTip(
+            translate(
+                "BeltGrinding",
+                "of the pairs of points, the nearest: the rest, as a table or a clamp, does not count",
+            )
+        )
+        rows.addRow(translate("BeltGrinding", "Nearest"), self.share)
 
     def _file(self, rows, text, name):
         box = QtGui.QWidget()
@@ -90,7 +125,8 @@ class ScanPanel(Panel):
 
     def _enable(self, _=None):
         self.start_file.parentWidget().setEnabled(self.start.currentIndex() in (MATRIX, PAIRS))
-        self.datum.setEnabled(self.start.currentIndex() != ALIGNED)
+        for widget in (self.datum, self.share, *self.held.values()):
+            widget.setEnabled(self.start.currentIndex() != ALIGNED)
 
     def options(self):
         """What ``scan.compare`` takes, from the fields. Raises InputError."""
@@ -106,6 +142,8 @@ class ScanPanel(Panel):
             options["pairs"] = scan_start.read_pairs(file)
         if self.datum.text().strip():
             options["datum_faces"] = scan_start.face_numbers(self.datum.text())
+        options["fixed"] = [name for name, box in self.held.items() if box.isChecked()]
+        options["share"] = self.share.value() / 100.0
         return options
 
     def compare(self):

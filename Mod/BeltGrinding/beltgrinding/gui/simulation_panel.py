@@ -6,6 +6,7 @@ from .. import InputError
 from ..objects import job_object
 from ..objects.job_object import child
 from ..objects.simulation import Simulation
+from ..objects.verdict import limits_changed
 from .compat import QtCore, QtGui, translate
 from .event_moment import EventMoment
 from .event_table import EventTable
@@ -61,6 +62,10 @@ class SimulationPanel(RunPanel):
             return
         if simulation.OutOfDate:
             text = translate("BeltGrinding", "Out of date: an input has changed since.")
+        elif limits_changed(self.job, simulation):
+            text = translate(
+                "BeltGrinding", "The limits have changed since: gouges are told by the old ones."
+            )
         else:
             text = translate("BeltGrinding", "Done.")
         self._say(text, simulation.OutOfDate)

@@ -8,7 +8,7 @@ from .. import InputError, reporting
 from ..result import Result
 from . import figures, job_object, told
 from .job_object import simulated
-from .verdict import judge
+from .verdict import limits_changed, verdict_of
 
 
 def make_figures(job):
@@ -42,6 +42,14 @@ def report_data(job, folder):
                 "the settings and the job file of the new one.",
             )
         )
+    elif limits_changed(job, simulation):
+        notes.append(
+            FreeCAD.Qt.translate(
+                "BeltGrinding",
+                "The limits have changed since the simulation: the verdict is by the new ones, the "
+                "events of gouges by the old.",
+            )
+        )
     if "file" in data["stock"]:
         notes.append(
             FreeCAD.Qt.translate(
@@ -54,16 +62,7 @@ def report_data(job, folder):
         data, field, json.loads(simulation.SummaryData), simulation.Proxy.events(simulation), None
     )
     result.bins = json.loads(simulation.SeriesData) if simulation.SeriesData else None
-    result.verdict = _verdict(job, simulation, data["inspection"])
+    result.verdict = verdict_of(job, simulation, data["inspection"])
     result.convergence = told.convergence(simulation, data["inspection"])
     names = dict.fromkeys(obj.Label for obj, _ in job.DesignFaces)
     return result, ", ".join(names), notes
-
-
-def _verdict(job, simulation, inspection):
-    """The verdict that the simulation was stored with or, by other tolerances, another one."""
-    stored = json.loads(simulation.VerdictData or "{}")
-    judged_by = {key: inspection[key] for key in ("tolerance_mm", "zones")}
-    if stored.get("inspection") == judged_by:
-        return stored["verdict"]
-    return judge(job, simulation, judged_by)

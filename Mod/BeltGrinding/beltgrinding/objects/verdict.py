@@ -80,10 +80,7 @@ class Verdict(Proxy):
         shown = json.dumps([simulation.Fingerprint, simulation.WallTime, inspection])
         if shown == obj.Shown:
             return
-        told = json.loads(simulation.VerdictData or "{}")
-        if told.get("inspection") != inspection:
-            told = {"verdict": judge(job, simulation, inspection)}
-        show(obj, told["verdict"])
+        show(obj, verdict_of(job, simulation, inspection))
         obj.Shown = shown
 
 
@@ -92,6 +89,21 @@ def _judged_by(job):
 
     found = inspection(job)
     return {key: found[key] for key in ("tolerance_mm", "zones")}
+
+
+def verdict_of(job, simulation, inspection):
+    """The verdict that the simulation was stored with or, by other tolerances, another one."""
+    stored = json.loads(simulation.VerdictData or "{}")
+    judged_by = {key: inspection[key] for key in ("tolerance_mm", "zones")}
+    if stored.get("inspection") == judged_by:
+        return stored["verdict"]
+    return judge(job, simulation, judged_by)
+
+
+def limits_changed(job, simulation):
+    """Whether the limits are others than those of the run, by which it told gouges."""
+    stored = json.loads(simulation.VerdictData or "{}")
+    return bool(stored) and stored["inspection"] != _judged_by(job)
 
 
 def judge(job, simulation, inspection):

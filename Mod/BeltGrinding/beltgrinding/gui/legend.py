@@ -10,6 +10,10 @@ BAR_STEPS = 120
 # In the legend's own coordinates: the view is 2 high, its middle 0.
 LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
 LABEL_GAP = 0.07  # of half the bar: a line of text
+LETTER, NARROW = (
+    8.0,
+    620.0,
+)  # pixels: of a letter; of a view that is as narrow as with a dock beside
 
 
 def _rgb(packed):
@@ -94,7 +98,9 @@ def _legend(colours, labels, title, out_of_date):
     shift = coin.SoTranslation()
     shift.translation = (-0.95, -0.5 * HEIGHT, 0)
     group.addChild(shift)
-    group.addChild(_panel(out_of_date))
+    warning_text = translate("BeltGrinding", "out of date: simulate again")
+    texts = [title, warning_text] if out_of_date else [title]
+    group.addChild(_panel(max(map(len, texts)), out_of_date))
     group.addChild(_bar([_rgb(c) for c in colours]))
     text_colour = coin.SoBaseColor()
     text_colour.rgb = (0.0, 0.0, 0.0)
@@ -110,20 +116,19 @@ def _legend(colours, labels, title, out_of_date):
         warning = coin.SoBaseColor()
         warning.rgb = (0.7, 0.15, 0.1)
         group.addChild(warning)
-        text = translate("BeltGrinding", "out of date: simulate again")
-        group.addChild(_label(text, LEFT, -0.1))
+        group.addChild(_label(warning_text, LEFT, -0.1))
     return outer
 
 
-def _panel(out_of_date):
-    """A light ground: FreeCAD's own background may be dark."""
+def _panel(letters, out_of_date):
+    """A light ground, for a text of so many letters: FreeCAD's own background may be dark."""
     group = coin.SoSeparator()
     material = coin.SoMaterial()
     material.diffuseColor = (1.0, 1.0, 1.0)
     material.transparency = 0.25
     group.addChild(material)
     low, high = (-0.16 if out_of_date else -0.06), HEIGHT + 0.13
-    right = LEFT + (0.62 if out_of_date else 0.3)
+    right = LEFT + (letters + 1) * LETTER * 2.0 / NARROW  # the view is 2 wide
     points = coin.SoCoordinate3()
     corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
     points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])

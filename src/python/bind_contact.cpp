@@ -139,6 +139,9 @@ py::dict contact_to_dict(const ContactGrid& grid, const ContactSolution& solutio
 
 void bind_contact(py::module_& m) {
     m.def(
+        "check_wheel", [](const py::dict& wheel) { wheel_from(wheel).validate(); },
+        py::arg("wheel"), "Raises InputError for a wheel that cannot be.");
+    m.def(
         "single_contact",
         [](const py::dict& wheel, const py::dict& workpiece, const py::dict& compliance,
            std::optional<double> force, std::optional<double> approach, double spacing,

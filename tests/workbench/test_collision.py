@@ -140,6 +140,12 @@ def test_wheel_bodies_follow_the_rim():
     np.testing.assert_allclose(turned, [94, 30, 94], atol=0.21)
 
 
+def test_an_impossible_crown_is_named_before_the_bodies_are_made():
+    wheel = {"radius_mm": 60, "width_mm": 30, "crown_radius_mm": 10}
+    with pytest.raises(InputError, match="crown radius of 10.* larger than half the width"):
+        beltgrinding.run({**plate_job(), "belt_machine": {"wheel": wheel}})
+
+
 def _is_closed(mesh):
     edges = np.sort(
         np.concatenate(

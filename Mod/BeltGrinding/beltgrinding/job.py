@@ -129,6 +129,8 @@ def _run(job, context, warnings, recording):
     phases = _Phases()
     digests = inputs.digests(job)
     phases.end("hash")
+    wheel, compliance, law, options = engine_arguments(job)
+    core.check_wheel(wheel)
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
     ways = motions.of_paths(paths)
@@ -145,7 +147,6 @@ def _run(job, context, warnings, recording):
     met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3))
     phases.end("collisions")
 
-    wheel, compliance, law, options = engine_arguments(job)
     options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
     found, steps, process_time, models = [], None, 0.0, {}

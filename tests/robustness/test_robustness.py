@@ -1,6 +1,8 @@
 """Short runs of fuzz_jobs.py and kill.py, and proof that their oracles see what they are for."""
 
+import json
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,6 +30,18 @@ def test_random_jobs():
     assert not wrong, "\n".join([*wrong, "replay with fuzz_jobs.py --replay NUMBER"])
     assert len(found) == JOBS
     assert sum(words == "ground" for _, words, _ in found) >= GROUND
+
+
+def test_ten_million_samples_fit_in_four_gigabytes(tmp_path):
+    known = dict(line.split(":") for line in Path("/proc/meminfo").read_text().splitlines())
+    free = int(known["MemAvailable"].split()[0]) * 1024 / 1e9
+    if free < 5.0:
+        pytest.skip(f"only {free:.1f} GB are free")
+    command = [sys.executable, str(HERE / "memory.py"), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["samples"] > 9.9e6 and told["peak_GB"] < 4.0, told
 
 
 def result(**changes):

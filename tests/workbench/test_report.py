@@ -111,7 +111,7 @@ def test_verdict_figures_and_doubts_stand_in_it(ground):
     share = f"{100 * summary['in_tolerance_area_share']:.1f} %"
     assert f"{share} of the ground area keeps within −0.050 … +0.050 mm" in page.text
     assert f"{summary['deviation_mm']['max']:+.3f} mm" in page.text
-    assert "Burn risk" in page.text and "pressure times belt speed" in page.text
+    assert "Burn risk" in page.text and "Pressure times belt speed" in page.text
     for what, _, _ in facts.doubts(
         results.Result.read(ground / "out").job, summary, [], None, language.Language()
     ):
@@ -407,6 +407,7 @@ def test_messages_of_events_are_told_in_german():
     assert told("the pressure reaches 1.2e+03 MPa, above the limit of 1 MPa").startswith(
         "der Druck"
     )
+    assert told("part and wheel run into each other") == "Bauteil und Scheibe stoßen zusammen"
     assert told("something of another version") == "something of another version"
     text = "ground to -0.123 mm, below the lower limit of -0.05 mm"
     assert event_messages.message({"message": text}, language.Language("en")) == text

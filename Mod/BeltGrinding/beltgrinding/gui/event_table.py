@@ -121,7 +121,7 @@ class EventTable(QtGui.QWidget):
             line = str(event["line"] or "")
             if several and line:
                 line = f"{event['program'] + 1}: {line}"
-            where = self.face_name(event["face"]) if event["face"] else ", ".join(event["bodies"])
+            where = self.face_name(event["face"]) if event["face"] else event_texts.bodies(event)
             short = where.rpartition(".")[2] if event["face"] else where  # Face1 of Part.Face1
             message = event_texts.message(event)
             cells = (f"{event['time']:.2f}", event_texts.title(event["kind"]), short, line)

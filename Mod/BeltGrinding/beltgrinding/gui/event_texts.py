@@ -52,6 +52,11 @@ def message(event):
     return event_messages.message(event, words())
 
 
+def bodies(event):
+    """The bodies that are concerned."""
+    return ", ".join(event_messages.body(name, words()) for name in event["bodies"])
+
+
 def advice(event):
     """What to try, "" if nothing is known."""
     return words()(event["advice"])

@@ -53,6 +53,11 @@ FORMS = (
 NUMBER = r"([-+]?(?:\d[\d.]*(?:e[-+]?\d+)?|inf|nan))"
 
 
+def body(name, words):
+    """The name of a body of the cell: that of wheel and part is ours."""
+    return words(name) if name in ("wheel", "part") else name
+
+
 @lru_cache(maxsize=None)
 def _patterns():
     def pattern(form):
@@ -81,5 +86,6 @@ def _said(text, words):
         if found:
             named = pattern.groupindex.values()
             numbers = [g for i, g in enumerate(found.groups(), 1) if i not in named]
-            return words(form).format(*map(words.decimal, numbers), **found.groupdict())
+            names = {key: body(name, words) for key, name in found.groupdict().items()}
+            return words(form).format(*map(words.decimal, numbers), **names)
     return None

@@ -9,7 +9,7 @@ from .. import core
 from ..poses import program_name
 from . import charts, facts, judged
 from .converged import convergence_part
-from .event_messages import message
+from .event_messages import body, message
 from .layout import section, table
 from .markup import e
 
@@ -216,7 +216,7 @@ def events(content, words):
             [_severity(first[kind], words), e("b", words(kind_text(kind)))],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
-            [message(first[kind], words), _advice(first[kind], words)],
+            [_begun(message(first[kind], words)), _advice(first[kind], words)],
         )
         for kind in order
     ]
@@ -236,7 +236,7 @@ def _clearances(content, words):
         return None
     rows = [
         (
-            " – ".join(words.short(name) for name in pair["bodies"]),
+            " – ".join(words.short(body(name, words)) for name in pair["bodies"]),
             words.number(pair["distance_mm"], 1),
             where({**pair, "time": pair["time_s"]}, content.result.job, words),
         )
@@ -253,6 +253,10 @@ def _clearances(content, words):
 def kind_text(kind):
     """An event's code in words: "force_not_reached" is "Force not reached"."""
     return kind.replace("_", " ").capitalize()
+
+
+def _begun(text):
+    return text[:1].upper() + text[1:]
 
 
 def _rank(event):
@@ -297,7 +301,7 @@ def all_events(content, words):
             words(kind_text(event["kind"])),
             where_short(event, content.result.job, words),
             "" if event.get("face") is None else f"Face{event['face']}",
-            message(event, words),
+            _begun(message(event, words)),
         )
         for event in found[:MOST_EVENTS]
     ]

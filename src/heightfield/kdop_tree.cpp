@@ -1,6 +1,5 @@
 #include "heightfield/kdop_tree.h"
 
-#include <tbb/parallel_invoke.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -174,7 +173,7 @@ void KDopTree<K>::Impl::sort_range(const HeightField& field, std::uint32_t first
     const auto lower = [&] { sort_range(field, first_leaf, leaf_count / 2); };
     const auto upper = [&] { sort_range(field, first_leaf + leaf_count / 2, leaf_count / 2); };
     if (end - begin > kSequential) {
-        tbb::parallel_invoke(lower, upper);
+        parallel_both(lower, upper);
     } else {
         lower();
         upper();

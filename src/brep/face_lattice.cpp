@@ -120,6 +120,7 @@ void FaceLattice::clear_border(const PlaneGrid& grid, const Boundary& boundary, 
 }
 
 void FaceLattice::find_whole_cells(const RunContext& context) {
+    whole_.assign(state_.size(), 0);
     parallel_blocks(rows_.size() - 1, kRowBlock, context, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j) {
             const Row &low = rows_[j], &high = rows_[j + 1];
@@ -136,7 +137,7 @@ void FaceLattice::find_whole_cells(const RunContext& context) {
                         above.first + static_cast<std::uint32_t>(k - above.begin);
                     if (alive(a) && alive(a + 1) && alive(b) && alive(b + 1) &&
                         !(state_[a] & kCrossed))
-                        state_[a] |= kWhole;
+                        whole_[a] = 1;
                 }
             }
         }

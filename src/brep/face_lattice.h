@@ -29,7 +29,7 @@ class FaceLattice {
     bool alive(std::uint32_t node) const { return !(state_[node] & kDead); }
     /// True if all four corners of the cell above-right of the node are alive and no border passes
     /// through it: it becomes two triangles as it is.
-    bool whole(std::uint32_t node) const { return state_[node] & kWhole; }
+    bool whole(std::uint32_t node) const { return whole_[node] != 0; }
 
     struct Run {
         int begin = 0, end = 0;   ///< columns [begin, end)
@@ -48,7 +48,7 @@ class FaceLattice {
     bool in_whole_cell(double grid_x, double grid_y, const PlaneGrid& grid) const;
 
   private:
-    enum : std::uint8_t { kDead = 1, kCrossed = 2, kWhole = 4 };
+    enum : std::uint8_t { kDead = 1, kCrossed = 2 };
     void lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid, const Boundary& boundary,
                   double spacing, std::size_t row_count);
     void clear_border(const PlaneGrid& grid, const Boundary& boundary, double spacing);
@@ -58,6 +58,7 @@ class FaceLattice {
     std::vector<SurfacePoint> points_;
     std::vector<double> s_;
     std::vector<std::uint8_t> state_;
+    std::vector<std::uint8_t> whole_;  ///< by threads that read the neighbours' state
     double row_height_ = 1;
 };
 

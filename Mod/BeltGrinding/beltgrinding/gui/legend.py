@@ -10,10 +10,9 @@ BAR_STEPS = 120
 # In the legend's own coordinates: the view is 2 high, its middle 0.
 LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
 LABEL_GAP = 0.07  # of half the bar: a line of text
-LETTER, NARROW = (
-    8.0,
-    620.0,
-)  # pixels: of a letter; of a view that is as narrow as with a dock beside
+RIGHT = 0.36  # of its ground: room for a line of 14 letters in a view of 600 pixels
+LETTERS = 15  # of a line
+LINE = 0.055  # from line to line, in a view of 600 pixels
 
 
 def _rgb(packed):
@@ -98,9 +97,11 @@ def _legend(colours, labels, title, out_of_date):
     shift = coin.SoTranslation()
     shift.translation = (-0.95, -0.5 * HEIGHT, 0)
     group.addChild(shift)
-    warning_text = translate("BeltGrinding", "out of date: simulate again")
-    texts = [title, warning_text] if out_of_date else [title]
-    group.addChild(_panel(max(map(len, texts)), out_of_date))
+    titles = _lines(title)
+    warnings = (
+        _lines(translate("BeltGrinding", "out of date: simulate again")) if out_of_date else []
+    )
+    group.addChild(_panel(HEIGHT + 0.13 + LINE * (len(titles) - 1), len(warnings)))
     group.addChild(_bar([_rgb(c) for c in colours]))
     text_colour = coin.SoBaseColor()
     text_colour.rgb = (0.0, 0.0, 0.0)
@@ -111,24 +112,34 @@ def _legend(colours, labels, title, out_of_date):
     group.addChild(font)
     for height, text in labels.items():
         group.addChild(_label(text, LEFT + WIDTH + 0.02, height))
-    group.addChild(_label(title, LEFT, HEIGHT + 0.06))
-    if out_of_date:
+    for k, line in enumerate(reversed(titles)):
+        group.addChild(_label(line, LEFT, HEIGHT + 0.06 + LINE * k))
+    if warnings:
         warning = coin.SoBaseColor()
         warning.rgb = (0.7, 0.15, 0.1)
         group.addChild(warning)
-        group.addChild(_label(warning_text, LEFT, -0.1))
+    for k, line in enumerate(warnings):
+        group.addChild(_label(line, LEFT, -0.1 - LINE * k))
     return outer
 
 
-def _panel(letters, out_of_date):
-    """A light ground, for a text of so many letters: FreeCAD's own background may be dark."""
+def _lines(text):
+    """A text in two lines, if it is long and has a place for that."""
+    for mark in (": ", " - "):
+        first, found, rest = text.partition(mark)
+        if found and len(text) > LETTERS:
+            return [first + mark.rstrip(), rest]
+    return [text]
+
+
+def _panel(high, lines_below):
+    """A light ground, up to ``high``: FreeCAD's own background may be dark."""
     group = coin.SoSeparator()
     material = coin.SoMaterial()
     material.diffuseColor = (1.0, 1.0, 1.0)
     material.transparency = 0.25
     group.addChild(material)
-    low, high = (-0.16 if out_of_date else -0.06), HEIGHT + 0.13
-    right = LEFT + (letters + 1) * LETTER * 2.0 / NARROW  # the view is 2 wide
+    low, right = -0.06 - (0.045 + LINE * lines_below if lines_below else 0.0), LEFT + RIGHT
     points = coin.SoCoordinate3()
     corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
     points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #define POCKETFFT_NO_MULTITHREADING
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define POCKETFFT_NO_VECTORS  // its aligned_alloc takes sizes that the sanitizer forbids
 #endif
 #include <pocketfft.hpp>

@@ -141,7 +141,7 @@ def run_all(numbers, limit=LIMIT, environment=None):
         worker.stdin.flush()
         line = _line(worker, start + limit)
         if line is None:
-            slow = worker.poll() is None
+            slow = time.monotonic() >= start + limit  # else it has just died
             worker.kill()
             said = (worker.stderr.read() if worker.stderr else "")[-2000:]
             worker.wait()

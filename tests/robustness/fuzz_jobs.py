@@ -194,6 +194,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=200, help="how many (default 200)")
     parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument(
+        "--limit", type=float, default=LIMIT, help=f"s for a job (default {LIMIT:g})"
+    )
     parser.add_argument("--replay", type=int, metavar="NUMBER", help="print a job, run it here")
     parser.add_argument("--verbose", action="store_true", help="a line a job")
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
@@ -209,7 +212,8 @@ def main():
         print(check(job, True))
         return 0
     counts, findings = {}, 0
-    for number, words, finding in run_all(range(arguments.first, arguments.first + arguments.jobs)):
+    numbers = range(arguments.first, arguments.first + arguments.jobs)
+    for number, words, finding in run_all(numbers, arguments.limit):
         kind = "finding" if finding else words.split(":")[0]
         counts[kind] = counts.get(kind, 0) + 1
         findings += finding

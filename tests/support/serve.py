@@ -23,8 +23,12 @@ for line in open(0, "rb", closefd=False):  # sys.stdin is FreeCAD's own
         answer = b"passed\n"
     except BaseException:
         traceback.print_exc()
-    os.environ.clear()
-    os.environ.update(environment)
+    # Only what differs: threads of FreeCAD's start page read the environment meanwhile.
+    for name in os.environ.keys() | environment.keys():
+        if name not in environment:
+            del os.environ[name]
+        elif os.environ.get(name) != environment[name]:
+            os.environ[name] = environment[name]
     os.chdir(folder)
     sys.path[:] = path
     sys.stdout.flush()

@@ -114,10 +114,6 @@ TEST_F(HeightFieldFile, RefusesAnythingElse) {
 }
 
 TEST_F(HeightFieldFile, DamagedBytesAreRefusedOrReadButNeverCrash) {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP()
-        << "HDF5 1.10 reads a few bytes beyond a damaged header, which stops the sanitizer";
-#endif
     write_hdf5(testing::plate(3.0, 3.0, 1.0, 0.2), path_, "{}");
     const std::string good = bytes();
     std::mt19937 random(1);

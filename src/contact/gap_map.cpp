@@ -15,6 +15,9 @@ constexpr int kGridQuantum = 8;    // grid lengths are multiples, so that warm s
 // Coverage from sums over samples carries their sampling noise; near full it is full.
 constexpr double kFullCoverage = 0.85;
 constexpr double kLeastCoverage = 0.05;
+// At the surface's border a cell of less coverage is left out: the wheel yields under it as under a
+// whole cell, so its pressure came out too high by 1 / coverage.
+constexpr double kLeastAtBorder = 0.25;
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
 
 }  // namespace
@@ -125,11 +128,12 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
     }
     for (Eigen::Index cell = 0; cell < gap_.size(); ++cell) {
         double share = weight_[cell] / grid_.cell_area();
-        if (share < kLeastCoverage) {
+        const bool at_border = at_boundary_[static_cast<std::size_t>(cell)] != 0;
+        if (share < (at_border ? kLeastAtBorder : kLeastCoverage)) {
             gap_[cell] = kNone;
             continue;
         }
-        if (at_boundary_[static_cast<std::size_t>(cell)] == 0 || share > kFullCoverage) share = 1.0;
+        if (!at_border || share > kFullCoverage) share = 1.0;
         gap_[cell] /= weight_[cell];
         coverage_[cell] = share;
     }

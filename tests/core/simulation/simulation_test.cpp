@@ -172,6 +172,27 @@ TEST(Simulation, NothingIsGroundBelowTheUnloadedWheel) {
     EXPECT_GT(lowest, -5.5);  // the cells' interpolation to the samples
 }
 
+// A rim yields under a sliver of a cell at the plate's end as under a whole one: the sliver's
+// pressure came out at 75 times that amid the plate.
+TEST(Simulation, TheEndOfAPlateBearsNoAbsurdPressure) {
+    WheelRimDesign design;
+    design.outer_radius = options().wheel.radius;
+    design.width = options().wheel.width;
+    design.layers = {{15.0, {5.0, 0.45}}};
+    WheelRim rim(design);
+    for (const double length : {60.0, 60.2, 60.4}) {
+        HeightField field = testing::plate(length, 40.0, 0.6, 0.2);
+        const ToolPath path(
+            {pressing_down(-12, 20, 0.2, 30.0), pressing_down(length + 12, 20, 0.2, 30.0)}, {});
+        const auto steps = simulate(field, path, rim, LocalLaw({kCoefficient}), options()).steps;
+        std::vector<float> peaks;
+        for (const auto& step : steps) peaks.push_back(step.peak_pressure);
+        const float amid = peaks[peaks.size() / 2];
+        EXPECT_GT(amid, 0.1);
+        EXPECT_LT(*std::max_element(peaks.begin(), peaks.end()), 12.0 * amid) << length;
+    }
+}
+
 TEST(Simulation, ARigidToolLeavesItsEnvelope) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.3);
     Geometric tool;

@@ -3221,76 +3221,20 @@ im Mittel {} abgetragen</translation>
         <translation>Alle</translation>
     </message>
     <message>
-        <source>Arm flip</source>
-        <translation>Arm klappt um</translation>
-    </message>
-    <message>
-        <source>Belt out of range</source>
-        <translation>Band außer Bereich</translation>
-    </message>
-    <message>
-        <source>Burn risk</source>
-        <translation>Brandgefahr</translation>
-    </message>
-    <message>
-        <source>Collision</source>
-        <translation>Kollision</translation>
-    </message>
-    <message>
         <source>Collisions</source>
         <translation>Kollisionen</translation>
-    </message>
-    <message>
-        <source>Depth exceeded</source>
-        <translation>Tiefe überschritten</translation>
     </message>
     <message>
         <source>Errors</source>
         <translation>Fehler</translation>
     </message>
     <message>
-        <source>Force exceeded</source>
-        <translation>Kraft überschritten</translation>
-    </message>
-    <message>
-        <source>Force not reached</source>
-        <translation>Kraft nicht erreicht</translation>
-    </message>
-    <message>
         <source>From {:.2f} s, for {:.2f} s; pose {}</source>
         <translation>Ab {:.2f} s, für {:.2f} s; Pose {}</translation>
     </message>
     <message>
-        <source>Gouge</source>
-        <translation>Zu tief geschliffen</translation>
-    </message>
-    <message>
-        <source>Joint limit</source>
-        <translation>Achsgrenze</translation>
-    </message>
-    <message>
-        <source>Joint speed</source>
-        <translation>Achsgeschwindigkeit</translation>
-    </message>
-    <message>
-        <source>Law out of range</source>
-        <translation>Gesetz außer Bereich</translation>
-    </message>
-    <message>
         <source>Look for collisions</source>
         <translation>Kollisionen suchen</translation>
-    </message>
-    <message>
-        <source>Loss of contact</source>
-        <translation>Kontaktverlust</translation>
-    </message>
-    <message>
-        <source>Near miss</source>
-        <translation>Zu nah</translation>
-    </message>
-    <message>
-        <source>Not converged</source>
-        <translation>Nicht konvergiert</translation>
     </message>
     <message>
         <source>Note</source>
@@ -3301,28 +3245,8 @@ im Mittel {} abgetragen</translation>
         <translation>Hinweise</translation>
     </message>
     <message>
-        <source>Orientation jump</source>
-        <translation>Orientierungssprung</translation>
-    </message>
-    <message>
-        <source>Out of reach</source>
-        <translation>Außer Reichweite</translation>
-    </message>
-    <message>
-        <source>Over-pressure</source>
-        <translation>Überdruck</translation>
-    </message>
-    <message>
         <source>Pressure limit (0: none)</source>
         <translation>Druckgrenze (0: keine)</translation>
-    </message>
-    <message>
-        <source>Singularity</source>
-        <translation>Singularität</translation>
-    </message>
-    <message>
-        <source>Tilted contact</source>
-        <translation>Schräger Kontakt</translation>
     </message>
     <message>
         <source>Try:</source>
@@ -3337,20 +3261,8 @@ im Mittel {} abgetragen</translation>
         <translation>Warnungen</translation>
     </message>
     <message>
-        <source>Wheel too large</source>
-        <translation>Scheibe zu groß</translation>
-    </message>
-    <message>
         <source>Wheel&apos;s body below its surface</source>
         <translation>Scheibenkörper unter der Oberfläche</translation>
-    </message>
-    <message>
-        <source>Wheel&apos;s edge presses</source>
-        <translation>Scheibenkante drückt</translation>
-    </message>
-    <message>
-        <source>Wrist flip</source>
-        <translation>Handachsen klappen um</translation>
     </message>
     <message>
         <source>Hold</source>

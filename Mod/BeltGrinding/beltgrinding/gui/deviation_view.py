@@ -4,9 +4,8 @@ from pivy import coin
 
 from ..objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of
 from . import legend
-from .compat import make_matt
+from .coloured_mesh_view import ColouredMeshView
 from .part_context import rest_of_part
-from .view import View
 
 
 LEGEND = (
@@ -20,7 +19,7 @@ LEGEND = (
 )
 
 
-class DeviationView(View):
+class DeviationView(ColouredMeshView):
     """Proxy of the Mesh view provider."""
 
     ICON = "BeltGrinding_Deviation"
@@ -33,19 +32,15 @@ class DeviationView(View):
         )
         view.RestOfPart = True
         _add_lit(view)
-        view.Coloring = True
 
     def attach(self, view):
-        super().attach(view)
-        self.legend = coin.SoSwitch()
         self.light = coin.SoLightModel()
         self.rest = coin.SoSwitch()
         view.RootNode.insertChild(self.light, 0)
         view.RootNode.insertChild(
             self.rest, 0
         )  # before the mesh's materials, which it would inherit
-        view.RootNode.addChild(self.legend)
-        self.update_legend()
+        super().attach(view)
 
     def panel(self, obj):
         from .deviation_panel import DeviationPanel
@@ -56,8 +51,7 @@ class DeviationView(View):
         if not hasattr(self.view, "Lit"):
             _add_lit(self.view)
         self.update_light()
-        self.colour()
-        self.update_legend()
+        super().finishRestoring()
         self.update_rest()
 
     def updateData(self, obj, name):
@@ -72,41 +66,26 @@ class DeviationView(View):
     def onChanged(self, view, name):
         if getattr(self, "legend", None) is None:
             return
-        if name == "Visibility":
-            self.legend.whichChild = -3 if view.Visibility else -1
-            self.update_rest()
-        if name == "RestOfPart":
+        super().onChanged(view, name)
+        if name in ("Visibility", "RestOfPart"):
             self.update_rest()
         if name == "Lit":
             self.update_light()
-
-    def colour(self):
-        """Draws the colours: 0.20 forgets them on reopening and whenever the mesh is set."""
-        make_matt(self.view)
-        if len(self.view.Object.VertexColors) == self.view.Object.Mesh.CountPoints:
-            self.view.Coloring = False
-            self.view.Coloring = True
 
     def update_light(self):
         model = coin.SoLightModel
         self.light.model = model.PHONG if self.view.Lit else model.BASE_COLOR
 
-    def update_legend(self):
+    def legend_node(self):
         obj = self.view.Object
         if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
-            return
+            return None
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
-        self.legend.removeAllChildren()
         if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
-            limit = obj.UncertaintyLimit.Value
-            self.legend.addChild(legend.uncertainty_node(limit, obj.OutOfDate))
-        elif obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
-            self.legend.addChild(
-                legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
-            )
-        else:
-            self.legend.addChild(legend.node(*scale, obj.OutOfDate, bands_of(obj)))
-        self.legend.whichChild = -3 if self.view.Visibility else -1
+            return legend.uncertainty_node(obj.UncertaintyLimit.Value, obj.OutOfDate)
+        if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
+            return legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
+        return legend.node(*scale, obj.OutOfDate, bands_of(obj))
 
     def update_rest(self):
         """Draws the faces that are not ground; what is cut below them would else be hidden."""

@@ -18,29 +18,24 @@ from .properties import set_by_name
 
 def make_deviation(job):
     """Adds the coloured deviation of the job's simulation, or returns the one that is there."""
-    simulation = simulated(job)
-    found = child(job, deviations.Deviation)
-    if found is None:
-        found = job.Document.addObject("Mesh::FeaturePython", "Deviation")
-        with removed_on_error(found):
-            deviations.Deviation(found)
-            found.Simulation = simulation
-            job.addObject(found)
-            found.Proxy.update(found)
-    job.Document.recompute()
-    return found
+    return _follower(job, deviations.Deviation, "Mesh::FeaturePython", "Deviation")
 
 
 def make_verdict(job):
     """Adds the verdict on the job's simulation, or returns the one that is there. It follows the
     result and the job's tolerances.
     """
+    return _follower(job, verdicts.Verdict, "App::FeaturePython", "Verdict")
+
+
+def _follower(job, proxy, kind, name):
+    """The job's child that shows its result and follows it, made where it is missing."""
     simulation = simulated(job)
-    found = child(job, verdicts.Verdict)
+    found = child(job, proxy)
     if found is None:
-        found = job.Document.addObject("App::FeaturePython", "Verdict")
+        found = job.Document.addObject(kind, name)
         with removed_on_error(found):
-            verdicts.Verdict(found)
+            proxy(found)
             found.Simulation = simulation
             job.addObject(found)
             found.Proxy.update(found)

@@ -87,14 +87,17 @@ class Verdict(Proxy):
 def _judged_by(job):
     from .job_object import inspection
 
-    found = inspection(job)
-    return {key: found[key] for key in ("tolerance_mm", "zones")}
+    return _limits(inspection(job))
+
+
+def _limits(inspection):
+    return {key: inspection[key] for key in ("tolerance_mm", "zones")}
 
 
 def verdict_of(job, simulation, inspection):
     """The verdict that the simulation was stored with or, by other tolerances, another one."""
     stored = json.loads(simulation.VerdictData or "{}")
-    judged_by = {key: inspection[key] for key in ("tolerance_mm", "zones")}
+    judged_by = _limits(inspection)
     if stored.get("inspection") == judged_by:
         return stored["verdict"]
     return judge(job, simulation, judged_by)

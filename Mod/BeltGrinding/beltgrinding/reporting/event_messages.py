@@ -53,6 +53,11 @@ FORMS = (
 NUMBER = r"([-+]?(?:\d[\d.]*(?:e[-+]?\d+)?|inf|nan))"
 
 
+def kind_text(kind):
+    """An event's code in words: "force_not_reached" is "Force not reached"."""
+    return kind.replace("_", " ").capitalize()
+
+
 def body(name, words):
     """The name of a body of the cell: that of wheel and part is ours."""
     return words(name) if name in ("wheel", "part") else name

@@ -9,7 +9,7 @@ from .. import core
 from ..poses import program_name
 from . import charts, facts, judged
 from .converged import convergence_part
-from .event_messages import body, message
+from .event_messages import body, kind_text, message
 from .layout import section, table
 from .markup import e
 
@@ -248,11 +248,6 @@ def _clearances(content, words):
         (words("Where"), ""),
     ]
     return [e("h3", words("Clearances")), table(heads, rows)]
-
-
-def kind_text(kind):
-    """An event's code in words: "force_not_reached" is "Force not reached"."""
-    return kind.replace("_", " ").capitalize()
 
 
 def _begun(text):

@@ -1,20 +1,62 @@
-# beltgrinding_room(NAME [DEPENDS ...] [PRIVATE_DEPENDS ...] [PRIVATE_INCLUDES ...])
+# beltgrinding_room(NAME [ROOMS ...] [PRIVATE_ROOMS ...] [PACKAGES ...] [PRIVATE_PACKAGES ...]
+#                   [PRIVATE_INCLUDES ...])
 #
-# One folder of src/ is one static library target bg_NAME. DEPENDS are what its public headers
-# need; PRIVATE_DEPENDS stay inside its .cpp files. Includes are written from src/:
-# #include "heightfield/height_field.h".
+# One folder of src/ is one room, the static library bg_NAME. Its headers lie in three places:
+#   include/beltgrinding/x.h   "beltgrinding/x.h": the library's, installed
+#   internal/NAME/x.h          "NAME/x.h": for the rooms that declare this one
+#   x.h                        "x.h": private, beside the sources
+# A room is given only its own include folders and those of the rooms it declares: ROOMS, which its
+# own headers show (and which are handed on), and PRIVATE_ROOMS, which its sources alone include. So an
+# include that is not declared does not compile. PACKAGES and PRIVATE_PACKAGES are targets from outside.
+#
+# What is declared is written to <build>/rooms.json (beltgrinding_write_rooms); tests/house/test_rooms.py
+# compares it with the includes and with the table in docs/architecture.md.
 function(beltgrinding_room name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE_DEPENDS;PRIVATE_INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "" ""
+    "ROOMS;PRIVATE_ROOMS;PACKAGES;PRIVATE_PACKAGES;PRIVATE_INCLUDES" ${ARGN})
+  set(folders)
+  foreach(folder include internal)
+    if(IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+      list(APPEND folders ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+    endif()
+  endforeach()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(sources)
     add_library(bg_${name} STATIC ${sources})
-    target_include_directories(bg_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    target_include_directories(bg_${name} PUBLIC ${folders})
     target_include_directories(bg_${name} SYSTEM PRIVATE ${ARG_PRIVATE_INCLUDES})
-    target_link_libraries(bg_${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS}
-                          bg_warnings)
+    target_link_libraries(bg_${name} PUBLIC ${ARG_PACKAGES} PRIVATE ${ARG_PRIVATE_PACKAGES} bg_warnings)
+    foreach(room IN LISTS ARG_ROOMS)
+      target_link_libraries(bg_${name} PUBLIC bg_${room})
+    endforeach()
+    foreach(room IN LISTS ARG_PRIVATE_ROOMS)
+      target_link_libraries(bg_${name} PRIVATE bg_${room})
+    endforeach()
   else()
     add_library(bg_${name} INTERFACE)
-    target_include_directories(bg_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
-    target_link_libraries(bg_${name} INTERFACE ${ARG_DEPENDS})
+    target_include_directories(bg_${name} INTERFACE ${folders})
+    target_link_libraries(bg_${name} INTERFACE ${ARG_PACKAGES})
+    foreach(room IN LISTS ARG_ROOMS)
+      target_link_libraries(bg_${name} INTERFACE bg_${room})
+    endforeach()
   endif()
+  beltgrinding_record_room(${name} ROOMS ${ARG_ROOMS} PRIVATE_ROOMS ${ARG_PRIVATE_ROOMS})
+endfunction()
+
+# beltgrinding_record_room(NAME [ROOMS ...] [PRIVATE_ROOMS ...]): for rooms that are no static library.
+function(beltgrinding_record_room name)
+  cmake_parse_arguments(ARG "" "" "ROOMS;PRIVATE_ROOMS" ${ARGN})
+  foreach(list ROOMS PRIVATE_ROOMS)
+    list(JOIN ARG_${list} "\", \"" ${list})
+    string(REPLACE "\"\"" "" ${list} "\"${${list}}\"")
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY BELTGRINDING_ROOMS
+    "  \"${name}\": {\"rooms\": [${ROOMS}], \"private_rooms\": [${PRIVATE_ROOMS}]}")
+endfunction()
+
+# Writes what all rooms have declared, in their order.
+function(beltgrinding_write_rooms)
+  get_property(rooms GLOBAL PROPERTY BELTGRINDING_ROOMS)
+  list(JOIN rooms ",\n" rooms)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/rooms.json CONTENT "{\n@rooms@\n}\n" @ONLY)
 endfunction()

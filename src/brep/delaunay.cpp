@@ -1,4 +1,4 @@
-#include "brep/delaunay.h"
+#include "delaunay.h"
 
 #include <algorithm>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "brep/face_lattice.h"
+#include "face_lattice.h"
 
 #include <algorithm>
 #include <cmath>

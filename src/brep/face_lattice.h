@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/run_context.h"
-#include "brep/face_surface.h"
-#include "brep/face_trim.h"
+#include "beltgrinding/run_context.h"
+#include "face_surface.h"
+#include "face_trim.h"
 
 namespace beltgrinding {
 

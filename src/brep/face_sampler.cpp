@@ -1,4 +1,4 @@
-#include "brep/face_sampler.h"
+#include "face_sampler.h"
 
 #include <BRep_Tool.hxx>
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "brep/delaunay.h"
-#include "brep/face_lattice.h"
-#include "brep/face_surface.h"
-#include "brep/face_trim.h"
-#include "brep/sample_weights.h"
+#include "delaunay.h"
+#include "face_lattice.h"
+#include "face_surface.h"
+#include "face_trim.h"
+#include "sample_weights.h"
 
 namespace beltgrinding {
 namespace {

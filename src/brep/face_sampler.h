@@ -5,8 +5,8 @@
 #include <TopoDS_Face.hxx>
 #include <array>
 
-#include "base/run_context.h"
-#include "heightfield/height_field.h"
+#include "beltgrinding/height_field.h"
+#include "beltgrinding/run_context.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "brep/face_surface.h"
+#include "face_surface.h"
 
 #include <Standard_Failure.hxx>
 #include <TColStd_Array1OfReal.hxx>

@@ -6,7 +6,7 @@
 #include <Geom_Surface.hxx>
 #include <vector>
 
-#include "base/geometry.h"
+#include "beltgrinding/geometry.h"
 
 namespace beltgrinding {
 

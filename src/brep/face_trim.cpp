@@ -1,4 +1,4 @@
-#include "brep/face_trim.h"
+#include "face_trim.h"
 
 #include <BRep_Tool.hxx>
 #include <Geom2dAdaptor_Curve.hxx>

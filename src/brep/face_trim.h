@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "brep/delaunay.h"
-#include "brep/face_surface.h"
+#include "delaunay.h"
+#include "face_surface.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "brep/mesh_assembly.h"
+#include "mesh_assembly.h"
 
 #include <BRep_Tool.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>

@@ -5,7 +5,7 @@
 #include <TopoDS_Shape.hxx>
 #include <vector>
 
-#include "brep/mesh_refinement.h"
+#include "mesh_refinement.h"
 
 namespace beltgrinding {
 

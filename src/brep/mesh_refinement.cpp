@@ -1,4 +1,4 @@
-#include "brep/mesh_refinement.h"
+#include "mesh_refinement.h"
 
 #include <GeomAdaptor_Surface.hxx>
 #include <Standard_Failure.hxx>

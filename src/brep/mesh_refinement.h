@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/geometry.h"
-#include "base/run_context.h"
+#include "beltgrinding/geometry.h"
+#include "beltgrinding/run_context.h"
 
 namespace beltgrinding {
 

@@ -10,11 +10,11 @@
 #include <exception>
 #include <mutex>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "brep/face_sampler.h"
-#include "brep/shape.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/shape.h"
+#include "face_sampler.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,4 +1,4 @@
-#include "brep/sample_weights.h"
+#include "sample_weights.h"
 
 namespace beltgrinding {
 namespace {

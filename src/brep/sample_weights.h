@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "base/geometry.h"
-#include "heightfield/height_field.h"
+#include "beltgrinding/geometry.h"
+#include "beltgrinding/height_field.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "brep/shape.h"
+#include "beltgrinding/shape.h"
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
@@ -13,9 +13,9 @@
 #include <TopExp_Explorer.hxx>
 #include <cmath>
 
-#include "base/error.h"
-#include "brep/face_sampler.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "face_sampler.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

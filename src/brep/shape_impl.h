@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "brep/shape.h"
+#include "beltgrinding/shape.h"
 
 namespace beltgrinding {
 

@@ -15,10 +15,10 @@
 #include <memory>
 #include <sstream>
 
-#include "base/error.h"
-#include "brep/crash_guard.h"
-#include "brep/shape.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/shape.h"
+#include "crash_guard.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

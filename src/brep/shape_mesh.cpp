@@ -20,9 +20,9 @@
 #include <gp_Pln.hxx>
 #include <map>
 
-#include "base/error.h"
-#include "brep/shape.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/shape.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

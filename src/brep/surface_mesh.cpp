@@ -7,10 +7,10 @@
 #include <optional>
 #include <tuple>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "brep/mesh_assembly.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "mesh_assembly.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brep/face_trim.h"
+#include "face_trim.h"
 
 namespace beltgrinding {
 namespace {

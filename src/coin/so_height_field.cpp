@@ -22,8 +22,8 @@
 #include <set>
 #include <string>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

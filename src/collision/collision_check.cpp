@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "collision/collision_pair.h"
+#include "beltgrinding/error.h"
+#include "collision_pair.h"
 
 namespace beltgrinding {
 namespace {

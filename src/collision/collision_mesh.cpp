@@ -1,4 +1,4 @@
-#include "collision/collision_mesh.h"
+#include "collision_mesh.h"
 
 #include <cassert>  // FCL's headers use it without including it
 
@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

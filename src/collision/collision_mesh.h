@@ -3,8 +3,8 @@
 #include <limits>
 #include <memory>
 
-#include "base/geometry.h"
-#include "base/run_context.h"
+#include "beltgrinding/geometry.h"
+#include "beltgrinding/run_context.h"
 
 namespace beltgrinding {
 

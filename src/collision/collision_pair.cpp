@@ -1,4 +1,4 @@
-#include "collision/collision_pair.h"
+#include "collision_pair.h"
 
 #include <algorithm>
 #include <limits>

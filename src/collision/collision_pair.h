@@ -3,10 +3,10 @@
 #include <functional>
 #include <vector>
 
-#include "base/run_context.h"
+#include "beltgrinding/run_context.h"
 #include "collision/collision_check.h"
-#include "collision/collision_mesh.h"
-#include "collision/motion_bound.h"
+#include "collision_mesh.h"
+#include "motion_bound.h"
 
 namespace beltgrinding {
 

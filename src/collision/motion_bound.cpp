@@ -1,4 +1,4 @@
-#include "collision/motion_bound.h"
+#include "motion_bound.h"
 
 #include <algorithm>
 #include <cmath>

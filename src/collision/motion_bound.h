@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "toolpath/tool_path.h"
+#include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 

@@ -1,9 +1,9 @@
-#include "contact/compliance.h"
+#include "beltgrinding/compliance.h"
 
 #include <cmath>
 #include <sstream>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 

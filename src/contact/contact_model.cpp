@@ -1,8 +1,8 @@
-#include "contact/contact_model.h"
+#include "beltgrinding/contact_model.h"
 
 #include <cmath>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 

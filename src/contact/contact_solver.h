@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/compliance.h"
+#include "beltgrinding/compliance.h"
 
 namespace beltgrinding {
 

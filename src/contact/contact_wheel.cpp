@@ -1,9 +1,9 @@
-#include "contact/contact_wheel.h"
+#include "beltgrinding/contact_wheel.h"
 
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 

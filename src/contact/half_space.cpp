@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

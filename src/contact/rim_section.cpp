@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

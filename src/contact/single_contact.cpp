@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
 #include "base/stopwatch.h"
-#include "contact/compliance.h"
+#include "beltgrinding/compliance.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

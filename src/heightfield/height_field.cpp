@@ -1,4 +1,4 @@
-#include "heightfield/height_field.h"
+#include "beltgrinding/height_field.h"
 
 namespace beltgrinding {
 

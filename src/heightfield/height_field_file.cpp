@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/height_field.h"
 #include "heightfield/hdf5_io.h"
-#include "heightfield/height_field.h"
 
 namespace beltgrinding {
 namespace {

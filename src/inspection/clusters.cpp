@@ -1,4 +1,4 @@
-#include "inspection/clusters.h"
+#include "clusters.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

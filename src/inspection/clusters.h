@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "inspection/verdict.h"
+#include "beltgrinding/verdict.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "inspection/deviation.h"
+#include "beltgrinding/deviation.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

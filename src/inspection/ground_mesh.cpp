@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "inspection/height_lookup.h"
+#include "beltgrinding/error.h"
+#include "height_lookup.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,4 +1,4 @@
-#include "inspection/height_lookup.h"
+#include "height_lookup.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "heightfield/height_field.h"
+#include "beltgrinding/height_field.h"
 
 namespace beltgrinding {
 

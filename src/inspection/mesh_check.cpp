@@ -2,7 +2,7 @@
 #include <array>
 #include <numeric>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "inspection/ground_mesh.h"
 
 namespace beltgrinding {

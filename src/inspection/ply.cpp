@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "inspection/deviation.h"
+#include "beltgrinding/deviation.h"
 
 namespace beltgrinding {
 namespace {

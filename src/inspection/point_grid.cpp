@@ -1,4 +1,4 @@
-#include "inspection/point_grid.h"
+#include "point_grid.h"
 
 #include <algorithm>
 #include <utility>

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/geometry.h"
+#include "beltgrinding/geometry.h"
 
 namespace beltgrinding {
 

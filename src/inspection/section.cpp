@@ -6,7 +6,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,10 +1,10 @@
-#include "inspection/verdict.h"
+#include "beltgrinding/verdict.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "inspection/clusters.h"
+#include "beltgrinding/error.h"
+#include "clusters.h"
 
 namespace beltgrinding {
 namespace {

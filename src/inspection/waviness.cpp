@@ -6,10 +6,10 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "inspection/point_grid.h"
+#include "beltgrinding/error.h"
 #include "inspection/section.h"
+#include "point_grid.h"
 
 namespace beltgrinding {
 namespace {

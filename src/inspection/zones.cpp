@@ -1,4 +1,4 @@
-#include "inspection/zones.h"
+#include "beltgrinding/zones.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <string>
 #include <tuple>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "inspection/point_grid.h"
+#include "beltgrinding/error.h"
+#include "point_grid.h"
 
 namespace beltgrinding {
 namespace {

@@ -12,8 +12,8 @@
 #include <limits>
 #include <string>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

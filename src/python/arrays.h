@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/geometry.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/geometry.h"
 
 namespace beltgrinding::python {
 

@@ -1,4 +1,4 @@
-#include "python/dict.h"
+#include "dict.h"
 #include "removal/calibration.h"
 
 namespace beltgrinding::python {

@@ -1,5 +1,5 @@
 #include "collision/collision_check.h"
-#include "python/dict.h"
+#include "dict.h"
 
 namespace beltgrinding::python {
 namespace {

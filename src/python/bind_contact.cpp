@@ -4,7 +4,7 @@
 #include "contact/single_contact.h"
 #include "contact/surrogate.h"
 #include "contact/wheel_rim.h"
-#include "python/dict.h"
+#include "dict.h"
 
 namespace beltgrinding::python {
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "python/dict.h"
+#include "dict.h"
 
 namespace beltgrinding::python {
 namespace {

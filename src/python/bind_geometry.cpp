@@ -1,6 +1,7 @@
-#include "brep/shape.h"
-#include "python/arrays.h"
-#include "stock/stock.h"
+#include "arrays.h"
+#include "beltgrinding/mesh_reader.h"
+#include "beltgrinding/shape.h"
+#include "beltgrinding/stock.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -37,10 +38,10 @@ void bind_geometry(py::module_& m) {
     m.def(
         "read_ply",
         [](const std::string& path) {
-            PlyData data;
+            RawMesh data;
             {
                 const py::gil_scoped_release release;
-                data = read_ply_data(path);
+                data = read_ply(path);
             }
             py::array_t<double> vertices({data.vertices.size(), std::size_t{3}});
             std::copy_n(reinterpret_cast<const double*>(data.vertices.data()), vertices.size(),

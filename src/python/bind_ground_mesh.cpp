@@ -1,8 +1,8 @@
 #include <array>
 #include <optional>
 
+#include "arrays.h"
 #include "inspection/ground_mesh.h"
-#include "python/arrays.h"
 
 namespace beltgrinding::python {
 namespace {

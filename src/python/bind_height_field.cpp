@@ -1,6 +1,6 @@
-#include "heightfield/height_field.h"
-#include "python/arrays.h"
-#include "stock/stock.h"
+#include "arrays.h"
+#include "beltgrinding/height_field.h"
+#include "beltgrinding/stock.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -2,9 +2,9 @@
 #include <optional>
 #include <span>
 
+#include "arrays.h"
+#include "beltgrinding/deviation.h"
 #include "inspection/colour_map.h"
-#include "inspection/deviation.h"
-#include "python/arrays.h"
 
 namespace beltgrinding::python {
 namespace {

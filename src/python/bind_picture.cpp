@@ -1,7 +1,7 @@
 #include <limits>
 
+#include "arrays.h"
 #include "picture/picture.h"
-#include "python/arrays.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -1,5 +1,5 @@
-#include "python/arrays.h"
-#include "simulation/recording.h"
+#include "arrays.h"
+#include "beltgrinding/recording.h"
 
 namespace beltgrinding::python {
 

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "python/dict.h"
+#include "dict.h"
 #include "robot/inverse_kinematics.h"
 #include "robot/reach.h"
 

@@ -1,5 +1,5 @@
+#include "arrays.h"
 #include "inspection/section.h"
-#include "python/arrays.h"
 
 namespace beltgrinding::python {
 namespace {

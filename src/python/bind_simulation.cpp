@@ -2,8 +2,9 @@
 #include <memory>
 #include <optional>
 
-#include "python/dict.h"
-#include "simulation/simulation.h"
+#include "beltgrinding/simulation.h"
+#include "beltgrinding/tool_path.h"
+#include "dict.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -1,6 +1,7 @@
 #include "base/stopwatch.h"
 #include "contact/surrogate.h"
-#include "python/dict.h"
+#include "dict.h"
+#include "training/train_regression.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -1,6 +1,6 @@
 #include "contact/wheel_fit.h"
-#include "python/dict.h"
-#include "toolpath/raster.h"
+#include "dict.h"
+#include "raster/raster.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -1,11 +1,11 @@
 #include <optional>
 
-#include "inspection/thickness.h"
-#include "inspection/verdict.h"
+#include "arrays.h"
+#include "beltgrinding/verdict.h"
+#include "beltgrinding/zones.h"
+#include "dict.h"
 #include "inspection/waviness.h"
-#include "inspection/zones.h"
-#include "python/arrays.h"
-#include "python/dict.h"
+#include "thickness/thickness.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <span>
 
+#include "arrays.h"
 #include "coin/so_height_field.h"
-#include "python/arrays.h"
 
 namespace {
 

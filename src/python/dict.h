@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "contact/contact_model.h"
-#include "contact/contact_wheel.h"
+#include "arrays.h"
+#include "beltgrinding/contact_model.h"
+#include "beltgrinding/contact_wheel.h"
+#include "beltgrinding/event_log.h"
 #include "contact/regression.h"
-#include "python/arrays.h"
-#include "toolpath/event_log.h"
 
 namespace beltgrinding::python {
 

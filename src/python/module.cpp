@@ -4,10 +4,10 @@
 #include <embree3/rtcore_config.h>
 #endif
 
-#include "base/run_context.h"
+#include "arrays.h"
 #include "base/threads.h"
+#include "beltgrinding/run_context.h"
 #include "heightfield/kdop_tree.h"
-#include "python/arrays.h"
 
 namespace beltgrinding::python {
 

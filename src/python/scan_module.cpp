@@ -1,6 +1,6 @@
 // The binding `beltgrinding_scan`: apart from the core, which must load where there is no PCL.
-#include "python/arrays.h"
-#include "scan/registration.h"
+#include "arrays.h"
+#include "beltgrinding/registration.h"
 
 namespace {
 

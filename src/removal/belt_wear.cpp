@@ -1,9 +1,9 @@
-#include "removal/belt_wear.h"
+#include "beltgrinding/belt_wear.h"
 
 #include <cmath>
 #include <sstream>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 

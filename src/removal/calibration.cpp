@@ -9,7 +9,7 @@
 #include <unsupported/Eigen/LevenbergMarquardt>
 #include <vector>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,8 +1,8 @@
-#include "removal/curve.h"
+#include "beltgrinding/curve.h"
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,10 +1,10 @@
-#include "removal/removal_law.h"
+#include "beltgrinding/removal_law.h"
 
 #include <cmath>
 #include <sstream>
 #include <utility>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

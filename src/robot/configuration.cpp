@@ -1,4 +1,4 @@
-#include "robot/configuration.h"
+#include "configuration.h"
 
 #include <algorithm>
 #include <cmath>

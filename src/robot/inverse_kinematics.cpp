@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/subproblem.h"
+#include "subproblem.h"
 
 namespace beltgrinding {
 namespace {

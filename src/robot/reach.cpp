@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "base/error.h"
-#include "robot/configuration.h"
+#include "beltgrinding/error.h"
+#include "configuration.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,4 +1,4 @@
-#include "robot/subproblem.h"
+#include "subproblem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/geometry.h"
+#include "beltgrinding/geometry.h"
 
 namespace beltgrinding {
 

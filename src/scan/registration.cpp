@@ -1,4 +1,4 @@
-#include "scan/registration.h"
+#include "beltgrinding/registration.h"
 
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_cloud.h>
@@ -12,8 +12,8 @@
 #include <limits>
 #include <numeric>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/pressing.h"
+#include "pressing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/contact_model.h"
+#include "beltgrinding/contact_model.h"
+#include "beltgrinding/simulation.h"
 #include "contact/gap_map.h"
 #include "heightfield/kdop_tree.h"
-#include "simulation/simulation.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "simulation/process_monitor.h"
+#include "process_monitor.h"
 
 #include <algorithm>
 #include <array>

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "simulation/pressing.h"
-#include "simulation/simulation.h"
-#include "toolpath/event_log.h"
+#include "beltgrinding/event_log.h"
+#include "beltgrinding/simulation.h"
+#include "pressing.h"
 
 namespace beltgrinding {
 

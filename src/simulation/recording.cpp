@@ -1,10 +1,10 @@
-#include "simulation/recording.h"
+#include "beltgrinding/recording.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

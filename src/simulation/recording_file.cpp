@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/recording.h"
 #include "heightfield/hdf5_io.h"
-#include "simulation/recording.h"
 
 namespace beltgrinding {
 

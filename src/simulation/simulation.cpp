@@ -1,15 +1,15 @@
-#include "simulation/simulation.h"
+#include "beltgrinding/simulation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "base/error.h"
 #include "base/stopwatch.h"
+#include "beltgrinding/error.h"
 #include "heightfield/kdop_tree.h"
-#include "simulation/pressing.h"
-#include "simulation/process_monitor.h"
-#include "simulation/trace_keeper.h"
+#include "pressing.h"
+#include "process_monitor.h"
+#include "trace_keeper.h"
 
 namespace beltgrinding {
 namespace {

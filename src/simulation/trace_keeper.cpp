@@ -1,6 +1,6 @@
-#include "simulation/trace_keeper.h"
+#include "trace_keeper.h"
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "beltgrinding/height_field.h"
 #include "contact/gap_map.h"
-#include "heightfield/height_field.h"
 
 namespace beltgrinding {
 

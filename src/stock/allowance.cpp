@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "base/error.h"
-#include "stock/stock.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/stock.h"
 
 namespace beltgrinding {
 

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "stock/ray_scene.h"
-#include "stock/stock.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/stock.h"
+#include "rays/ray_scene.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,11 +1,11 @@
-#include "toolpath/motion_plan.h"
+#include "beltgrinding/motion_plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,4 +1,4 @@
-#include "toolpath/path_pose.h"
+#include "beltgrinding/path_pose.h"
 
 namespace beltgrinding {
 

@@ -1,4 +1,4 @@
-#include "toolpath/speed_profile.h"
+#include "beltgrinding/speed_profile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "toolpath/tool_path.h"
+#include "beltgrinding/tool_path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "brep/shape.h"
+#include "beltgrinding/shape.h"
 
 namespace {
 

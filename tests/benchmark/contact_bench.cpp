@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <memory>
 
-#include "contact/contact_solver.h"
 #include "contact/half_space.h"
 #include "contact/wheel_rim.h"
+#include "contact_solver.h"
 
 namespace beltgrinding {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "inspection/thickness.h"
-#include "inspection/verdict.h"
+#include "beltgrinding/verdict.h"
 #include "inspection/waviness.h"
 #include "support/synthetic_field.h"
+#include "thickness/thickness.h"
 
 namespace beltgrinding {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <ctime>
 
+#include "beltgrinding/simulation.h"
 #include "contact/wheel_rim.h"
-#include "simulation/simulation.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "stock/stock.h"
+#include "beltgrinding/stock.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "toolpath/tool_path.h"
+#include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,6 +1,6 @@
 """Calibration of the removal law from a table of measured grinds (docs/calibration.md).
 
-The parameters' robust least squares are in C++ (src/removal/calibration.h); here the data choose
+The parameters' robust least squares are in C++ (src/removal, calibration.h); here the data choose
 which parameters are free, and the result becomes a job's law and a report.
 """
 

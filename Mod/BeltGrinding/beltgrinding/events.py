@@ -1,6 +1,6 @@
 """Events of a run: what goes wrong on the way, with stable codes. docs/events.md is their manual.
 
-The kinds stand in the core (src/toolpath/event_kinds.cpp); events.schema.json is the form.
+The kinds stand in the core (src/events/event_kinds.cpp); events.schema.json is the form.
 """
 
 from . import core, schemas

@@ -99,7 +99,7 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
     tried, for a scan of the whole part without clutter; None: as it lies. fixed: names of
     ``FREEDOMS`` that keep the start. max_distance_mm: scan points farther from the datum are not of
     it (default: a twentieth of the datum's size). Trimmed point-to-plane ICP
-    (src/scan/registration.h). Raises InputError.
+    (src/scan, registration.h). Raises InputError.
     """
     module = extension()
     for name in fixed:

@@ -1,4 +1,4 @@
-#include "brep/crash_guard.h"
+#include "crash_guard.h"
 
 #include <gtest/gtest.h>
 

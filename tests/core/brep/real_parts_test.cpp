@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support.h"
 
 namespace beltgrinding {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support.h"
 
 namespace beltgrinding {

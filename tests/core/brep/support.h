@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "brep/shape.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/shape.h"
+#include "shape_impl.h"
 
 namespace beltgrinding::test {
 

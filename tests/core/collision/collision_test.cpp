@@ -9,9 +9,9 @@
 #include <ctime>
 #include <thread>
 
-#include "base/error.h"
 #include "base/threads.h"
-#include "collision/collision_mesh.h"
+#include "beltgrinding/error.h"
+#include "collision_mesh.h"
 
 namespace beltgrinding {
 namespace {

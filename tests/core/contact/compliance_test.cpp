@@ -11,11 +11,11 @@
 #include <numbers>
 #include <random>
 
-#include "base/error.h"
-#include "contact/contact_solver.h"
+#include "beltgrinding/error.h"
 #include "contact/half_space.h"
 #include "contact/single_contact.h"
 #include "contact/wheel_rim.h"
+#include "contact_solver.h"
 
 namespace beltgrinding {
 namespace {

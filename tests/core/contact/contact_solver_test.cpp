@@ -1,4 +1,4 @@
-#include "contact/contact_solver.h"
+#include "contact_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "base/error.h"
-#include "contact/contact_wheel.h"
+#include "beltgrinding/contact_wheel.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

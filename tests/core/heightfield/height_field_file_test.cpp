@@ -7,8 +7,8 @@
 #include <iterator>
 #include <random>
 
-#include "base/error.h"
-#include "heightfield/height_field.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/height_field.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

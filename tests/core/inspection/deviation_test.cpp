@@ -1,4 +1,4 @@
-#include "inspection/deviation.h"
+#include "beltgrinding/deviation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -20,8 +20,8 @@
 #include <functional>
 #include <numbers>
 
-#include "base/error.h"
-#include "brep/shape_impl.h"
+#include "beltgrinding/error.h"
+#include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

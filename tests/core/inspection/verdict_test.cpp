@@ -1,4 +1,4 @@
-#include "inspection/verdict.h"
+#include "beltgrinding/verdict.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

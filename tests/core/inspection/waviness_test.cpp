@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
 #include "base/threads.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "base/error.h"
-#include "removal/removal_law.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/removal_law.h"
 
 namespace beltgrinding {
 namespace {

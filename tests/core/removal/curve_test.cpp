@@ -1,11 +1,11 @@
-#include "removal/curve.h"
+#include "beltgrinding/curve.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.h"
-#include "removal/belt_wear.h"
+#include "beltgrinding/belt_wear.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

@@ -1,10 +1,10 @@
-#include "removal/removal_law.h"
+#include "beltgrinding/removal_law.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

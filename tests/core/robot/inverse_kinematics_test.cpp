@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "robot/arms.h"
-#include "robot/subproblem.h"
+#include "subproblem.h"
 
 namespace beltgrinding {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "robot/arms.h"
 #include "robot/inverse_kinematics.h"
 

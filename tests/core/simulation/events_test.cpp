@@ -6,10 +6,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "base/error.h"
 #include "base/threads.h"
-#include "contact/compliance.h"
-#include "simulation/simulation.h"
+#include "beltgrinding/compliance.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/simulation.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -1,4 +1,4 @@
-#include "simulation/recording.h"
+#include "beltgrinding/recording.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <fstream>
 #include <random>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/simulation.h"
 #include "contact/wheel_rim.h"
-#include "simulation/simulation.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -1,4 +1,4 @@
-#include "simulation/simulation.h"
+#include "beltgrinding/simulation.h"
 #include "contact/wheel_rim.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <thread>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

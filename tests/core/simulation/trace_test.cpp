@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 
-#include "base/error.h"
 #include "base/threads.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/simulation.h"
 #include "contact/regression.h"
 #include "contact/wheel_rim.h"
-#include "simulation/simulation.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

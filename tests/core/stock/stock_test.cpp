@@ -1,4 +1,4 @@
-#include "stock/stock.h"
+#include "beltgrinding/stock.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,8 @@
 #include <fstream>
 #include <map>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/mesh_reader.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

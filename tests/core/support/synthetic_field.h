@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "heightfield/height_field.h"
+#include "beltgrinding/height_field.h"
 
 namespace beltgrinding::testing {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "base/error.h"
-#include "toolpath/tool_path.h"
+#include "beltgrinding/error.h"
+#include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 namespace {

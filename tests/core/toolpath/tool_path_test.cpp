@@ -1,11 +1,11 @@
-#include "toolpath/tool_path.h"
+#include "beltgrinding/tool_path.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {

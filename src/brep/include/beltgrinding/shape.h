@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/geometry.h"
+#include "beltgrinding/height_field.h"
+#include "beltgrinding/run_context.h"
+
+namespace beltgrinding {
+
+/// A boundary representation. Values are cheap to copy (they share OpenCASCADE's data) and never
+/// change. Lengths in mm, frame: work. Faces are numbered from 0 in the order of
+/// `TopExp::MapShapes(FACE)`, which is FreeCAD's `Face1`, `Face2`, ... less one.
+class Shape {
+  public:
+    struct Impl;
+
+    /// Reads STEP (.step .stp), IGES (.iges .igs) or BREP (.brep .brp). Throws InputError naming
+    /// the file: missing, unreadable, null shape, no faces.
+    static Shape read(const std::string& path);
+    /// Reads the text that `BRepTools::Write` and FreeCAD's `exportBrepToString` make.
+    /// `name` stands for the shape in messages.
+    static Shape from_brep(const std::string& text, const std::string& name = "shape");
+    /// The text that `from_brep` reads, without triangulation.
+    std::string write_brep() const;
+    std::size_t face_count() const;
+    /// True if the face bounds a solid (its normal then points out of it); else it is loose.
+    bool bounds_solid(std::size_t face) const;
+    /// Area by Gauss integration, mm2.
+    double face_area(std::size_t face) const;
+    /// Name of the face's surface type ("plane", "bspline", ...).
+    std::string surface_type(std::size_t face) const;
+    /// Tight extents of the triangulated shape (not the pole box), mm.
+    Box extents() const;
+    /// By OpenCASCADE's check. Its mesher may not end on the faults of a shape that is not.
+    bool valid() const;
+    /// Things the user should know: not valid, open shell, extents beyond 10 m or below 0.1 mm
+    /// (a unit mistake), zero-area faces. Each is one sentence that names the face.
+    std::vector<std::string> warnings() const;
+
+    const Impl& impl() const { return *impl_; }
+    /// For this room: a shape around OpenCASCADE's data.
+    explicit Shape(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+
+  private:
+    std::shared_ptr<const Impl> impl_;
+};
+
+struct SamplingOptions {
+    double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions
+    bool flip_normals = false;  ///< for loose faces: reverse their normals
+    double depth = 1.0;         ///< mm, HeightField::depth
+    std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of the machine's memory
+    bool parameters = false;    ///< fill SamplingReport::parameters
+};
+
+/// What sampling found besides the field.
+struct SamplingReport {
+    std::vector<double> face_area;      ///< mm2, exact area of each sampled face, in `faces` order
+    std::vector<std::string> warnings;  ///< one sentence each, naming the face (from 1)
+    /// u, v of every sample on its face's surface, if asked for. A sample on a seam has those of
+    /// one side, a pole (SampleFlag kDegenerate) those of one of its nodes.
+    std::vector<std::array<double, 2>> parameters;
+    /// Period in u and v of each sampled face's surface; 0 where it is not closed.
+    std::vector<std::array<double, 2>> period;
+};
+
+/// Samples `faces` (from 0; all faces if empty) of `shape` as a height field of zero heights, in
+/// parallel. Grid spacing is `options.spacing` within 10 % in both surface directions wherever the
+/// parametrisation allows; samples lie on the trimming edges; areas sum to each face's area within
+/// 0.1 %. Throws InputError naming the face (from 1) or the spacing.
+HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
+                         const SamplingOptions& options, const RunContext& context = {},
+                         SamplingReport* report = nullptr);
+
+/// Triangulates `faces` (from 0; the whole shape if empty) to a chord error of `deflection` mm;
+/// outward orientation. Throws InputError naming the face that does not exist.
+TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context = {},
+                         const std::vector<std::size_t>& faces = {});
+
+/// A faceted shell of planar faces from a mesh that came without a B-rep (an STL design), sewn,
+/// optionally merging coplanar neighbours. Throws InputError for a mesh without a sound triangle.
+Shape shape_from_mesh(const TriangleMesh& mesh);
+
+}  // namespace beltgrinding

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/event_log.h"
+#include "beltgrinding/run_context.h"
+#include "beltgrinding/tool_path.h"
+
+namespace beltgrinding {
+
+/// What a body of the cell goes with; its mesh is in that frame's coordinates.
+enum class Carrier {
+    kBase,   ///< it stands still in the cell; the frame of the program's poses
+    kTool,   ///< the robot's tool frame: gripper, tool
+    kWheel,  ///< the contact frame: housing
+    kPart    ///< the work frame: part, fixture
+};
+
+struct CollisionBody {
+    std::string name;
+    Carrier carrier = Carrier::kBase;
+    TriangleMesh mesh;    ///< mm
+    double margin = 0.0;  ///< mm by which the body is thicker than its mesh (stock on a part)
+};
+
+struct CollisionOptions {
+    double clearance = 2.0;    ///< mm; nearer is an event
+    double resolution = 0.05;  ///< mm; bodies that touch by a shorter way may be missed
+};
+
+/// How near two bodies come that move against each other.
+struct PairClearance {
+    std::size_t first = 0, second = 0;  ///< numbers of the bodies; the first stands still
+    double distance = 0.0;              ///< mm; 0: they touch
+    std::uint32_t pose = 0;             ///< that the motion leads to, from 0
+    double time = 0.0;                  ///< s since the program's begin
+    Vec3 on_first = Vec3::Zero();       ///< nearest point, work frame, mm
+    Vec3 on_second = Vec3::Zero();
+};
+
+struct CollisionResult {
+    std::vector<Event> events;         ///< collision, near_miss; in order of time
+    std::vector<PairClearance> pairs;  ///< every pair that moves against each other
+};
+
+/// Follows the bodies along the path, rapid motions too, as the path goes between its poses (a
+/// straight line in the program's frame, as the controller's own joint interpolation is not known).
+///
+/// Continuous: between two moments the distance can change by no more than a bound of the motion,
+/// the way of the tool's origin plus its turn times the body's reach (conservative advancement,
+/// Mirtich 1996; Zhang, Lee, Kim: Interactive continuous collision detection for non-convex
+/// polyhedra, 2006). A stretch is halved until that bound proves it clear or it is shorter than the
+/// resolution, so no motion is too fast. The least distance of a pair is within the resolution if
+/// it is below the clearance; beyond, a quarter of it is proved, and mostly it is exact.
+///
+/// Results do not depend on the number of threads. Throws InputError (no mesh, bad options) and
+/// Cancelled.
+CollisionResult check_collisions(const ToolPath& path, const std::vector<CollisionBody>& bodies,
+                                 const CollisionOptions& options, const RunContext& context = {});
+
+}  // namespace beltgrinding

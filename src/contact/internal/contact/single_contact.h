@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+
+#include "beltgrinding/contact_model.h"
+#include "beltgrinding/contact_wheel.h"
+
+namespace beltgrinding {
+
+/// An analytic rigid workpiece that the wheel meets at the origin of the contact frame (x along the
+/// feed, y along the wheel's axis, z into the workpiece).
+struct Workpiece {
+    enum class Shape { kPlane, kCylinder, kSphere, kStrip };
+    Shape shape = Shape::kPlane;
+    double radius = 50.0;     ///< mm, of cylinder or sphere; negative: concave
+    double width = 10.0;      ///< mm, of the strip
+    double axis_angle = 0.0;  ///< rad, of cylinder and strip about z; 0: along x
+
+    /// Depth of the surface, mm (z), at (x, y); +inf where there is none.
+    double depth(double x, double y) const;
+    /// Throws InputError for dimensions that are none.
+    void validate() const;
+};
+
+struct SingleContact {
+    ContactWheel wheel;
+    Workpiece workpiece;
+    double spacing = 0.5;  ///< mm, wanted cell; across the wheel adjusted to divide its width
+    bool force_control = true;
+    double force = 50.0;      ///< N
+    double approach = 0.0;    ///< mm, of the wheel's centre along z from first touch
+    double tolerance = 1e-4;  ///< relative error of the pressure field, L1
+};
+
+struct SingleContactResult {
+    ContactGrid grid;          ///< long enough for the whole footprint
+    ContactSolution solution;  ///< `approach` from first touch, mm; all iterations
+    Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where it stands; +inf: nothing there
+    Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
+    double time = 0.0;         ///< s of all solves, without setting up the model
+};
+
+/// Presses a wheel on a workpiece. The gap is radial from the wheel where it stands when pressed:
+/// the wheel is placed anew until what the solution asks of it beyond that is negligible. The grid
+/// grows until the footprint does not reach its ends. Throws InputError.
+SingleContactResult press(const SingleContact& contact, ContactModel& model);
+
+/// Stiffness (MPa/mm) of the elastic foundation that meets a plane under `force` (N) at the same
+/// approach as `model` does. Its patch is still another: see docs/methods.md. `softest`: MPa/mm,
+/// below what `model` can have; the grid is made to hold the contact of such a foundation.
+double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force,
+                            double softest);
+
+}  // namespace beltgrinding

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/contact_model.h"
+#include "contact/regression.h"
+
+namespace beltgrinding {
+
+/// How a contact is shown to the regression. Around a cell: the interference (approach - gap) over
+/// the greatest one, clipped from below, as means over 3 x 3 boxes whose size doubles from `cell`
+/// until it reaches the rim's thickness; then the distances to the wheel's two side faces.
+struct ContactFeatures {
+    double cell = 1.0;            ///< mm, side of the smallest boxes
+    double rim_thickness = 15.0;  ///< mm
+
+    int levels() const;
+    /// Number of features of a cell.
+    int size() const;
+    /// Cells that may bear pressure: where the interference is not far below zero.
+    std::vector<int> candidates(const ContactProblem& problem, double approach) const;
+    /// (size(), cells.size()); `approach` must exceed the smallest gap.
+    Eigen::MatrixXf of(const ContactProblem& problem, double approach,
+                       const std::vector<int>& cells) const;
+};
+
+/// The pressure predicted by support-vector regression from solved contacts, after Zhang,
+/// Kuhlenkötter and Kneupner, An efficient method for solving the Signorini problem in the
+/// simulation of free-form surfaces produced by belt grinding, Int. J. Machine Tools & Manufacture
+/// 45 (2005). It holds for the wheel and the kind of contacts that it was trained on.
+///
+/// The contact is homogeneous: gap and approach n times as large give n times the pressure. So the
+/// regression learns pressure over greatest interference (MPa/mm). The approach that gives the
+/// commanded force is searched for.
+class Surrogate final : public ContactModel {
+  public:
+    /// `name`: for the report. Throws InputError if the regression does not fit the features.
+    Surrogate(ContactFeatures features, TrainedRegression regression, std::string name);
+
+    void set_grid(const ContactGrid&) override {}
+    /// `iterations` counts predictions.
+    ContactSolution solve(const ContactProblem& problem,
+                          const Eigen::ArrayXd* start = nullptr) const override;
+    std::string describe() const override { return name_; }
+
+  private:
+    Eigen::ArrayXd predict(const ContactProblem& problem, double approach) const;
+
+    ContactFeatures features_;
+    TrainedRegression regression_;
+    std::string name_;
+};
+
+}  // namespace beltgrinding

@@ -1,0 +1,45 @@
+#include "beltgrinding/event_log.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace beltgrinding {
+
+Event* EventLog::note(const std::string& code, std::size_t index, const PathStep& step,
+                      double value, int part, double badness) {
+    const EventKind& kind = event_kind(code);
+    if (std::isnan(badness)) badness = kind.larger_is_worse ? value : -value;
+    const auto found = open_.find({code, part});
+    if (found != open_.end() && index <= found->second.last_step + pause_) {
+        Event& event = events_[found->second.event];
+        event.duration = step.time + 0.5 * step.duration - event.time;
+        found->second.last_step = index;
+        if (!(badness > found->second.badness)) return nullptr;
+        found->second.badness = badness;
+        event.value = value;
+        event.worst_time = step.time;
+        return &event;
+    }
+    Event event;
+    event.kind = kind.code;
+    event.severity = kind.severity;
+    event.unit = kind.unit;
+    event.pose = step.pose;
+    event.line = path_.poses()[step.pose].line;
+    event.time = step.time - 0.5 * step.duration;
+    event.duration = step.duration;
+    event.worst_time = step.time;
+    event.value = value;
+    open_[{code, part}] = {events_.size(), index, badness};
+    events_.push_back(event);
+    return &events_.back();
+}
+
+std::vector<Event> EventLog::take() {
+    std::stable_sort(events_.begin(), events_.end(),
+                     [](const Event& a, const Event& b) { return a.time < b.time; });
+    open_.clear();
+    return std::move(events_);
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/geometry.h"
+
+namespace beltgrinding {
+
+/// Bits of `HeightField::flags`.
+enum SampleFlag : std::uint8_t {
+    kOnBoundary = 1,  ///< lies on a trimming edge of its face
+    kMissed = 2,      ///< the normal ray met no stock within the search distance; height is 0
+    kDefective = 4,   ///< the stock lies below the design surface here
+    kDegenerate = 8,  ///< the surface has no normal here (pole); a neighbouring one is used
+};
+
+/// Which motions removed from each sample. A *motion* is that to a programmed pose, numbered from 0
+/// through all programs of a job in order: the pose's number plus those of the programs before.
+/// All arrays have one value per sample, or are empty: then nothing is known.
+struct RemovalTrace {
+    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no motion removed from the sample
+
+    std::vector<std::uint32_t> first;     ///< motion that removed first, or kNever
+    std::vector<std::uint32_t> last;      ///< motion that removed last, or kNever
+    std::vector<std::uint32_t> dominant;  ///< motion that removed most (the first such), or kNever
+    std::vector<float> dominant_depth;    ///< mm along the normal that the dominant one removed
+    std::vector<float> peak_pressure;     ///< MPa, largest that the sample saw; 0: none
+
+    bool empty() const { return first.empty(); }
+    /// Makes room for n samples that nothing has touched yet.
+    void reset(std::size_t n);
+    void clear() { *this = {}; }
+    /// Whether the wheel ever touched sample i, even without removing anything.
+    bool touched(std::size_t i) const { return peak_pressure[i] > 0.0F || first[i] != kNever; }
+    /// Bytes held by all arrays.
+    std::size_t bytes() const;
+};
+
+/// The discrete height field: samples of the design surface, each with the segment of its normal
+/// ray that is still material, as a structure of arrays. Frame: work (the part's own). Lengths in
+/// mm.
+///
+/// `height` is signed along `normal` from `point`: + is excess stock, - is a gouge. It only ever
+/// decreases during a simulation. The segment of sample i reaches from `-depth` to `height[i]`.
+///
+/// Ren, Kuhlenkoetter, Mueller: Simulation and verification of belt grinding with industrial robots
+/// (Int. J. Machine Tools & Manufacture 46, 2006), section 3.
+struct HeightField {
+    std::vector<Vec3> point;          ///< on the design surface, mm
+    std::vector<Vec3f> normal;        ///< unit, out of the solid
+    std::vector<float> area;          ///< design area that the sample stands for, mm2
+    std::vector<float> stock_height;  ///< height before grinding, mm
+    std::vector<double> height;       ///< current height, mm (double: it sums many tiny removals)
+    std::vector<std::uint32_t> face;  ///< index of the sample's face in the shape, from 0
+    std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
+    std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
+    std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
+    RemovalTrace trace;               ///< what the simulation did where; empty: not known
+    std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
+    double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
+    double depth = 1.0;               ///< how far below the design surface a segment begins, mm
+
+    std::size_t size() const { return point.size(); }
+    /// Current top of segment i, mm, work frame.
+    Vec3 top(std::size_t i) const { return point[i] + height[i] * normal[i].cast<double>(); }
+    /// Makes room for n samples: heights, flags and areas 0.
+    void resize(std::size_t n);
+    /// Bytes held by all arrays.
+    std::size_t bytes() const;
+};
+
+/// Writes all arrays and `attributes` (a JSON text, may be empty) to an HDF5 file, atomically: a
+/// failed write leaves an older file of that name as it was. Throws InputError naming the path.
+void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes);
+
+/// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for
+/// any file that is not a sound height field (wrong lengths, indices out of range, no HDF5).
+HeightField read_hdf5(const std::string& path, std::string* attributes = nullptr);
+
+}  // namespace beltgrinding

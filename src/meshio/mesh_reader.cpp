@@ -1,0 +1,92 @@
+#include "beltgrinding/mesh_reader.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "beltgrinding/error.h"
+
+namespace beltgrinding {
+namespace {
+
+RawMesh read_by_assimp(const std::string& path) {
+    Assimp::Importer importer;
+    const aiScene* scene = nullptr;
+    try {
+        importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                                    aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+        // JoinIdenticalVertices compares all attributes: without normals and colours it welds.
+        importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                                    aiComponent_NORMALS | aiComponent_COLORS |
+                                        aiComponent_TEXCOORDS |
+                                        aiComponent_TANGENTS_AND_BITANGENTS);
+        scene = importer.ReadFile(
+            path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType |
+                      aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
+    } catch (const std::exception& error) {
+        throw InputError(path + ": cannot be read as a mesh: " + error.what());
+    }
+    if (scene == nullptr) {
+        throw InputError(path + ": cannot be read as a mesh: " + importer.GetErrorString());
+    }
+    RawMesh mesh;
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+        const aiMesh& part = *scene->mMeshes[m];
+        const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (unsigned v = 0; v < part.mNumVertices; ++v) {
+            mesh.vertices.emplace_back(part.mVertices[v].x, part.mVertices[v].y,
+                                       part.mVertices[v].z);
+        }
+        for (unsigned f = 0; f < part.mNumFaces; ++f) {
+            const aiFace& face = part.mFaces[f];
+            if (face.mNumIndices != 3) continue;
+            Triangle t{};
+            for (unsigned k = 0; k < 3; ++k) {
+                if (face.mIndices[k] >= part.mNumVertices) {
+                    throw InputError(path + ": triangle " + std::to_string(f) +
+                                     " names a vertex that is not there");
+                }
+                t[k] = base + face.mIndices[k];
+            }
+            mesh.triangles.push_back(t);
+        }
+    }
+    return mesh;
+}
+
+bool is_ply(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    char magic[3] = {};
+    return file.read(magic, 3) && std::string_view(magic, 3) == "ply";
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::string& path, double unit_mm, const Frame& work_from_mesh) {
+    if (!std::isfinite(unit_mm) || unit_mm <= 0.0) {
+        throw InputError(path + ": the unit of the mesh must be a positive number of millimetres");
+    }
+    if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": there is no such file");
+    const bool ply = std::filesystem::path(path).extension() == ".ply" || is_ply(path);
+    RawMesh raw = ply ? read_ply(path) : read_by_assimp(path);
+    if (raw.triangles.empty()) throw InputError(path + ": the mesh has no triangle");
+    TriangleMesh mesh;
+    mesh.triangles = std::move(raw.triangles);
+    mesh.vertices.reserve(raw.vertices.size());
+    for (const Vec3& vertex : raw.vertices) {
+        const auto moved = Vec3(work_from_mesh * Vec3(unit_mm * vertex)).cast<float>().eval();
+        if (!moved.allFinite()) {
+            throw InputError(path + ": vertex " + std::to_string(mesh.vertices.size()) +
+                             " is not finite");
+        }
+        mesh.vertices.push_back(moved);
+    }
+    return mesh;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "beltgrinding/geometry.h"
+#include "beltgrinding/run_context.h"
+
+namespace beltgrinding {
+
+/// Triangles with colours, to be drawn. Frame: any, the same for all surfaces of a picture; mm.
+struct ColouredSurface {
+    std::vector<Vec3> vertices;          ///< mm
+    std::vector<Triangle> triangles;     ///< of vertices; either side may face the camera
+    std::vector<Vec3f> normals;          ///< unit, one a vertex, for the light; empty: the facets'
+    std::vector<std::uint32_t> colours;  ///< 0xRRGGBBAA (alpha unused), one a vertex or one for all
+};
+
+/// An orthographic camera, in the surfaces' frame.
+struct Camera {
+    Vec3 target = Vec3::Zero();      ///< mm, in the middle of the picture
+    Vec3 direction{0.0, 0.0, -1.0};  ///< in which one looks
+    Vec3 up{0.0, 1.0, 0.0};          ///< what points up in the picture; not along `direction`
+    double height = 100.0;           ///< mm from the picture's lower to its upper border
+    /// mm before the target's plane from which on things are seen: what stands in front is cut
+    /// away.
+    double near = std::numeric_limits<double>::infinity();
+};
+
+/// Rows from the top, pixels from the left.
+struct Picture {
+    std::size_t width = 0, height = 0;  ///< pixels
+    std::vector<std::uint8_t> rgb;      ///< three bytes a pixel, sRGB
+    std::vector<float> depth;  ///< mm beyond the target's plane in the pixel's middle; NaN: nothing
+};
+
+/// Pictures of surfaces by ray casting (Embree), without a display: two-sided Lambert light from
+/// the camera's upper left with an ambient share, four rays a pixel, outlines drawn where the depth
+/// jumps or the surface has a crease. The pixels do not depend on the number of threads.
+class Renderer {
+  public:
+    /// Throws InputError for a vertex that is not finite, an index or a number of colours or
+    /// normals that does not fit, or nothing to be drawn.
+    explicit Renderer(std::vector<ColouredSurface> surfaces, const RunContext& context = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Extents of all vertices, mm.
+    const Box& extents() const;
+
+    /// Draws `width` x `height` pixels on white. Throws InputError for a camera whose vectors span
+    /// no picture, or a size of none or beyond 8192 pixels.
+    Picture render(const Camera& camera, std::size_t width, std::size_t height,
+                   const RunContext& context = {}) const;
+
+  private:
+    struct Scene;
+    std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace beltgrinding

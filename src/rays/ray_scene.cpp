@@ -1,0 +1,89 @@
+#include "rays/ray_scene.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <cstring>
+
+#include "beltgrinding/error.h"
+
+namespace beltgrinding {
+namespace {
+
+struct DeviceDeleter {
+    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+};
+
+}  // namespace
+
+struct RayScene::Impl {
+    std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
+    std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+};
+
+RayScene::RayScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+    impl_->device.reset(rtcNewDevice("threads=0"));
+    if (!impl_->device)
+        throw InputError("Embree could not be started; is the processor without SSE2?");
+    impl_->scene.reset(rtcNewScene(impl_->device.get()));
+    RTCScene scene = impl_->scene.get();
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    RTCGeometry geometry = rtcNewGeometry(impl_->device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(Vec3f), mesh.vertices.size());
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            sizeof(Triangle), mesh.triangles.size());
+    if (vertices == nullptr || indices == nullptr) {
+        rtcReleaseGeometry(geometry);
+        throw InputError("the mesh does not fit in memory");
+    }
+    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+}
+
+RayScene::~RayScene() = default;
+
+RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float near,
+                              float far) const {
+    RTCRayHit ray{};
+    ray.ray.org_x = origin.x();
+    ray.ray.org_y = origin.y();
+    ray.ray.org_z = origin.z();
+    ray.ray.dir_x = direction.x();
+    ray.ray.dir_y = direction.y();
+    ray.ray.dir_z = direction.z();
+    ray.ray.tnear = near;
+    ray.ray.tfar = far;
+    ray.ray.mask = ~0U;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect1(impl_->scene.get(), &ray, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect1(impl_->scene.get(), &context, &ray);
+#endif
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+    const float along = normal.dot(direction);
+    const float length = normal.norm() * direction.norm();
+    const float cosine = length > 0.0F ? std::abs(along) / length : 0.0F;
+    return {ray.ray.tfar, along > 0.0F, cosine, ray.hit.primID, ray.hit.u, ray.hit.v};
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "beltgrinding/curve.h"
+
+namespace beltgrinding {
+
+/// What a belt has done so far.
+struct BeltState {
+    double work = 0.0;    ///< J, normal force times belt speed, over time
+    double volume = 0.0;  ///< mm3, removed
+    double time = 0.0;    ///< s, in contact
+
+    /// Throws InputError unless all are zero or positive.
+    void validate() const;
+};
+
+/// How a belt's cut falls with use: k_t, the share of a fresh belt's cut that remains, by the work
+/// or the volume W. It is exponential in them, faster at first (see docs/methods.md for sources).
+class BeltWear {
+  public:
+    enum class Model { kNone, kExponential, kTwoStage, kCurve };
+    enum class Variable { kWork, kVolume };
+    struct Parameters {
+        Model model = Model::kNone;
+        Variable variable = Variable::kWork;
+        double scale = 1e6;        ///< J or mm3 in which the wearing share falls to 1/e
+        double rest = 0.0;         ///< share of the cut that stays
+        double first_share = 0.0;  ///< two-stage: share that goes at first
+        double first_scale = 1e5;  ///< J or mm3, of it
+        Curve curve;               ///< share over J or mm3
+    };
+
+    BeltWear() = default;
+    /// Throws InputError for parameters that are none.
+    explicit BeltWear(Parameters parameters);
+
+    /// k_t of a belt in the state. Exponential: rest + (1 - rest) exp(-W/scale); two-stage: rest +
+    /// first_share exp(-W/first_scale) + (1 - rest - first_share) exp(-W/scale).
+    double remaining(const BeltState& state) const;
+    /// False where the belt has done more than a curve's measurements.
+    bool measured(const BeltState& state) const;
+    std::string describe() const;
+
+  private:
+    double variable(const BeltState& state) const;
+    Parameters parameters_;
+};
+
+}  // namespace beltgrinding

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/height_field.h"
+
+namespace beltgrinding {
+
+/// Blocks of changed samples with their new heights. Neighbouring samples make a run, so that a
+/// change costs little more than the four bytes of its height.
+class ChangeLog {
+  public:
+    struct Run {
+        std::uint32_t first;  ///< sample
+        std::uint32_t count;
+    };
+    std::size_t blocks() const { return ends_.size(); }
+    std::size_t changes() const { return height_.size(); }
+    std::size_t changes(std::size_t block) const { return end(block).height - begin(block).height; }
+    std::size_t bytes() const;
+    void shrink_to_fit();
+    /// Appends a block: samples in ascending order, and the heights of these.
+    void append(std::span<const std::uint32_t> samples, std::span<const float> heights);
+    /// Calls visit(sample, height) for the changes of a block, in ascending order.
+    template <class Visit>
+    void visit(std::size_t block, Visit&& visit) const {
+        std::size_t h = begin(block).height;
+        for (std::size_t r = begin(block).run; r < ends_[block].run; ++r) {
+            for (std::uint32_t k = 0; k < runs_[r].count; ++k) {
+                visit(runs_[r].first + k, height_[h++]);
+            }
+        }
+    }
+
+  private:
+    friend struct RecordingFile;
+    struct End {
+        std::size_t run = 0, height = 0;
+    };
+    End begin(std::size_t block) const { return block == 0 ? End{} : ends_[block - 1]; }
+    End end(std::size_t block) const { return ends_[block]; }
+
+    std::vector<Run> runs_;
+    std::vector<float> height_;
+    std::vector<End> ends_;
+};
+
+/// What a simulation did to the heights, step by step, to be played forwards and backwards. It
+/// keeps the samples that changed, never whole fields: *frame* k is the state after the k-th block
+/// of steps, frame 0 the state before all. A *key frame* is the sum of all frames since the last
+/// key frame, so that any frame is reached from the start by few passes over the samples.
+///
+/// Bounded memory: when the frames hold more than `max_bytes`, each two become one, and from then
+/// on a frame holds twice as many steps. Heights are float32, mm: what the field shows, not what
+/// the next step would need.
+class Recording {
+  public:
+    static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+
+    /// `max_bytes`: of the frames; the key frames come on top, and the start's heights.
+    explicit Recording(std::size_t max_bytes = kMaxBytes);
+
+    /// Begins a path of `duration` s at the end of the ones before: their time goes on. Throws
+    /// InputError if the field has not the samples of the path before.
+    void begin(const HeightField& field, double duration);
+    /// Adds a step that ends at `time` s since its path's begin; `changed` ascending.
+    void add_step(const HeightField& field, std::span<const std::uint32_t> changed, double time);
+    /// Ends the path.
+    void end(const HeightField& field);
+    /// Forgets all; `simulate` does so when it is cancelled or fails.
+    void clear();
+
+    std::size_t samples() const { return start_.size(); }
+    /// Number of the last frame.
+    std::size_t last() const { return log_.blocks(); }
+    std::size_t steps_per_frame() const { return stride_; }
+    /// s when the frames are reached, `last() + 1` values; 0 first.
+    const std::vector<double>& times() const { return times_; }
+    /// Steps done until the frames, as `times`.
+    const std::vector<std::uint32_t>& steps() const { return steps_; }
+    double duration() const { return duration_; }
+    /// The last frame that is reached at `time` s; 0 before the first.
+    std::size_t frame_at(double time) const;
+    std::size_t key_frames() const { return keys_.blocks(); }
+    std::size_t changes() const { return log_.changes(); }
+    /// Bytes held by all arrays.
+    std::size_t bytes() const;
+
+    /// Heights of all samples at a frame, mm. Throws InputError if there is no such frame.
+    std::vector<float> heights_at(std::size_t frame) const;
+    struct Changes {
+        std::vector<std::uint32_t> sample;  ///< ascending
+        std::vector<float> height;          ///< at the frame gone to, mm
+    };
+    /// The samples that may differ between two frames, in either order, with their heights at
+    /// `to`. Throws InputError if there is no such frame.
+    Changes advance(std::size_t from, std::size_t to) const;
+
+  private:
+    friend struct RecordingFile;
+    void close_frame(const HeightField& field);
+    void count_frame(std::size_t frame);
+    void close_key_frame(std::size_t frame);
+    void halve();
+    void check_frame(std::size_t frame) const;
+    template <class Visit>
+    void visit(std::size_t from, std::size_t to, Visit&& visit) const;
+
+    std::size_t max_bytes_;
+    std::vector<float> start_;
+    ChangeLog log_, keys_;
+    std::vector<std::uint32_t> key_end_;  // frame of each key frame
+    std::size_t open_changes_ = 0;        // since the last key frame
+    std::vector<double> times_;
+    std::vector<std::uint32_t> steps_;
+    std::size_t stride_ = 1;
+    double duration_ = 0.0, offset_ = 0.0;
+    // of the frame that is being filled
+    std::vector<std::uint32_t> pending_;
+    std::size_t pending_steps_ = 0, total_steps_ = 0;
+    double pending_time_ = 0.0;
+};
+
+/// Writes a recording and `attributes` (a JSON text, may be empty) to an HDF5 file, atomically.
+/// Throws InputError naming the path.
+void write_hdf5(const Recording& recording, const std::string& path, const std::string& attributes);
+
+/// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for
+/// any file that is no sound recording.
+Recording read_recording(const std::string& path, std::string* attributes = nullptr);
+
+}  // namespace beltgrinding

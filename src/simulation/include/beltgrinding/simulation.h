@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "beltgrinding/belt_wear.h"
+#include "beltgrinding/contact_model.h"
+#include "beltgrinding/contact_wheel.h"
+#include "beltgrinding/event_log.h"
+#include "beltgrinding/height_field.h"
+#include "beltgrinding/recording.h"
+#include "beltgrinding/removal_law.h"
+#include "beltgrinding/run_context.h"
+#include "beltgrinding/tool_path.h"
+
+namespace beltgrinding {
+
+/// One row of the time series.
+struct StepRecord {
+    double time = 0.0;  ///< s
+    std::uint32_t pose = 0;
+    float duration = 0.0f;       ///< s
+    float feed = 0.0f;           ///< mm/s, infeed speed of the contact point over the work
+    float force = 0.0f;          ///< N
+    float approach = 0.0f;       ///< mm, the wheel's way from the programmed pose along z
+    float contact_area = 0.0f;   ///< mm2
+    float peak_pressure = 0.0f;  ///< MPa
+    float removal_rate = 0.0f;   ///< mm3/s
+    std::uint32_t segments = 0;  ///< found by localisation
+};
+
+struct SimulationOptions {
+    ContactWheel wheel;
+    bool force_control = true;
+    double force = 50.0;           ///< N, where the path has none
+    double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
+    double robot_stiffness = 0.0;  ///< N/mm along z under position control; 0: rigid
+    double belt_speed = 20000.0;   ///< mm/s
+    double belt_wear = 1.0;        ///< k_t of the belt as it comes, a factor on `wear`
+    BeltWear wear;                 ///< how k_t falls with use
+    BeltState belt;                ///< what the belt has done before
+    double heat_limit = 0.0;       ///< MPa mm/s, largest p V_b without a risk of burning; 0: none
+    double pressure_limit = 0.0;   ///< MPa, beyond it is an event; 0: none
+    double orientation_jump = 0.0;  ///< rad between neighbouring poses at feed, an event; 0: none
+    double tilt_limit = 0.0;  ///< rad of the contact's centre round the rim, an event; 0: none
+    /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
+    std::vector<float> lower_limits = {};
+    /// The law, moved by one standard deviation along each direction in which it is uncertain.
+    std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws;
+    double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
+    double contact_tolerance = 1e-3;  ///< relative error of the pressure field
+    bool must_touch = true;           ///< a path that never touches the stock is an error
+    bool trace = true;                ///< keep `field.trace`; without, what it holds is dropped
+    std::uint32_t first_motion = 0;   ///< number of the motion to the path's first pose
+    SteppingOptions stepping;
+    Recording* recording = nullptr;  ///< goes on with this path; cleared on cancel or error
+};
+
+struct SimulationResult {
+    std::vector<Event> events;
+    std::vector<StepRecord> steps;
+    double process_time = 0.0;    ///< s, what the robot takes
+    double removed_volume = 0.0;  ///< mm3, taken from the field
+    BeltState belt;               ///< what the belt has done in the end
+    /// (samples, shifted laws): mm by which each shifted law would have removed more, at first
+    /// order (the pressures as they are). Independent: they add up as squares.
+    Eigen::ArrayXXd shifts;
+    double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
+    /// s of wall time by phase
+    double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0,
+           trace_s = 0, events_s = 0;
+};
+
+/// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
+/// `field.height` and `field.trace` change; a trace goes on with what is there. On cancel or error
+/// the field is left as it was before the call.
+/// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
+/// path, bad options) and Cancelled.
+SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
+                          const RemovalLaw& law, const SimulationOptions& options,
+                          const RunContext& context = {});
+
+/// The contact at one programmed pose, on the field as it is.
+struct PoseContact {
+    ContactGrid grid;
+    Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where `placed` says; +inf: nothing
+    Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
+    ContactSolution solution;  ///< its approach counts from `placed`
+    double placed = 0.0;       ///< mm along z from the programmed pose
+    double commanded = 0.0;    ///< N; what is missing to it lies beyond the travel
+};
+
+/// Presses the wheel at the pose number `pose` (from 0) without grinding. Throws InputError if the
+/// wheel does not touch there.
+PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
+                       ContactModel& model, const SimulationOptions& options);
+
+}  // namespace beltgrinding

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "beltgrinding/path_pose.h"
+#include "beltgrinding/speed_profile.h"
+
+namespace beltgrinding {
+
+/// How the robot's speed goes along the path.
+struct TimeLaw {
+    enum class Timing {
+        kConstantFeed,  ///< the programmed feed everywhere, sharp corners, zones without meaning
+        kTrapezoidal    ///< speeds up and slows down at the accelerations, rounds corners in zones
+    };
+    Timing timing = Timing::kConstantFeed;
+    double acceleration = 1200.0;       ///< mm/s2, along the path and across it in a zone
+    double angular_acceleration = 2.0;  ///< rad/s2
+    double rotation_speed = 3.5;        ///< rad/s, largest speed of reorientation
+    double default_zone = 1.0;          ///< mm, of poses whose zone is unknown
+
+    /// Throws InputError naming what is not positive (the zone: negative).
+    void validate() const;
+};
+
+/// The robot's motion under a trapezoidal time law: where it is and when.
+///
+/// In the zone of a pose (at most half of the way to its neighbours) the corner is a parabola:
+/// the quadratic Bezier curve over the zone's begin, the pose and the zone's end, with the
+/// orientation by the same construction on the sphere (Shoemake, SIGGRAPH 1985), so that
+/// velocity is continuous. It is run through evenly, as a linear segment with parabolic blend
+/// (Biagiotti, Melchiorri 2008): s counts along the programmed polygon, and with the directions u
+/// and v before and after the corner and the zone d the acceleration is s'^2 |v - u| / (2 d). Where
+/// it would exceed the limit, s' is lower; at the parabola's vertex that is speed^2 / radius <=
+/// acceleration. Along the path s' keeps to the feed, to the rotation speed and to both
+/// accelerations (see SpeedProfile); the limits along and across the path are held separately.
+///
+/// At zone 0, and between a motion and a pure rotation, the robot stands still. A pose of unknown
+/// zone beside a rapid motion has zone 0.
+class MotionPlan {
+  public:
+    MotionPlan() = default;
+    MotionPlan(const std::vector<PathPose>& poses, const TimeLaw& law);
+
+    /// s that the whole path takes.
+    double duration() const { return duration_; }
+    /// s that the motion to the pose number `pose` (from 1) takes, from half the corner at the
+    /// pose before to half the corner at the pose.
+    double duration(std::size_t pose) const { return motions_[pose].duration; }
+    /// s from the motion's begin to the share t in [0, 1] of its way.
+    double elapsed(std::size_t pose, double t) const;
+    /// mm/s at which s grows there (rad/s in a pure rotation). The robot's speed is the same, less
+    /// in a corner.
+    double speed(std::size_t pose, double t) const;
+    /// base_from_tcp there.
+    Frame frame(const std::vector<PathPose>& poses, std::size_t pose, double t) const;
+
+  private:
+    /// The motion to a pose; its way is `length`, of which `before` and `after` lie in corners.
+    struct Motion {
+        double length = 0.0;       ///< mm; rad in a pure rotation; 0: there is no motion
+        double before = 0.0;       ///< within the corner at its begin
+        double after = 0.0;        ///< within the corner at its end
+        double duration = 0.0;     ///< s
+        std::size_t stretch = 0;   ///< first one in the profile
+        std::size_t previous = 0;  ///< the motion before, 0: none
+        std::size_t next = 0;      ///< the motion after, 0: none
+        bool turning = false;      ///< a pure rotation
+    };
+    struct Place {
+        std::size_t stretch;
+        double length;
+    };
+    Place place(const Motion& motion, double t) const;
+    static Frame corner(const std::vector<PathPose>& poses, std::size_t from, const Motion& before,
+                        std::size_t to, const Motion& after, double u);
+
+    std::vector<Motion> motions_;  // by pose; the first is none
+    SpeedProfile profile_{{}};
+    double duration_ = 0.0;
+};
+
+}  // namespace beltgrinding

@@ -4,11 +4,11 @@ Rays are cast by ``core.Renderer``; the colours are the deviation's. A view know
 the part is on the picture, so that marks and captions can be laid over it.
 """
 
-import struct
-import zlib
+import io
 from typing import NamedTuple
 
 import numpy as np
+from PIL import Image
 
 from . import core
 
@@ -233,22 +233,7 @@ def _up_for(out, field):
 
 
 def png(pixels):
-    """Bytes of a PNG file of (rows, columns, 3) uint8. W3C, Portable Network Graphics, 2nd edition."""
-    rows, columns, _ = pixels.shape
-    # Filter 2 (up): each row as the difference to the one above, which deflate packs well.
-    up = np.diff(pixels.reshape(rows, -1), axis=0, prepend=np.uint8(0))
-    lines = np.hstack([np.full((rows, 1), 2, dtype=np.uint8), up])
-
-    def chunk(name, data):
-        body = name + data
-        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
-
-    header = struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)
-    return b"".join(
-        [
-            b"\x89PNG\r\n\x1a\n",
-            chunk(b"IHDR", header),
-            chunk(b"IDAT", zlib.compress(lines.tobytes(), 6)),
-            chunk(b"IEND", b""),
-        ]
-    )
+    """Bytes of a PNG file of (rows, columns, 3) uint8."""
+    file = io.BytesIO()
+    Image.fromarray(pixels).save(file, "PNG")
+    return file.getvalue()

@@ -64,7 +64,7 @@ bench, = data.Content["workbench"]
 assert (folder / bench.Subdirectory / bench.Icon).is_file(), bench.Icon
 assert f"class {{bench.Classname}}(" in (folder / bench.Subdirectory / "InitGui.py").read_text()
 depends = {{one["package"] if isinstance(one, dict) else one for one in bench.Depend}}
-assert depends == {{"numpy", "jsonschema", "matplotlib"}}, depends
+assert depends == {{"numpy", "jsonschema", "matplotlib", "Pillow"}}, depends
 """
     )
 
@@ -96,7 +96,8 @@ else:
     addon.extract_metadata_dependencies(addon.metadata)
     assert addon.display_name
     benches = addon.metadata.content["workbench"]
-    assert {{one.package for one in benches[0].depend}} == {{"numpy", "jsonschema", "matplotlib"}}
+    needed = {{one.package for one in benches[0].depend}}
+    assert needed == {{"numpy", "jsonschema", "matplotlib", "Pillow"}}
     wrong = MetadataValidators().validate_top_level(addon)
     wrong += MetadataValidators().validate_content(addon)
     # There is no public repository yet, and none is invented.

@@ -18,38 +18,56 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
 packages_scan=(libpcl-dev) # aligning scans; large, and not needed for anything else
-packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib xvfb xauth libgl1-mesa-dri)
-packages_test=(weasyprint poppler-utils python3-pytest python3-h5py python3-pil calculix-ccx cloudcompare)
+packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib python3-pil xvfb xauth libgl1-mesa-dri)
+packages_test=(weasyprint poppler-utils python3-pytest python3-h5py calculix-ccx cloudcompare)
 
 say() { printf '%s\n' "$*" >&2; }
 
-# install_missing PACKAGE...: by apt, only what dpkg does not have.
+dpkg_status=/var/lib/dpkg/status # changes whenever a package comes or goes
+
+# install_missing PACKAGE...: by apt, only what dpkg does not have. What was found installed is noted
+# in build/packages, and not asked for again until dpkg's status changes.
 install_missing() {
     command -v dpkg-query >/dev/null || {
         say "This set-up knows Debian's apt only; install yourself: $*"
         return 1
     }
-    local missing=() package
+    local noted=$root/build/packages package
+    if [ "$noted" -nt "$dpkg_status" ] && grep -qsxF -- "$*" "$noted"; then
+        return 0
+    fi
+    local -A installed=()
+    while read -r package; do
+        installed[$package]=1
+    done < <(dpkg-query -W -f '${Package} ${db:Status-Status}\n' "$@" 2>/dev/null | sed -n 's/ installed$//p')
+    local missing=()
     for package in "$@"; do
-        dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
-            missing+=("$package")
+        [ -n "${installed[$package]:-}" ] || missing+=("$package")
     done
-    ((${#missing[@]})) || return 0
-    local as_root=()
+    if ((${#missing[@]})); then
+        apt_install "${missing[@]}" || return 1
+    fi
+    mkdir -p "$root/build"
+    [ "$noted" -nt "$dpkg_status" ] || : >"$noted"
+    printf '%s\n' "$*" >>"$noted"
+}
+
+# apt_install PACKAGE...: as root or by sudo.
+apt_install() {
+    local as_root=() log
     if ((EUID != 0)); then
         command -v sudo >/dev/null || {
-            say "These packages are missing, and neither root nor sudo is there: ${missing[*]}"
+            say "These packages are missing, and neither root nor sudo is there: $*"
             return 1
         }
         as_root=(sudo)
     fi
-    say "Installing ${#missing[@]} packages: ${missing[*]}"
-    local log
+    say "Installing $# packages: $*"
     log=$(mktemp)
     {
         "${as_root[@]}" apt-get update -qq &&
             "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-                apt-get install -y -qq --no-install-recommends "${missing[@]}"
+                apt-get install -y -qq --no-install-recommends "$@"
     } >"$log" 2>&1 || {
         tail -n 20 "$log" >&2
         say "apt could not install them; the log is $log"
@@ -58,11 +76,53 @@ install_missing() {
     rm -f "$log"
 }
 
-# build_all [TARGET]: configures once, then lets Ninja decide what is stale.
+build_sources=(CMakeLists.txt CMakePresets.json package.xml cmake include src tests/core tests/benchmark
+    Resources/translations) # what a build reads; folders tell of files that are gone
+
+# build_stale STAMP: whether a build that began when STAMP was made is missing or too old. By the time
+# of each change of a file (ctime), which a restored or copied file cannot carry along.
+build_stale() {
+    local stamp=$1 source sources=()
+    if [ ! -f "$stamp" ] || [ "$dpkg_status" -nt "$stamp" ] || [ ! -f "$build/build.ninja" ] ||
+        ! compgen -G "$build/python/beltgrinding_core*.so" >/dev/null; then
+        return 0
+    fi
+    for source in "${build_sources[@]}"; do
+        [ ! -e "$root/$source" ] || sources+=("$root/$source")
+    done
+    [ -n "$(find "${sources[@]}" -newercm "$stamp" -print -quit)" ]
+}
+
+# build_all [TARGET]: brings the release build, or a target of it, up to date. Neither CMake nor Ninja is
+# started when nothing changed since the last time; of several at once one builds and the others wait.
 build_all() {
-    local log=$root/build/build.log
-    mkdir -p "$root/build"
-    local late= # what was installed since the build was configured
+    local target=${1:-all}
+    local stamps=$root/build/stamps lock status=0
+    if ! build_stale "$stamps/all" || ! build_stale "$stamps/$target"; then
+        return 0
+    fi
+    mkdir -p "$stamps"
+    exec {lock}>"$root/build/lock"
+    flock -n "$lock" || {
+        say "Waiting for another build"
+        flock "$lock"
+    }
+    if build_stale "$stamps/all" && build_stale "$stamps/$target"; then
+        build_now "$target" "$stamps" || status=$?
+    fi
+    exec {lock}>&-
+    return "$status"
+}
+
+# build_now TARGET STAMPS: configures where that is needed, then lets Ninja decide what is stale. Each
+# build has a log of its own in build/logs; build/build.log is a link to the last one.
+build_now() {
+    local target=$1 stamps=$2 logs=$root/build/logs log late= # what was installed since it was configured
+    log=$logs/$(date +%Y%m%d-%H%M%S)-$$-$target.log
+    mkdir -p "$logs"
+    ls -t "$logs" | tail -n +20 | while read -r old; do rm -f "$logs/$old"; done
+    ln -sfn "logs/${log##*/}" "$root/build/build.log"
+    : >"$stamps/.$target" # as old as the build's begin: what changes meanwhile is built the next time
     if compgen -G '/usr/lib/*/cmake/pcl/PCLConfig.cmake' >/dev/null; then
         grep -qs '^PCL_DIR:PATH=/' "$build/CMakeCache.txt" || late=PCL
     fi
@@ -75,11 +135,12 @@ build_all() {
         }
     fi
     say "Building (log: build/build.log)"
-    (cd "$root" && cmake --build --preset release ${1:+--target "$1"}) >"$log" 2>&1 || {
+    (cd "$root" && cmake --build --preset release --target "$target") >>"$log" 2>&1 || {
         grep -E 'error|FAILED' "$log" | head -n 20 >&2
         say "The build failed; the log is $log"
         return 1
     }
+    mv "$stamps/.$target" "$stamps/$target"
 }
 
 # in_freecad freecad|freecadcmd SCRIPT [NAME=VALUE...]: runs a Python file inside FreeCAD, without a

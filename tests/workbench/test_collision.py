@@ -177,7 +177,7 @@ def test_a_real_program_over_a_real_part():
     part = SHARED / "data" / "mesh" / "crs_part_5.stl"
     program = SHARED / "data" / "programs" / "same_path_crs_part5" / "crs_part5.src"
     if not part.exists():
-        pytest.skip(f"{part} is absent")
+        pytest.skip(f"no shared data: {part}")
     arrays = poses.program_arrays({"file": str(program)}, "crs", [])
     path = core.ToolPath(**arrays)
     skin = core.read_mesh(str(part), 1000.0)

@@ -74,7 +74,8 @@ def test_pytest_fails_where_it_is_strict(tmp_path, strict):
     (tmp_path / "test_whole.py").write_text(WHOLE)
     (tmp_path / "conftest.py").write_text(
         "import importlib.util\n"
-        f"spec = importlib.util.spec_from_file_location('shared', {str(ROOT / 'tests/conftest.py')!r})\n"
+        f"path = {str(ROOT / 'tests' / 'conftest.py')!r}\n"
+        "spec = importlib.util.spec_from_file_location('shared', path)\n"
         "shared = importlib.util.module_from_spec(spec)\nspec.loader.exec_module(shared)\n"
         "pytest_runtest_makereport = shared.pytest_runtest_makereport\n"
         "pytest_make_collect_report = shared.pytest_make_collect_report\n"

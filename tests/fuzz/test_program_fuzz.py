@@ -1,6 +1,7 @@
 """A short run of fuzz_programs.py, and proof that its oracles see what they are for."""
 
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,9 @@ from beltgrinding.programs.program import Motion, Problem, Program  # noqa: E402
 
 INPUTS = 30  # of each seed: damaged files
 STRIDE = 29  # bytes between the cuts of each seed
+# Shares of the damaged inputs: at least so many are still read, or nothing would be learnt of what is
+# read; and of so many the damage is told, by a Problem or by refusing the file.
+STILL_READ, TOLD = 0.15, 0.65
 SEEDS = [seed for group in fuzzing.seeds([fuzzing.OWN]).values() for seed in group]
 
 
@@ -26,13 +30,34 @@ def test_damaged_programs(seed):
     counts, _, findings = fuzzing.fuzz(seed, numbers, others)
     assert not findings, f"replay with fuzz_programs.py --replay {seed.name}:NUMBER"
     assert sum(counts.values()) == len(numbers)
-    assert counts["refused"] < len(numbers)  # it does read some
+    assert not lopsided(counts)
 
 
-@pytest.mark.parametrize("suffix", sorted(READERS))
-def test_every_language_has_a_seed(suffix):
-    if suffix in fuzzing.uncovered([fuzzing.OWN]):
-        pytest.skip(f"no seed in tests/fuzz/programs reaches the reader of {suffix}")
+def lopsided(counts):
+    """What is wrong with the shares of inputs that were read, read with doubts, or refused."""
+    total = sum(counts.values())
+    if counts["read"] + counts["doubtful"] < STILL_READ * total:
+        return f"too few are read: {dict(counts)}"
+    if counts["doubtful"] + counts["refused"] < TOLD * total:
+        return f"of too few the damage is told: {dict(counts)}"
+    return ""
+
+
+def test_a_reader_that_refuses_or_swallows_everything_is_lopsided():
+    assert "too few are read" in lopsided(Counter(refused=100))
+    assert "damage is told" in lopsided(Counter(read=100))
+    assert not lopsided(Counter(read=10, doubtful=10, refused=80))
+
+
+@pytest.mark.parametrize("seed", SEEDS, ids=lambda seed: seed.name)
+def test_an_undamaged_seed_is_read(seed, tmp_path):
+    program, _ = fuzzing.read(seed.files, seed.name, tmp_path)
+    assert sum(motion.pose is not None for motion in program.motions) >= 2
+
+
+def test_every_language_has_a_seed():
+    assert fuzzing.uncovered([fuzzing.OWN]) == []
+    assert {Path(seed.name).suffix for seed in SEEDS} <= set(READERS)
 
 
 def program(*motions, problems=()):

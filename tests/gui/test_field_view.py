@@ -177,17 +177,33 @@ settle()
 views = Gui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")
 assert len(views) == 2
 other = next(v for v in views if v.getSceneGraph() != scene)
+
+def look_through(one):
+    global view, WIDTH, HEIGHT
+    one.setAnimationEnabled(False)
+    one.setCameraType("Orthographic")
+    one.viewTop()
+    settle()
+    view, (WIDTH, HEIGHT) = one, one.getSize()
+
 other.getSceneGraph().addChild(show.node)
-settle()
+other.fitAll()
+look_through(other)
+same(colour_at(30, 20), 0x2040FFFF)
 other.getSceneGraph().removeChild(show.node)
+assert colour_at(30, 20).tolist() == [255, 255, 255]
 from PySide import QtGui
 window = widgets(QtGui.QMdiArea)[0]
 window.closeActiveSubWindow()
 settle()
+(left,) = Gui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")
+assert left.getSceneGraph() == scene
 show.set_colours(np.full(len(show.points), 0xFF2020FF, np.uint32))
-view = Gui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")[0]
-view.redraw()
-settle()
+look_through(left)
+same(colour_at(30, 20), 0xFF2020FF)
+show.set_colours(np.full(len(show.points), 0x20A020FF, np.uint32))
+left.redraw()
+same(colour_at(30, 20), 0x20A020FF)
 """,
         window=True,
         KIND="own",

@@ -44,13 +44,25 @@ def test_flagship_program_against_its_truth():
         assert {"J": "PTP", "L": "LIN", "S": "SPL"}.get(row[1], "CIRC") == motion.kind
 
 
+# What a person reads in these files: (motions, those with a pose, lines of the problems).
+REAL = {
+    # A loop over points that are not in the excerpt's .dat; it is named after another program.
+    "kuka_frame_array_loop.src": (779, 0, [9] * 779),
+    # Begins in the middle of an IF; calls two routines of other files.
+    "kuka_inline_forms_excerpt.src": (4, 4, [4, 26, 48]),
+    # The second motion is by joints, which are no pose without the robot.
+    "kuka_robodk_Prog1.src": (2, 1, []),
+}
+
+
 @needs_shared
-@pytest.mark.parametrize(
-    "file", ["kuka_frame_array_loop.src", "kuka_inline_forms_excerpt.src", "kuka_robodk_Prog1.src"]
-)
-def test_real_files_end_in_poses_or_a_statement(file):
+@pytest.mark.parametrize("file", REAL)
+def test_real_files_give_the_poses_and_problems_that_they_hold(file):
     program = read_program(PROGRAMS / "real" / file)
-    assert program.problems or any(m.pose is not None for m in program.motions)
+    posed = sum(motion.pose is not None for motion in program.motions)
+    lines = [problem.line for problem in program.problems]
+    assert (len(program.motions), posed, lines) == REAL[file]
+    assert {problem.file for problem in program.problems} <= {file}
 
 
 @needs_shared

@@ -11,7 +11,7 @@ export BELTGRINDING_SHARED=${BELTGRINDING_SHARED:-$root/../shared}
 export PYTHONPATH=$root/Mod/BeltGrinding:$build/python${PYTHONPATH:+:$PYTHONPATH}
 export QTWEBENGINE_DISABLE_SANDBOX=1 LANG=${LANG:-C.UTF-8}
 
-packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-dev libtbb-dev
+packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-dev libtbb-dev libfmt-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libcoin-dev libgl-dev qttools5-dev-tools

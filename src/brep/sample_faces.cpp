@@ -6,9 +6,9 @@
 #include <TopExp_Explorer.hxx>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <mutex>
+#include <optional>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
@@ -41,12 +41,6 @@ double perimeter(const TopoDS_Face& face) {
     }
 }
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
 void refuse_if_too_large(double area, double length, double spacing, std::size_t max_bytes) {
     const double limit = max_bytes > 0 ? double(max_bytes) : 0.5 * machine_bytes();
     const auto bytes = [&](double h) {
@@ -62,17 +56,20 @@ void refuse_if_too_large(double area, double length, double spacing, std::size_t
     // Rounded up to two digits.
     const double unit = std::pow(10.0, std::floor(std::log10(fitting)) - 1);
     fitting = std::ceil(fitting / unit) * unit;
-    throw InputError("a spacing of " + number(spacing) + " mm needs about " +
-                     number(bytes(spacing) / 1e9) + " GB of memory, more than the " +
-                     number(limit / 1e9) + " GB allowed; a spacing of " + number(fitting) +
-                     " mm would fit");
+    throw InputError("brep.out_of_memory",
+                     "a spacing of {spacing:.3g} mm needs about {needed:.3g} GB of memory, more "
+                     "than the {allowed:.3g} GB allowed; a spacing of {fitting:.3g} mm would fit",
+                     {{"spacing", spacing},
+                      {"needed", bytes(spacing) / 1e9},
+                      {"allowed", limit / 1e9},
+                      {"fitting", fitting}});
 }
 
 struct Job {
     std::size_t face = 0;
     double area = 0;
     FaceSamples samples;
-    std::string warning;
+    std::optional<Fact> warning;
 };
 
 void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& context) {
@@ -115,18 +112,22 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                          SamplingReport* report) {
     const Shape::Impl& impl = shape.impl();
     if (!(options.spacing > 0) || !std::isfinite(options.spacing))
-        throw InputError("the spacing must be above 0 mm, not " + number(options.spacing));
+        throw InputError("brep.spacing", "the spacing must be above 0 mm, not {spacing:.3g}",
+                         {{"spacing", options.spacing}});
     if (!(options.depth > 0) || !std::isfinite(options.depth))
-        throw InputError("the depth must be above 0 mm, not " + number(options.depth));
+        throw InputError("brep.depth", "the depth must be above 0 mm, not {depth:.3g}",
+                         {{"depth", options.depth}});
     if (faces.empty())
         for (std::size_t i = 0; i < shape.face_count(); ++i) faces.push_back(i);
     std::vector<char> chosen(shape.face_count(), 0);
     for (const std::size_t f : faces) {
         if (f >= shape.face_count())
-            throw InputError(impl.name + " has no face " + std::to_string(f + 1) + "; it has " +
-                             std::to_string(shape.face_count()) + " faces");
+            throw InputError(
+                "brep.no_such_face", "{shape} has no face {face}; it has {count} faces",
+                {{"shape", impl.name}, {"face", f + 1}, {"count", shape.face_count()}});
         if (chosen[f]++)
-            throw InputError("face " + std::to_string(f + 1) + " is chosen twice; once is enough");
+            throw InputError("brep.face_twice", "face {face} is chosen twice; once is enough",
+                             {{"face", f + 1}});
     }
 
     std::vector<Job> jobs(faces.size());
@@ -141,9 +142,10 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     double area = 0, border = 0;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         if (!std::isfinite(jobs[i].area))
-            throw InputError(face_name(impl, jobs[i].face) +
-                             " has an area that is not a number: its surface evaluates to NaN; "
-                             "repair the shape or leave the face out");
+            throw InputError("brep.area_not_finite",
+                             "face {face} of {shape} has an area that is not a number: its surface "
+                             "evaluates to NaN; repair the shape or leave the face out",
+                             {{"face", jobs[i].face + 1}, {"shape", impl.name}});
         area += jobs[i].area;
         border += length[i];
     }
@@ -154,9 +156,10 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Job& job = jobs[i];
-            const std::string name = face_name(impl, job.face);
             if (job.area < kZeroArea) {
-                job.warning = name + " has no area and is left out";
+                job.warning = {"brep.face_without_area",
+                               "face {face} of {shape} has no area and is left out",
+                               {{"face", job.face + 1}, {"shape", impl.name}}};
                 continue;
             }
             try {
@@ -171,17 +174,28 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                 job.samples = sample_face(request, context);
                 if (job.samples.point.size() > kEnoughSamples &&
                     std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)
-                    job.warning = name + " has an area of " + number(job.area) +
-                                  " mm2 by integration, " + number(job.samples.sampled_area) +
-                                  " mm2 by its samples: check the shape";
+                    job.warning = {"brep.areas_differ",
+                                   "face {face} of {shape} has an area of {area:.3g} mm2 by "
+                                   "integration, {sampled:.3g} mm2 by its samples: check the shape",
+                                   {{"face", job.face + 1},
+                                    {"shape", impl.name},
+                                    {"area", job.area},
+                                    {"sampled", job.samples.sampled_area}}};
             } catch (const Standard_Failure& failure) {
-                throw InputError(name + " cannot be sampled: " + failure.GetMessageString() +
-                                 "; repair the shape or leave the face out");
+                throw InputError("brep.not_sampled",
+                                 "face {face} of {shape} cannot be sampled: {reason}; repair the "
+                                 "shape or leave the face out",
+                                 {{"face", job.face + 1},
+                                  {"shape", impl.name},
+                                  {"reason", failure.GetMessageString()}});
             } catch (const Cancelled&) {
                 throw;
             } catch (const std::runtime_error& error) {
-                throw InputError(name + " cannot be sampled: " + error.what() +
-                                 "; repair the shape or leave the face out");
+                throw InputError(
+                    "brep.not_sampled",
+                    "face {face} of {shape} cannot be sampled: {reason}; repair the shape or leave "
+                    "the face out",
+                    {{"face", job.face + 1}, {"shape", impl.name}, {"reason", error.what()}});
             }
             context.report(0.05 + 0.9 * double(++done) / double(jobs.size()));
         }
@@ -198,11 +212,13 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     field.spacing = options.spacing;
     field.depth = options.depth;
     append_all(jobs, field, context);
-    if (field.size() == 0) throw InputError(impl.name + ": none of the chosen faces has an area");
+    if (field.size() == 0)
+        throw InputError("brep.no_area", "{shape}: none of the chosen faces has an area",
+                         {{"shape", impl.name}});
     if (report) {
         for (const Job& job : jobs) {
             report->face_area.push_back(job.area);
-            if (!job.warning.empty()) report->warnings.push_back(job.warning);
+            if (job.warning) report->warnings.push_back(*job.warning);
         }
     }
     context.report(1.0);

@@ -60,27 +60,21 @@ double integrate_area(const TopoDS_Face& face) {
     }
 }
 
-std::string length_text(double mm) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g mm", mm);
-    return text;
-}
-
 }  // namespace
-
-std::string face_name(const Shape::Impl& impl, std::size_t face) {
-    return "face " + std::to_string(face + 1) + " of " + impl.name;
-}
 
 Shape make_shape(const TopoDS_Shape& shape, const std::string& name) {
     if (shape.IsNull())
-        throw InputError(name + ": the file gives no shape (null shape); export the part again");
+        throw InputError("brep.null_shape",
+                         "{shape}: the file gives no shape (null shape); export the part again",
+                         {{"shape", name}});
     auto impl = std::make_shared<Shape::Impl>();
     impl->shape = shape;
     impl->name = name;
     TopExp::MapShapes(shape, TopAbs_FACE, impl->faces);
     if (impl->faces.IsEmpty())
-        throw InputError(name + ": the shape has no faces; a solid, shell or face is needed");
+        throw InputError("brep.no_faces",
+                         "{shape}: the shape has no faces; a solid, shell or face is needed",
+                         {{"shape", name}});
     impl->solid_of_face.assign(static_cast<std::size_t>(impl->faces.Extent()), -1);
     for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
         for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next()) {
@@ -143,8 +137,8 @@ bool Shape::bounds_solid(std::size_t face) const {
 
 double Shape::face_area(std::size_t face) const {
     if (face >= face_count())
-        throw InputError(impl_->name + " has no face " + std::to_string(face + 1) + "; it has " +
-                         std::to_string(face_count()));
+        throw InputError("brep.no_such_face", "{shape} has no face {face}; it has {count} faces",
+                         {{"shape", impl_->name}, {"face", face + 1}, {"count", face_count()}});
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         if (const auto known = impl_->areas.find(face); known != impl_->areas.end())
@@ -154,8 +148,10 @@ double Shape::face_area(std::size_t face) const {
     try {
         area = integrate_area(TopoDS::Face(impl_->face(face).Oriented(TopAbs_FORWARD)));
     } catch (const Standard_Failure& failure) {
-        throw InputError(face_name(*impl_, face) + ": its area cannot be found: " +
-                         failure.GetMessageString() + "; repair the shape");
+        throw InputError(
+            "brep.area_unknown",
+            "face {face} of {shape}: its area cannot be found: {reason}; repair the shape",
+            {{"face", face + 1}, {"shape", impl_->name}, {"reason", failure.GetMessageString()}});
     }
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->areas[face] = area;
@@ -164,7 +160,8 @@ double Shape::face_area(std::size_t face) const {
 
 std::string Shape::surface_type(std::size_t face) const {
     if (face >= face_count())
-        throw InputError(impl_->name + " has no face " + std::to_string(face + 1));
+        throw InputError("brep.no_such_face", "{shape} has no face {face}; it has {count} faces",
+                         {{"shape", impl_->name}, {"face", face + 1}, {"count", face_count()}});
     if (BRep_Tool::Surface(impl_->face(face)).IsNull()) return "none";
     switch (BRepAdaptor_Surface(impl_->face(face), false).GetType()) {
         case GeomAbs_Plane:
@@ -219,32 +216,37 @@ bool Shape::valid() const {
     return *impl_->valid;
 }
 
-std::vector<std::string> Shape::warnings() const {
+std::vector<Fact> Shape::warnings() const {
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         if (impl_->warnings) return *impl_->warnings;
     }
     const Box box = extents();
-    std::vector<std::string> found;
+    std::vector<Fact> found;
     const std::string& name = impl_->name;
     if (!box.isEmpty()) {
         const double size = box.sizes().maxCoeff();
         if (size > kLargestExtent)
-            found.push_back(name + " is " + length_text(size) +
-                            " large, more than 10 m: check its unit");
+            found.push_back({"brep.too_large",
+                             "{shape} is {size:.4g} mm large, more than 10 m: check its unit",
+                             {{"shape", name}, {"size", size}}});
         if (size < kSmallestExtent)
-            found.push_back(name + " is only " + length_text(size) +
-                            " large, less than 0.1 mm: check its unit");
+            found.push_back(
+                {"brep.too_small",
+                 "{shape} is only {size:.4g} mm large, less than 0.1 mm: check its unit",
+                 {{"shape", name}, {"size", size}}});
     }
     if (!valid())
-        found.push_back(name +
-                        " is not a valid shape by OpenCASCADE's check: results near its faults "
-                        "may be wrong");
+        found.push_back({"brep.not_valid",
+                         "{shape} is not a valid shape by OpenCASCADE's check: results near its "
+                         "faults may be wrong",
+                         {{"shape", name}}});
     for (TopExp_Explorer s(impl_->shape, TopAbs_SHELL); s.More(); s.Next()) {
         if (!BRep_Tool::IsClosed(s.Current())) {
-            found.push_back(name +
-                            " has an open shell: its normals follow the faces' orientation, "
-                            "flip them if they point into the part");
+            found.push_back({"brep.open_shell",
+                             "{shape} has an open shell: its normals follow the faces' "
+                             "orientation, flip them if they point into the part",
+                             {{"shape", name}}});
             break;
         }
     }
@@ -253,16 +255,20 @@ std::vector<std::string> Shape::warnings() const {
         loose += impl_->solid_of_face[i] < 0;
         try {
             if (face_area(i) < kZeroArea)
-                found.push_back(face_name(*impl_, i) + " has no area and is left out");
+                found.push_back({"brep.face_without_area",
+                                 "face {face} of {shape} has no area and is left out",
+                                 {{"face", i + 1}, {"shape", name}}});
         } catch (const InputError& error) {
-            found.push_back(error.what());
+            found.push_back(error.fact());
         }
     }
     if (loose > 0 && loose < face_count())
-        found.push_back(name + ": " + std::to_string(loose) +
-                        " of its faces belong to no solid; their normals follow their orientation");
+        found.push_back({"brep.loose_faces",
+                         "{shape}: {count} of its faces belong to no solid; their normals follow "
+                         "their orientation",
+                         {{"shape", name}, {"count", loose}}});
     const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->warnings = std::make_unique<std::vector<std::string>>(found);
+    impl_->warnings = std::make_unique<std::vector<Fact>>(found);
     return found;
 }
 

@@ -37,15 +37,12 @@ struct Shape::Impl {
     mutable std::unordered_map<std::size_t, double> areas;  ///< mm2, by face
     mutable std::unique_ptr<Box> extents;
     mutable std::optional<bool> valid;
-    mutable std::unique_ptr<std::vector<std::string>> warnings;
+    mutable std::unique_ptr<std::vector<Fact>> warnings;
 };
 
 /// Takes `shape` in: numbers its faces, adds missing curves on surfaces. Throws InputError naming
 /// `name` if it is null or has no faces.
 Shape make_shape(const TopoDS_Shape& shape, const std::string& name);
-
-/// "face 3 of blade.step": faces are counted from 1 at the user's eye.
-std::string face_name(const Shape::Impl& impl, std::size_t face);
 
 /// A copy of `shape` (the original is shared with other threads) that carries a triangulation by
 /// OpenCASCADE; `angle` in rad between facets. Cancellable.

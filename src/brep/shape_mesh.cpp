@@ -149,15 +149,16 @@ TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative
             append_face(TopoDS::Face(e.Current()), mesh);
         return mesh;
     } catch (const Standard_Failure& failure) {
-        throw InputError(std::string("the shape cannot be triangulated: ") +
-                         failure.GetMessageString());
+        throw InputError("brep.not_triangulated", "the shape cannot be triangulated: {reason}",
+                         {{"reason", failure.GetMessageString()}});
     }
 }
 
 TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context,
                          const std::vector<std::size_t>& faces) {
     if (!(deflection > 0) || !std::isfinite(deflection))
-        throw InputError("deflection must be above 0 mm, not " + std::to_string(deflection));
+        throw InputError("brep.deflection", "deflection must be above 0 mm, not {deflection:f}",
+                         {{"deflection", deflection}});
     const Shape::Impl& impl = shape.impl();
     TopoDS_Shape whole = impl.shape;
     if (!faces.empty()) {
@@ -166,14 +167,18 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
         builder.MakeCompound(some);
         for (const std::size_t face : faces) {
             if (face >= shape.face_count())
-                throw InputError(impl.name + ": there is no face " + std::to_string(face + 1));
+                throw InputError(
+                    "brep.no_such_face", "{shape} has no face {face}; it has {count} faces",
+                    {{"shape", impl.name}, {"face", face + 1}, {"count", shape.face_count()}});
             builder.Add(some, impl.face(face));
         }
         whole = some;
     }
     TriangleMesh mesh = mesh_of(whole, deflection, false, context);
     if (mesh.triangles.empty())
-        throw InputError(impl.name + ": triangulation gives no triangle; repair the shape");
+        throw InputError("brep.no_triangles",
+                         "{shape}: triangulation gives no triangle; repair the shape",
+                         {{"shape", impl.name}});
     return mesh;
 }
 
@@ -183,7 +188,8 @@ Shape shape_from_mesh(const TriangleMesh& mesh) {
     std::vector<Triangle> sound;
     for (const Triangle& t : mesh.triangles) {
         if (t[0] >= welded.size() || t[1] >= welded.size() || t[2] >= welded.size())
-            throw InputError("the mesh has a triangle with a vertex that does not exist");
+            throw InputError("brep.mesh_triangle_without_vertex",
+                             "the mesh has a triangle with a vertex that does not exist");
         const Triangle w{welded[t[0]], welded[t[1]], welded[t[2]]};
         const Vec3 a = points[w[0]].cast<double>(), b = points[w[1]].cast<double>(),
                    c = points[w[2]].cast<double>();
@@ -193,7 +199,8 @@ Shape shape_from_mesh(const TriangleMesh& mesh) {
             sound.push_back(w);
     }
     if (sound.empty())
-        throw InputError("the mesh has no sound triangle: nothing to make a surface of");
+        throw InputError("brep.mesh_not_sound",
+                         "the mesh has no sound triangle: nothing to make a surface of");
     orient_alike(sound);
 
     try {
@@ -219,9 +226,9 @@ Shape shape_from_mesh(const TriangleMesh& mesh) {
                 if (edge.IsNull()) {
                     edge = BRepBuilderAPI_MakeEdge(vertices[key.first], vertices[key.second]);
                     if (edge.IsNull())
-                        throw InputError(
-                            "the mesh has an edge shorter than 1e-7 mm: check its "
-                            "unit, or weld its vertices");
+                        throw InputError("brep.mesh_edge_too_short",
+                                         "the mesh has an edge shorter than 1e-7 mm: check its "
+                                         "unit, or weld its vertices");
                 }
                 uses[key] += 1;
                 builder.Add(wire, edge.Oriented(a < b ? TopAbs_FORWARD : TopAbs_REVERSED));
@@ -258,8 +265,8 @@ Shape shape_from_mesh(const TriangleMesh& mesh) {
         }
         return make_shape(result, "mesh");
     } catch (const Standard_Failure& failure) {
-        throw InputError(std::string("the mesh cannot be made into faces: ") +
-                         failure.GetMessageString());
+        throw InputError("brep.mesh_to_faces", "the mesh cannot be made into faces: {reason}",
+                         {{"reason", failure.GetMessageString()}});
     }
 }
 

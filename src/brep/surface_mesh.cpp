@@ -126,24 +126,25 @@ std::vector<std::uint32_t> spoilt_faces(const Shape& shape, const FaceMesh& mesh
     return spoilt;
 }
 
-void require_length(double value, const char* what) {
-    if (!(value > 0) || !std::isfinite(value))
-        throw InputError(std::string("the mesh's ") + what + " must be above 0 mm, not " +
-                         std::to_string(value));
+void require_length(double value, const char* code, const char* form) {
+    if (!(value > 0) || !std::isfinite(value)) throw InputError(code, form, {{"value", value}});
 }
 
 }  // namespace
 
 SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
                          const RunContext& context) {
-    require_length(options.deflection, "deflection");
-    require_length(options.spacing, "spacing");
+    require_length(options.deflection, "brep.mesh_deflection",
+                   "the mesh's deflection must be above 0 mm, not {value:f}");
+    require_length(options.spacing, "brep.mesh_spacing",
+                   "the mesh's spacing must be above 0 mm, not {value:f}");
     const Shape::Impl& impl = shape.impl();
     std::vector<char> fine(shape.face_count(), 0), reverse(shape.face_count(), 0);
     for (const std::size_t f : options.fine_faces) {
         if (f >= fine.size())
-            throw InputError(impl.name + " has no face " + std::to_string(f + 1) + "; it has " +
-                             std::to_string(fine.size()) + " faces");
+            throw InputError("brep.no_such_face",
+                             "{shape} has no face {face}; it has {count} faces",
+                             {{"shape", impl.name}, {"face", f + 1}, {"count", fine.size()}});
         fine[f] = 1;
     }
     for (std::size_t f = 0; f < reverse.size(); ++f)
@@ -162,28 +163,38 @@ SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
             if (spoilt.empty()) break;
         }
         for (const std::uint32_t f : spoilt)
-            out.warnings.push_back("the triangles of " + face_name(impl, f) +
-                                   " do not have the face's area; look at its contours");
+            out.warnings.push_back({"brep.face_area_of_triangles",
+                                    "the triangles of face {face} of {shape} do not have the "
+                                    "face's area; look at its contours",
+                                    {{"face", f + 1}, {"shape", impl.name}}});
         context.report(0.45);
         for (const std::uint32_t f : assembly.without_triangles)
-            out.warnings.push_back(face_name(impl, f) +
-                                   " has no triangles; the mesh is open there");
+            out.warnings.push_back(
+                {"brep.face_without_triangles",
+                 "face {face} of {shape} has no triangles; the mesh is open there",
+                 {{"face", f + 1}, {"shape", impl.name}}});
         if (assembly.torn)
             out.warnings.push_back(
-                "two faces divide a common edge differently; the mesh is open there");
+                {"brep.torn",
+                 "two faces divide a common edge differently; the mesh is open there",
+                 {}});
         FaceMesh& mesh = assembly.mesh;
         if (mesh.triangles.empty())
-            throw InputError(impl.name + ": triangulation gives no triangle; repair the shape");
+            throw InputError("brep.no_triangles",
+                             "{shape}: triangulation gives no triangle; repair the shape",
+                             {{"shape", impl.name}});
         refine(mesh, fine, kLongest * options.spacing, context);
         context.report(0.8);
         if (mesh.on_chords > 0)
-            out.warnings.push_back(std::to_string(mesh.on_chords) +
-                                   " vertices lie on chords: no curve or surface runs there");
+            out.warnings.push_back(
+                {"brep.on_chords",
+                 "{count} vertices lie on chords: no curve or surface runs there",
+                 {{"count", mesh.on_chords}}});
         find_meetings(mesh, context, out);
         compact(mesh, out);
     } catch (const Standard_Failure& failure) {
-        throw InputError(impl.name + " cannot be meshed: " + failure.GetMessageString() +
-                         "; repair the shape");
+        throw InputError("brep.not_meshed", "{shape} cannot be meshed: {reason}; repair the shape",
+                         {{"shape", impl.name}, {"reason", failure.GetMessageString()}});
     }
     context.report(1.0);
     return out;

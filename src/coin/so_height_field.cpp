@@ -50,8 +50,8 @@ std::size_t block_count(std::size_t n) {
 
 void check_length(std::size_t given, std::size_t expected, const char* what) {
     if (given != expected) {
-        throw InputError(std::string(what) + ": " + std::to_string(given) + " values given, " +
-                         std::to_string(expected) + " needed");
+        throw InputError("coin.length", "{name}: {given} values given, {needed} needed",
+                         {{"name", what}, {"given", given}, {"needed", expected}});
     }
 }
 
@@ -130,8 +130,9 @@ void SoHeightField::setSamples(std::span<const double> points, std::span<const f
     check_length(triangles.size(), triangles.size() / 3 * 3, "triangles");
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (triangles[i] >= n) {
-            throw InputError("triangle " + std::to_string(i / 3) + " names sample " +
-                             std::to_string(triangles[i]) + ", but there are " + std::to_string(n));
+            throw InputError("coin.triangle_without_sample",
+                             "triangle {triangle} names sample {sample}, but there are {count}",
+                             {{"triangle", i / 3}, {"sample", triangles[i]}, {"count", n}});
         }
     }
     points_.resize(n);

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "base/parallel.h"
@@ -19,6 +18,20 @@ constexpr std::size_t kBlock = 64;  // motions that are followed by themselves
 bool carried(Carrier carrier, Holding holding) {
     const bool with_tool = holding == Holding::kToolInHand;
     return carrier == Carrier::kTool || carrier == (with_tool ? Carrier::kWheel : Carrier::kPart);
+}
+
+Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
+    if (collides && rapid)
+        return {"event.collision_rapid", "{body} and {other} run into each other in a rapid motion",
+                arguments};
+    if (collides) return {"event.collision", "{body} and {other} run into each other", arguments};
+    arguments.emplace_back("distance", distance);
+    if (rapid)
+        return {"event.near_miss_rapid",
+                "{body} and {other} come within {distance:.2f} mm of each other in a rapid motion",
+                arguments};
+    return {"event.near_miss", "{body} and {other} come within {distance:.2f} mm of each other",
+            arguments};
 }
 
 /// What was found of a pair, on the path's time and in the work frame.
@@ -111,16 +124,8 @@ class Report {
                                                              : Vec3(0.5 * (on_first + on_second));
         event.bodies = {bodies[0]->name, bodies[1]->name};
         const bool rapid = path_.poses()[event.pose].rapid;
-        const char* motion = rapid ? " in a rapid motion" : "";
-        event.message = bodies[0]->name + " and " + bodies[1]->name;
-        if (collides) {
-            event.message += std::string(" run into each other") + motion;
-        } else {
-            std::array<char, 120> text;
-            std::snprintf(text.data(), text.size(), " come within %.2f mm of each other%s",
-                          event.value, motion);
-            event.message += text.data();
-        }
+        event.facts = {meeting(
+            collides, rapid, {{"body", bodies[0]->name}, {"other", bodies[1]->name}}, event.value)};
         return event;
     }
 
@@ -136,6 +141,7 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
     if (!std::isfinite(options.clearance) || options.clearance < 0.0 ||
         !std::isfinite(options.resolution) || !(options.resolution > 0.0)) {
         throw InputError(
+            "collision.options",
             "collisions: the clearance must be zero or positive, the resolution positive");
     }
     CollisionResult result;
@@ -145,7 +151,7 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
         try {
             meshes.emplace_back(body.mesh, context);
         } catch (const InputError& error) {
-            throw InputError(body.name + ": " + error.what());
+            throw error.within({"collision.body", "{body}: ", {{"body", body.name}}});
         }
     }
     struct Numbers {

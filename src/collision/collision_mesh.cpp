@@ -99,15 +99,18 @@ struct CollisionMesh::Impl {
 };
 
 CollisionMesh::CollisionMesh(const TriangleMesh& mesh, const RunContext& context) {
-    if (mesh.triangles.empty()) throw InputError("a body has no triangles");
+    if (mesh.triangles.empty())
+        throw InputError("collision.no_triangle", "a body has no triangles");
     auto impl = std::make_shared<Impl>();
     for (const Vec3f& vertex : mesh.vertices) {
-        if (!vertex.allFinite()) throw InputError("a vertex of a body is not finite");
+        if (!vertex.allFinite())
+            throw InputError("collision.vertex_not_finite", "a vertex of a body is not finite");
     }
     for (const Triangle& triangle : mesh.triangles) {
         for (const std::uint32_t k : triangle) {
             if (k >= mesh.vertices.size()) {
-                throw InputError("a triangle of a body names a vertex that is not there");
+                throw InputError("collision.triangle_without_vertex",
+                                 "a triangle of a body names a vertex that is not there");
             }
             impl->box.extend(mesh.vertices[k].cast<double>());
         }

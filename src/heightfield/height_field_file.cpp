@@ -41,9 +41,13 @@ constexpr const char* kTrace = "trace_first_motion";  // where the simulation ke
 constexpr const char* kMeasured = "measured_mm";      // where a scan was compared
 constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
 
+Fact within(const std::string& path) {
+    return {"heightfield.file", "{file}: the height field ", {{"file", path}}};
+}
+
 void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
     const Handle file(create_file(path), H5Fclose);
-    require(file.ok(), "cannot be made there");
+    require(file.ok(), "hdf5.not_made", "cannot be made there");
     write_scalar(file, "format", H5T_NATIVE_INT, &kFormat);
     write_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
     write_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
@@ -62,22 +66,24 @@ void write_all(const HeightField& field, const std::string& path, const std::str
         });
     }
     write_text(file, "attributes", attributes);
-    require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot be written; is the disk full?");
+    require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.disk_full",
+            "cannot be written; is the disk full?");
 }
 
 void check(const RemovalTrace& t, std::size_t n) {
     if (t.empty()) return;
     require(t.first.size() == n && t.last.size() == n && t.dominant.size() == n &&
                 t.dominant_depth.size() == n && t.peak_pressure.size() == n,
-            "its arrays differ in length");
+            "heightfield.lengths", "its arrays differ in length");
     constexpr std::uint32_t kNever = RemovalTrace::kNever;
     for (std::size_t i = 0; i < n; ++i) {
         const bool never = t.first[i] == kNever;
         const float depth = t.dominant_depth[i], pressure = t.peak_pressure[i];
-        require((t.last[i] == kNever) == never && (t.dominant[i] == kNever) == never &&
-                    std::isfinite(depth) && depth >= 0.0F && std::isfinite(pressure) &&
-                    pressure >= 0.0F,
-                "the trace of sample " + std::to_string(i) + " makes no sense");
+        if ((t.last[i] == kNever) != never || (t.dominant[i] == kNever) != never ||
+            !std::isfinite(depth) || depth < 0.0F || !std::isfinite(pressure) || pressure < 0.0F) {
+            require(false, "heightfield.trace", "the trace of sample {sample} makes no sense",
+                    {{"sample", i}});
+        }
     }
 }
 
@@ -85,24 +91,29 @@ void check(const HeightField& f) {
     const std::size_t n = f.size();
     require(f.normal.size() == n && f.area.size() == n && f.stock_height.size() == n &&
                 f.height.size() == n && f.face.size() == n && f.flags.size() == n,
-            "its arrays differ in length");
+            "heightfield.lengths", "its arrays differ in length");
     require(std::isfinite(f.spacing) && f.spacing > 0.0 && std::isfinite(f.depth) && f.depth >= 0.0,
-            "its spacing or depth is no length");
-    require(f.height_sd.empty() || f.height_sd.size() == n, "its arrays differ in length");
+            "heightfield.spacing", "its spacing or depth is no length");
+    require(f.height_sd.empty() || f.height_sd.size() == n, "heightfield.lengths",
+            "its arrays differ in length");
     for (const float sd : f.height_sd) {
-        require(std::isfinite(sd) && sd >= 0.0f, "its standard deviations are no lengths");
+        require(std::isfinite(sd) && sd >= 0.0f, "heightfield.deviations",
+                "its standard deviations are no lengths");
     }
-    require(f.measured.empty() || f.measured.size() == n, "its arrays differ in length");
+    require(f.measured.empty() || f.measured.size() == n, "heightfield.lengths",
+            "its arrays differ in length");
     for (const float height : f.measured) {
-        require(!std::isinf(height), "its measured heights are no lengths");
+        require(!std::isinf(height), "heightfield.measured", "its measured heights are no lengths");
     }
     for (std::size_t i = 0; i < n; ++i) {
-        require(f.point[i].allFinite() && f.normal[i].allFinite() && std::isfinite(f.height[i]) &&
-                    std::isfinite(f.area[i]) && std::isfinite(f.stock_height[i]),
-                "sample " + std::to_string(i) + " is not finite");
+        if (!f.point[i].allFinite() || !f.normal[i].allFinite() || !std::isfinite(f.height[i]) ||
+            !std::isfinite(f.area[i]) || !std::isfinite(f.stock_height[i])) {
+            require(false, "heightfield.sample", "sample {sample} is not finite", {{"sample", i}});
+        }
     }
     for (const Triangle& t : f.triangles) {
-        require(std::max({t[0], t[1], t[2]}) < n, "a triangle names a sample that is not there");
+        require(std::max({t[0], t[1], t[2]}) < n, "heightfield.triangle_without_sample",
+                "a triangle names a sample that is not there");
     }
 }
 
@@ -110,7 +121,7 @@ void check(const HeightField& f) {
 
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes) {
     const auto lock = hdf5_lock();
-    write_whole(path, "the height field",
+    write_whole(path, within(path),
                 [&](const std::string& temporary) { write_all(field, temporary, attributes); });
 }
 
@@ -119,13 +130,14 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
     try {
         std::error_code error;
         const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
-        require(!error, "cannot be opened: " + error.message());
+        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
+                {{"reason", error.message()}});
         const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-        require(file.ok(), "is no HDF5 file");
+        require(file.ok(), "hdf5.no_file", "is no HDF5 file");
         int format = 0;
         read_scalar(file, "format", H5T_NATIVE_INT, &format);
-        require(format == kFormat, "has format " + std::to_string(format) +
-                                       ", this version reads " + std::to_string(kFormat));
+        require(format == kFormat, "hdf5.format", "has format {format}, this version reads {known}",
+                {{"format", format}, {"known", kFormat}});
         HeightField field;
         read_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
         read_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
@@ -152,7 +164,7 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
         }
         return field;
     } catch (const FileFault& fault) {
-        throw InputError(path + ": the height field " + fault.what);
+        throw InputError(fault.fact, {within(path)});
     }
 }
 

@@ -25,8 +25,8 @@ std::vector<std::uint32_t> each(std::size_t n, Colour&& colour) {
 
 void check(std::size_t values, std::size_t flags) {
     if (values != flags) {
-        throw InputError("colours: " + std::to_string(values) + " values for " +
-                         std::to_string(flags) + " samples");
+        throw InputError("inspection.colours", "colours: {values} values for {samples} samples",
+                         {{"values", values}, {"samples", flags}});
     }
 }
 

@@ -67,7 +67,8 @@ double stepped(double t, int bands) {
 void validate(const Tolerance& tolerance) {
     if (!std::isfinite(tolerance.lower) || !std::isfinite(tolerance.upper) ||
         tolerance.lower > tolerance.upper) {
-        throw InputError("tolerance: the lower limit must not lie above the upper one");
+        throw InputError("inspection.tolerance",
+                         "tolerance: the lower limit must not lie above the upper one");
     }
 }
 
@@ -156,7 +157,8 @@ std::uint32_t uncertainty_colour(double sd, double limit) {
 
 std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double limit) {
     if (field.height_sd.size() != field.size()) {
-        throw InputError("the result has no uncertainty: its law was not calibrated");
+        throw InputError("inspection.no_uncertainty",
+                         "the result has no uncertainty: its law was not calibrated");
     }
     std::vector<std::uint32_t> colours(field.size());
     for (std::size_t i = 0; i < field.size(); ++i) {

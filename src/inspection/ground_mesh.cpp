@@ -117,7 +117,8 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
         }
     });
     if (asked > 0 && found == 0)
-        throw InputError("the height field is not of this shape: no sample lies on its faces");
+        throw InputError("inspection.other_shape",
+                         "the height field is not of this shape: no sample lies on its faces");
     out.limited = limited;
 }
 
@@ -228,21 +229,23 @@ GroundMesh ground_mesh(const SurfaceMesh& mesh, const HeightField& field, bool g
         if ((field.flags[i] & kMissed) == 0)
             out.expected_volume += double(field.area[i]) * field.height[i];
     }
-    const auto warn = [&](std::size_t count, const char* text) {
-        if (count > 0) out.warnings.push_back(std::to_string(count) + text);
+    const auto warn = [&](std::size_t count, const char* code, const char* form) {
+        if (count > 0) out.warnings.push_back({code, form, {{"count", count}}});
     };
-    warn(out.check.border_edges,
-         " edges of the mesh have one triangle only: it is open there, as the design is");
-    warn(out.check.non_manifold_edges,
-         " edges of the mesh have more than two triangles: the design's faces meet so");
-    warn(out.check.turned_edges, " edges of the mesh lie between faces of opposite orientation");
-    warn(out.flipped,
-         " triangles were turned over by the displacement: look at thin faces and "
-         "edges beside ground ones");
-    warn(out.limited,
-         " vertices on thin edges would have moved by more than three times their "
-         "height and were held back");
-    warn(out.missed, " vertices lie where no stock was found and stay on the design");
+    warn(out.check.border_edges, "inspection.mesh_border_edges",
+         "{count} edges of the mesh have one triangle only: it is open there, as the design is");
+    warn(out.check.non_manifold_edges, "inspection.mesh_non_manifold_edges",
+         "{count} edges of the mesh have more than two triangles: the design's faces meet so");
+    warn(out.check.turned_edges, "inspection.mesh_turned_edges",
+         "{count} edges of the mesh lie between faces of opposite orientation");
+    warn(out.flipped, "inspection.mesh_flipped",
+         "{count} triangles were turned over by the displacement: look at thin faces and edges "
+         "beside ground ones");
+    warn(out.limited, "inspection.mesh_limited",
+         "{count} vertices on thin edges would have moved by more than three times their height "
+         "and were held back");
+    warn(out.missed, "inspection.mesh_missed",
+         "{count} vertices lie where no stock was found and stay on the design");
     context.report(1.0);
     return out;
 }

@@ -34,8 +34,9 @@ MeshCheck check_mesh(const std::vector<Vec3>& vertices, const std::vector<Triang
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = v[k], b = v[(k + 1) % 3];
             if (a >= vertices.size())
-                throw InputError("triangle " + std::to_string(t) +
-                                 " names a vertex that is not there");
+                throw InputError("inspection.triangle_without_vertex",
+                                 "triangle {triangle} names a vertex that is not there",
+                                 {{"triangle", t}});
             used[a] = 1;
             uses.push_back({std::uint64_t(std::min(a, b)) << 32U | std::max(a, b), t, a < b});
         }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <tuple>
 
 #include "beltgrinding/error.h"
@@ -230,7 +229,8 @@ std::uint32_t nearest_sample(const HeightField& field, const Vec3& p) {
 std::vector<SectionPiece> cut_by_plane(const HeightField& field, const Vec3& origin,
                                        const Vec3& normal) {
     if (field.triangles.empty())
-        throw InputError("section: the height field has no triangles between its samples");
+        throw InputError("section.no_triangles",
+                         "section: the height field has no triangles between its samples");
     std::vector<double> distance(field.size());
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -243,10 +243,10 @@ std::vector<SectionPiece> cut_by_plane(const HeightField& field, const Vec3& ori
     // A border that lies on the plane is met from one of the two sides only.
     if (pieces.empty()) pieces = join(field, segments(field, distance, true));
     if (pieces.empty()) {
-        std::ostringstream text;
-        text << "section: the plane misses the faces; along its normal they lie from " << low
-             << " to " << high << " mm: move it there";
-        throw InputError(text.str());
+        throw InputError("section.misses",
+                         "section: the plane misses the faces; along its normal they lie from "
+                         "{low:g} to {high:g} mm: move it there",
+                         {{"low", low}, {"high", high}});
     }
     return pieces;
 }
@@ -255,7 +255,8 @@ std::vector<SectionPiece> cut_by_plane(const HeightField& field, const Vec3& ori
 
 Section section_by_plane(const HeightField& field, const Vec3& origin, const Vec3& normal) {
     if (!origin.allFinite() || !normal.allFinite() || normal.norm() < kNoDirection)
-        throw InputError("section: a plane needs a point and a normal other than 0");
+        throw InputError("section.no_plane",
+                         "section: a plane needs a point and a normal other than 0");
     Section section{origin, normal.normalized(), {}};
     section.pieces = cut_by_plane(field, section.origin, section.normal);
     arrange(section.pieces, section.pieces.size());
@@ -264,12 +265,13 @@ Section section_by_plane(const HeightField& field, const Vec3& origin, const Vec
 
 Section section_between(const HeightField& field, const Vec3& from, const Vec3& to) {
     if (!from.allFinite() || !to.allFinite() || field.size() == 0)
-        throw InputError("section: a line needs two points on a surface");
+        throw InputError("section.no_line", "section: a line needs two points on a surface");
     const Vec3 mean = field.normal[nearest_sample(field, from)].cast<double>() +
                       field.normal[nearest_sample(field, to)].cast<double>();
     const Vec3 normal = mean.cross(to - from);  // so that it runs from `from` to `to`
     if (normal.norm() < kNoDirection + kSamePoint * mean.norm()) {
         throw InputError(
+            "section.points",
             "section: the two points coincide, lie one above the other, or on opposite sides: "
             "choose them apart on one side, or give a plane");
     }
@@ -296,13 +298,17 @@ Section section_between(const HeightField& field, const Vec3& from, const Vec3& 
         }
         arrange(pieces, next.piece);
     }
-    if (pieces.empty()) throw InputError("section: no line on the faces leads between the points");
+    if (pieces.empty())
+        throw InputError("section.not_connected",
+                         "section: no line on the faces leads between the points");
 
     const Place end = nearest_place(pieces, to);
     SectionPiece last = cut(pieces[end.piece], end).first;
     pieces.resize(end.piece);
     if (last.point.size() > 1) pieces.push_back(std::move(last));
-    if (pieces.empty()) throw InputError("section: no line on the faces leads between the points");
+    if (pieces.empty())
+        throw InputError("section.not_connected",
+                         "section: no line on the faces leads between the points");
     normalise(pieces);
     arrange(pieces, 0);
     return section;

@@ -53,7 +53,8 @@ void finish(RegionVerdict& r) {
 Verdict judge(const HeightField& field, const std::vector<ToleranceZone>& zones,
               const Tolerance& rest) {
     if (!std::isfinite(rest.lower) || !std::isfinite(rest.upper) || rest.lower > rest.upper) {
-        throw InputError("tolerance: the lower limit must not lie above the upper one");
+        throw InputError("inspection.tolerance",
+                         "tolerance: the lower limit must not lie above the upper one");
     }
     Verdict verdict;
     verdict.zone = zone_of_samples(field, zones);

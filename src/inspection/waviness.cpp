@@ -331,7 +331,7 @@ FaceWaviness of_face(const Face& face, const Feed& feed) {
 
 std::vector<double> gaussian_filter(std::span<const double> values, double step, double cutoff) {
     if (!(step > 0.0) || !(cutoff > 0.0) || !std::isfinite(step) || !std::isfinite(cutoff)) {
-        throw InputError("a Gaussian filter needs a positive step and cutoff");
+        throw InputError("inspection.filter", "a Gaussian filter needs a positive step and cutoff");
     }
     const double alpha = std::sqrt(std::numbers::ln2 / std::numbers::pi);
     const auto count = static_cast<std::ptrdiff_t>(values.size());

@@ -22,9 +22,9 @@ constexpr double kSharpCosine = 0.8660254038;  // of 30 degrees
 constexpr std::size_t kBlock = 4096;           // samples per task
 constexpr double kFlat = 1e-6;                 // a triangle with a smaller sine has no plane
 
-void check(const Tolerance& t, const char* what) {
+void check(const Tolerance& t, const char* code, const char* form) {
     if (!std::isfinite(t.lower) || !std::isfinite(t.upper) || t.lower > t.upper) {
-        throw InputError(std::string(what) + ": the lower limit must not lie above the upper one");
+        throw InputError(code, form);
     }
 }
 
@@ -183,10 +183,14 @@ std::vector<std::uint32_t> zone_of_samples(const HeightField& field,
     std::vector<std::uint32_t> borders;
     for (std::uint32_t z = 0; z < zones.size(); ++z) {
         const ToleranceZone& given = zones[z];
-        check(given.tolerance, "tolerance");
-        if (given.thickness) check(*given.thickness, "tolerance of the thickness");
+        check(given.tolerance, "inspection.tolerance",
+              "tolerance: the lower limit must not lie above the upper one");
+        if (given.thickness)
+            check(*given.thickness, "inspection.thickness_tolerance",
+                  "tolerance of the thickness: the lower limit must not lie above the upper one");
         if (!std::isfinite(given.edge_radius) || given.edge_radius < 0.0) {
-            throw InputError("the radius of an edge zone must be positive, in millimetres");
+            throw InputError("inspection.edge_radius",
+                             "the radius of an edge zone must be positive, in millimetres");
         }
         std::vector<std::uint8_t> edge;
         if (given.edge_radius > 0.0) {

@@ -29,10 +29,12 @@ RawMesh read_by_assimp(const std::string& path) {
             path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType |
                       aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
     } catch (const std::exception& error) {
-        throw InputError(path + ": cannot be read as a mesh: " + error.what());
+        throw InputError("mesh.not_readable", "{file}: cannot be read as a mesh: {reason}",
+                         {{"file", path}, {"reason", error.what()}});
     }
     if (scene == nullptr) {
-        throw InputError(path + ": cannot be read as a mesh: " + importer.GetErrorString());
+        throw InputError("mesh.not_readable", "{file}: cannot be read as a mesh: {reason}",
+                         {{"file", path}, {"reason", importer.GetErrorString()}});
     }
     RawMesh mesh;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
@@ -48,8 +50,9 @@ RawMesh read_by_assimp(const std::string& path) {
             Triangle t{};
             for (unsigned k = 0; k < 3; ++k) {
                 if (face.mIndices[k] >= part.mNumVertices) {
-                    throw InputError(path + ": triangle " + std::to_string(f) +
-                                     " names a vertex that is not there");
+                    throw InputError("mesh.triangle_without_vertex",
+                                     "{file}: triangle {triangle} names a vertex that is not there",
+                                     {{"file", path}, {"triangle", f}});
                 }
                 t[k] = base + face.mIndices[k];
             }
@@ -69,20 +72,24 @@ bool is_ply(const std::string& path) {
 
 TriangleMesh read_mesh(const std::string& path, double unit_mm, const Frame& work_from_mesh) {
     if (!std::isfinite(unit_mm) || unit_mm <= 0.0) {
-        throw InputError(path + ": the unit of the mesh must be a positive number of millimetres");
+        throw InputError("mesh.unit",
+                         "{file}: the unit of the mesh must be a positive number of millimetres",
+                         {{"file", path}});
     }
-    if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": there is no such file");
+    if (!std::filesystem::is_regular_file(path))
+        throw InputError("mesh.no_such_file", "{file}: there is no such file", {{"file", path}});
     const bool ply = std::filesystem::path(path).extension() == ".ply" || is_ply(path);
     RawMesh raw = ply ? read_ply(path) : read_by_assimp(path);
-    if (raw.triangles.empty()) throw InputError(path + ": the mesh has no triangle");
+    if (raw.triangles.empty())
+        throw InputError("mesh.no_triangle", "{file}: the mesh has no triangle", {{"file", path}});
     TriangleMesh mesh;
     mesh.triangles = std::move(raw.triangles);
     mesh.vertices.reserve(raw.vertices.size());
     for (const Vec3& vertex : raw.vertices) {
         const auto moved = Vec3(work_from_mesh * Vec3(unit_mm * vertex)).cast<float>().eval();
         if (!moved.allFinite()) {
-            throw InputError(path + ": vertex " + std::to_string(mesh.vertices.size()) +
-                             " is not finite");
+            throw InputError("mesh.vertex_not_finite", "{file}: vertex {vertex} is not finite",
+                             {{"file", path}, {"vertex", mesh.vertices.size()}});
         }
         mesh.vertices.push_back(moved);
     }

@@ -50,18 +50,19 @@ struct Header {
 };
 
 /// A word of the file as a message can show it.
-std::string quoted(const std::string& word) {
+std::string shown(const std::string& word) {
     constexpr std::size_t kShown = 20;
-    std::string shown = word.substr(0, kShown);
+    std::string text = word.substr(0, kShown);
     std::replace_if(
-        shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return "'" + shown + "'";
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
 }
 
 Number number_of(const std::string& word) {
     const auto found = kNumbers.find(word);
     if (found == kNumbers.end())
-        throw InputError("unknown type " + quoted(word) + " in its header");
+        throw InputError("ply.type", "unknown type '{word}' in its header",
+                         {{"word", shown(word)}});
     return found->second;
 }
 
@@ -69,7 +70,8 @@ std::size_t count_of(const std::string& word) {
     std::size_t count = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
     if (error != std::errc() || end != word.data() + word.size()) {
-        throw InputError(quoted(word) + " in its header is no count");
+        throw InputError("ply.count", "'{word}' in its header is no count",
+                         {{"word", shown(word)}});
     }
     return count;
 }
@@ -78,7 +80,7 @@ Format format_of(const std::string& word) {
     if (word == "ascii") return Format::kAscii;
     if (word == "binary_little_endian") return Format::kLittleEndian;
     if (word == "binary_big_endian") return Format::kBigEndian;
-    throw InputError("unknown format " + quoted(word));
+    throw InputError("ply.format", "unknown format '{word}'", {{"word", shown(word)}});
 }
 
 Header read_header(std::string_view data) {
@@ -101,7 +103,9 @@ Header read_header(std::string_view data) {
         } else if (key == "element") {
             header.elements.push_back({words[1], count_of(words[2]), {}});
         } else if (key == "property") {
-            if (header.elements.empty()) throw InputError("a property before the first element");
+            if (header.elements.empty())
+                throw InputError("ply.property_without_element",
+                                 "a property before the first element");
             Property property;
             property.list = words[1] == "list";
             if (property.list) property.count = number_of(words[2]);
@@ -109,15 +113,19 @@ Header read_header(std::string_view data) {
             property.name = words[property.list ? 4 : 2];
             header.elements.back().properties.push_back(property);
         } else if (key == "end_header") {
-            if (!formatted) throw InputError("its header names no format");
+            if (!formatted) throw InputError("ply.no_format", "its header names no format");
             header.end = at;
             return header;
         } else if (!key.empty() && key != "comment" && key != "obj_info") {
-            throw InputError("unknown word " + quoted(key) + " in its header");
+            throw InputError("ply.keyword", "unknown word '{word}' in its header",
+                             {{"word", shown(key)}});
         }
     }
-    throw InputError("it has no PLY header");
+    throw InputError("ply.no_header", "it has no PLY header");
 }
+
+const Fact kListLength{"ply.list_length", "a list's length is out of range", {}};
+const Fact kVertexIndex{"ply.vertex_index", "a vertex index is out of range", {}};
 
 /// The numbers of the body, one after the other. Throws InputError where the file ends.
 class Body {
@@ -149,11 +157,11 @@ class Body {
         return 0.0;
     }
 
-    /// A whole number from 0 to `limit`.
-    std::size_t next_index(Number number, std::size_t limit, const char* what) {
+    /// A whole number from 0 to `limit`; else an InputError of `fault`.
+    std::size_t next_index(Number number, std::size_t limit, const Fact& fault) {
         const double value = next(number);
         if (!(value >= 0.0) || value != std::floor(value) || value > static_cast<double>(limit)) {
-            throw InputError(std::string("a ") + what + " is out of range");
+            throw InputError(fault);
         }
         return static_cast<std::size_t>(value);
     }
@@ -161,7 +169,8 @@ class Body {
   private:
     template <class T>
     double next_binary() {
-        if (left() < sizeof(T)) throw InputError("it ends before its last vertex or face");
+        if (left() < sizeof(T))
+            throw InputError("ply.cut_off", "it ends before its last vertex or face");
         std::array<char, sizeof(T)> bytes;
         std::memcpy(bytes.data(), data_.data() + at_, sizeof(T));
         at_ += sizeof(T);
@@ -173,7 +182,7 @@ class Body {
         constexpr std::string_view kBlank = " \t\r\n";
         const std::size_t begin = data_.find_first_not_of(kBlank, at_);
         if (begin == std::string_view::npos) {
-            throw InputError("it ends before its last vertex or face");
+            throw InputError("ply.cut_off", "it ends before its last vertex or face");
         }
         const std::size_t end = std::min(data_.find_first_of(kBlank, begin), data_.size());
         at_ = end;
@@ -181,8 +190,8 @@ class Body {
         const char* first = data_.data() + begin;
         const auto [stop, error] = std::from_chars(first, data_.data() + end, value);
         if (error != std::errc() || stop != data_.data() + end) {
-            throw InputError(quoted(std::string(data_.substr(begin, end - begin))) +
-                             " is no number");
+            throw InputError("ply.number", "'{word}' is no number",
+                             {{"word", shown(std::string(data_.substr(begin, end - begin)))}});
         }
         return value;
     }
@@ -197,13 +206,13 @@ void read_vertices(Body& body, const Element& element, std::vector<Vec3>& vertic
     for (const Property& p : element.properties) {
         seen += !p.list && (p.name == "x" || p.name == "y" || p.name == "z");
     }
-    if (seen != 3) throw InputError("its vertices have no x, y and z");
+    if (seen != 3) throw InputError("ply.no_coordinates", "its vertices have no x, y and z");
     vertices.reserve(std::min(element.count, body.left()));
     for (std::size_t i = 0; i < element.count; ++i) {
         Vec3 vertex = Vec3::Zero();
         for (const Property& p : element.properties) {
             if (p.list) {
-                for (std::size_t n = body.next_index(p.count, body.left(), "list's length"); n; --n)
+                for (std::size_t n = body.next_index(p.count, body.left(), kListLength); n; --n)
                     body.next(p.number);
                 continue;
             }
@@ -228,7 +237,7 @@ void read_others(Body& body, const Element& element, std::vector<Triangle>& tria
             }
             const bool face =
                 element.name == "face" && (p.name == "vertex_indices" || p.name == "vertex_index");
-            const std::size_t length = body.next_index(p.count, body.left(), "list's length");
+            const std::size_t length = body.next_index(p.count, body.left(), kListLength);
             Triangle t{};
             for (std::size_t k = 0; k < length; ++k) {
                 if (!face) {
@@ -236,7 +245,7 @@ void read_others(Body& body, const Element& element, std::vector<Triangle>& tria
                     continue;
                 }
                 const auto index =
-                    static_cast<std::uint32_t>(body.next_index(p.number, kLargest, "vertex index"));
+                    static_cast<std::uint32_t>(body.next_index(p.number, kLargest, kVertexIndex));
                 if (k == 0) t[0] = index;
                 if (k >= 2) {
                     t[2] = index;
@@ -261,7 +270,7 @@ RawMesh parse(std::string_view data) {
     }
     for (const Triangle& t : mesh.triangles) {
         if (std::max({t[0], t[1], t[2]}) >= mesh.vertices.size()) {
-            throw InputError("a face names a vertex that is not there");
+            throw InputError("ply.face_without_vertex", "a face names a vertex that is not there");
         }
     }
     return mesh;
@@ -270,14 +279,16 @@ RawMesh parse(std::string_view data) {
 }  // namespace
 
 RawMesh read_ply(const std::string& path) {
-    if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": there is no such file");
+    if (!std::filesystem::is_regular_file(path))
+        throw InputError("mesh.no_such_file", "{file}: there is no such file", {{"file", path}});
     std::ifstream file(path, std::ios::binary);
     const std::string data{std::istreambuf_iterator<char>(file), {}};
-    if (!file) throw InputError(path + ": cannot be read");
+    if (!file) throw InputError("ply.no_access", "{file}: cannot be read", {{"file", path}});
     try {
         return parse(data);
     } catch (const InputError& error) {
-        throw InputError(path + ": cannot be read as a PLY mesh: " + error.what());
+        throw error.within(
+            {"ply.not_readable", "{file}: cannot be read as a PLY mesh: ", {{"file", path}}});
     }
 }
 

@@ -36,22 +36,26 @@ struct SceneDeleter {
 
 void validate(const ColouredSurface& surface) {
     for (const Vec3& v : surface.vertices) {
-        if (!v.allFinite()) throw InputError("picture: a vertex is not finite");
+        if (!v.allFinite())
+            throw InputError("picture.vertex_not_finite", "picture: a vertex is not finite");
     }
     for (const Triangle& t : surface.triangles) {
         for (const std::uint32_t v : t) {
             if (v >= surface.vertices.size()) {
-                throw InputError("picture: a triangle names a vertex that is not there");
+                throw InputError("picture.triangle_without_vertex",
+                                 "picture: a triangle names a vertex that is not there");
             }
         }
     }
     if (surface.colours.size() != 1 && surface.colours.size() != surface.vertices.size()) {
-        throw InputError("picture: " + std::to_string(surface.colours.size()) + " colours for " +
-                         std::to_string(surface.vertices.size()) + " vertices");
+        throw InputError(
+            "picture.colours", "picture: {colours} colours for {vertices} vertices",
+            {{"colours", surface.colours.size()}, {"vertices", surface.vertices.size()}});
     }
     if (!surface.normals.empty() && surface.normals.size() != surface.vertices.size()) {
-        throw InputError("picture: " + std::to_string(surface.normals.size()) + " normals for " +
-                         std::to_string(surface.vertices.size()) + " vertices");
+        throw InputError(
+            "picture.normals", "picture: {normals} normals for {vertices} vertices",
+            {{"normals", surface.normals.size()}, {"vertices", surface.vertices.size()}});
     }
 }
 
@@ -104,7 +108,9 @@ struct Renderer::Scene {
 
 void Renderer::Scene::build() {
     device.reset(rtcNewDevice("threads=0"));
-    if (!device) throw InputError("Embree could not be started; is the processor without SSE2?");
+    if (!device)
+        throw InputError("rays.no_embree",
+                         "Embree could not be started; is the processor without SSE2?");
     scene.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbours
     for (const ColouredSurface& surface : surfaces) {
@@ -118,7 +124,8 @@ void Renderer::Scene::build() {
                                     sizeof(Triangle), surface.triangles.size());
         if (vertices == nullptr || indices == nullptr) {
             rtcReleaseGeometry(geometry);
-            throw InputError("picture: the triangles do not fit in memory");
+            throw InputError("picture.out_of_memory",
+                             "picture: the triangles do not fit in memory");
         }
         for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
             vertices[i] = (surface.vertices[i] - origin).cast<float>();
@@ -134,13 +141,15 @@ void Renderer::Scene::build() {
 
 View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size_t height) const {
     if (width == 0 || height == 0 || width > kMostPixels || height > kMostPixels) {
-        throw InputError("picture: a side has 1 to " + std::to_string(kMostPixels) + " pixels");
+        throw InputError("picture.size", "picture: a side has 1 to {most} pixels",
+                         {{"most", kMostPixels}});
     }
     const Vec3 right = camera.direction.cross(camera.up);
     if (!camera.target.allFinite() || !right.allFinite() ||
         !(right.norm() > 1e-9 * camera.direction.norm() * camera.up.norm()) ||
         !(camera.height > 0.0) || !std::isfinite(camera.height) || std::isnan(camera.near)) {
         throw InputError(
+            "picture.camera",
             "picture: a camera needs a direction, another one that is up, and a height above 0 mm");
     }
     View view;
@@ -217,7 +226,7 @@ Renderer::Renderer(std::vector<ColouredSurface> surfaces, const RunContext& cont
         any = any || !surface.triangles.empty();
         for (const Vec3& v : surface.vertices) scene_->extents.extend(v);
     }
-    if (!any) throw InputError("picture: there is nothing to be drawn");
+    if (!any) throw InputError("picture.empty", "picture: there is nothing to be drawn");
     scene_->surfaces = std::move(surfaces);
     scene_->origin = scene_->extents.center();
     context.throw_if_cancelled();

@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,9 @@ py::array_t<Scalar> own(std::vector<Scalar>&& data) {
     return py::array_t<Scalar>(static_cast<py::ssize_t>(moved->size()), moved->data(), owner);
 }
 
-/// A rigid transform from a 4 x 4 matrix; `name` stands for it in messages.
-Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name);
+/// A rigid transform from a 4 x 4 matrix; `name` stands for it in messages, after `context`.
+Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name,
+                 const std::optional<Fact>& context = std::nullopt);
 
 void bind_base(py::module_& m);
 void bind_geometry(py::module_& m);

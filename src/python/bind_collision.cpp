@@ -9,7 +9,9 @@ Carrier carrier_from(const std::string& name) {
     if (name == "tool") return Carrier::kTool;
     if (name == "wheel") return Carrier::kWheel;
     if (name == "part") return Carrier::kPart;
-    throw InputError("a body goes with base, tool, wheel or part, not with '" + name + "'");
+    throw InputError("call.carrier",
+                     "a body goes with base, tool, wheel or part, not with '{name}'",
+                     {{"name", name}});
 }
 
 py::dict collisions(const ToolPath& path, const py::list& given, double clearance,

@@ -10,8 +10,8 @@ namespace beltgrinding::python {
 
 void refuse_rest(const py::dict& d, const char* where) {
     if (d.empty()) return;
-    throw InputError(std::string(where) + ": unknown key '" +
-                     py::str((*d.begin()).first).cast<std::string>() + "'");
+    throw InputError("call.unknown_key", "{where}: unknown key '{key}'",
+                     {{"where", where}, {"key", py::str((*d.begin()).first).cast<std::string>()}});
 }
 
 py::dict copy_of(const py::dict& d) {
@@ -66,8 +66,10 @@ Workpiece workpiece_from(const py::dict& given) {
     } else if (shape == "strip") {
         workpiece.shape = Workpiece::Shape::kStrip;
     } else if (shape != "plane") {
-        throw InputError("workpiece: there is no shape '" + shape +
-                         "'; use plane, cylinder, sphere or strip");
+        throw InputError(
+            "call.workpiece",
+            "workpiece: there is no shape '{name}'; use plane, cylinder, sphere or strip",
+            {{"name", shape}});
     }
     workpiece.radius = take(d, "radius", workpiece.radius);
     workpiece.width = take(d, "width", workpiece.width);
@@ -108,9 +110,10 @@ std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const Conta
         return std::make_unique<ElasticFoundation>(
             foundation_stiffness(wheel, rim, force, design.softest()));
     }
-    throw InputError("compliance: there is no model '" + model +
-                     "'; use wheel_rim, bonded_layer, half_space, elastic_foundation, "
-                     "surrogate or geometric");
+    throw InputError("call.compliance",
+                     "compliance: there is no model '{name}'; use wheel_rim, bonded_layer, "
+                     "half_space, elastic_foundation, surrogate or geometric",
+                     {{"name", model}});
 }
 
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {
@@ -150,7 +153,8 @@ void bind_contact(py::module_& m) {
             contact.wheel = wheel_from(wheel);
             contact.workpiece = workpiece_from(workpiece);
             if (force.has_value() == approach.has_value()) {
-                throw InputError("contact: give either a force or an approach");
+                throw InputError("call.force_or_approach",
+                                 "contact: give either a force or an approach");
             }
             contact.force_control = force.has_value();
             contact.force = force.value_or(0.0);

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "dict.h"
+#include "facts.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -33,7 +34,10 @@ py::list events_to_list(const std::vector<Event>& events) {
         }
         d["face"] = e.face > 0 ? py::cast(e.face) : py::none();
         d["bodies"] = e.bodies;
-        d["message"] = e.message;
+        d["message"] = text(e.message());
+        py::list facts;
+        for (const Fact& fact : e.facts) facts.append(to_dict(fact));
+        d["facts"] = facts;
         d["advice"] = event_kind(e.kind).advice;
         list.append(d);
     }

@@ -2,6 +2,7 @@
 #include "beltgrinding/mesh_reader.h"
 #include "beltgrinding/shape.h"
 #include "beltgrinding/stock.h"
+#include "facts.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -12,7 +13,8 @@ using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::force
 TriangleMesh mesh_from(const Vertices& vertices, const Indices& triangles) {
     if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 ||
         triangles.shape(1) != 3) {
-        throw InputError("a mesh needs vertices of shape (n, 3) and triangles of shape (m, 3)");
+        throw InputError("call.mesh",
+                         "a mesh needs vertices of shape (n, 3) and triangles of shape (m, 3)");
     }
     TriangleMesh mesh;
     mesh.vertices.resize(static_cast<std::size_t>(vertices.shape(0)));
@@ -55,7 +57,8 @@ void bind_geometry(py::module_& m) {
     m.def(
         "read_mesh",
         [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement) {
-            const Frame frame = frame_from(placement, "the placement of " + path);
+            const Frame frame =
+                frame_from(placement, "placement", Fact{"mesh.file", "{file}: ", {{"file", path}}});
             const py::gil_scoped_release release;
             return read_mesh(path, unit_mm, frame);
         },
@@ -80,7 +83,9 @@ void bind_geometry(py::module_& m) {
                  const Box box = shape.extents();
                  return std::pair<Vec3, Vec3>(box.min(), box.max());
              })
-        .def("warnings", &Shape::warnings);
+        .def(
+            "warnings", [](const Shape& shape) { return to_list(shape.warnings()); },
+            "What is odd about it, a `Fact` each.");
     m.def("shape_from_mesh", &shape_from_mesh, py::arg("mesh"),
           py::call_guard<py::gil_scoped_release>(), "A faceted shell from a mesh.");
     m.def(
@@ -114,7 +119,7 @@ void bind_geometry(py::module_& m) {
             }
             py::dict found;
             found["face_area"] = report.face_area;
-            found["warnings"] = report.warnings;
+            found["warnings"] = to_list(report.warnings);
             if (parameters) {
                 py::array_t<double> uv({report.parameters.size(), std::size_t{2}});
                 std::copy_n(reinterpret_cast<const double*>(report.parameters.data()), uv.size(),

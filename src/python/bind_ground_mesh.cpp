@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "arrays.h"
+#include "facts.h"
 #include "inspection/ground_mesh.h"
 
 namespace beltgrinding::python {
@@ -54,7 +55,7 @@ void bind_ground_mesh(py::module_& m) {
                  d["slid"] = mesh.slid;
                  d["missed"] = mesh.missed;
                  d["defective"] = mesh.defective;
-                 d["warnings"] = mesh.warnings;
+                 d["warnings"] = to_list(mesh.warnings);
                  return d;
              })
         .def("stl", [](const GroundMesh& mesh) { return py::bytes(mesh_stl(mesh)); })
@@ -93,9 +94,10 @@ void bind_ground_mesh(py::module_& m) {
             std::vector<char> chosen(shape.face_count(), 0);
             for (const std::uint32_t f : field.face) {
                 if (f >= chosen.size())
-                    throw InputError("the height field is not of this shape: it has face " +
-                                     std::to_string(f + 1) + ", the shape has " +
-                                     std::to_string(chosen.size()) + " faces");
+                    throw InputError("inspection.no_such_face",
+                                     "the height field is not of this shape: it has face {face}, "
+                                     "the shape has {count} faces",
+                                     {{"face", f + 1}, {"count", chosen.size()}});
                 if (!chosen[f]++) options.fine_faces.push_back(f);
             }
             const SurfaceMesh surface = surface_mesh(shape, options, run.part(0.0, 0.6));

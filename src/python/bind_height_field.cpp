@@ -1,6 +1,7 @@
 #include "arrays.h"
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/stock.h"
+#include "facts.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -10,7 +11,7 @@ py::dict to_dict(const StockReport& report) {
     d["missed"] = report.missed;
     d["defective"] = report.defective;
     d["volume"] = report.volume;
-    d["warnings"] = report.warnings;
+    d["warnings"] = to_list(report.warnings);
     return d;
 }
 
@@ -66,13 +67,14 @@ void bind_height_field(py::module_& m) {
             "set_height",
             [](HeightField& field, const py::array_t<double, py::array::forcecast>& height) {
                 if (height.ndim() != 1 || static_cast<std::size_t>(height.size()) != field.size()) {
-                    throw InputError("set_height needs one value per sample");
+                    throw InputError("call.heights", "set_height needs one value per sample");
                 }
                 const auto values = height.unchecked<1>();
                 for (std::size_t i = 0; i < field.size(); ++i) {
                     const double value = values(static_cast<py::ssize_t>(i));
                     if (!std::isfinite(value)) {
-                        throw InputError("height " + std::to_string(i) + " is not finite");
+                        throw InputError("call.height", "height {index} is not finite",
+                                         {{"index", i}});
                     }
                 }
                 for (std::size_t i = 0; i < field.size(); ++i) {
@@ -84,7 +86,7 @@ void bind_height_field(py::module_& m) {
             "set_height_sd",
             [](HeightField& field, const std::vector<float>& sd) {
                 if (sd.size() != field.size()) {
-                    throw InputError("set_height_sd needs one value per sample");
+                    throw InputError("call.height_sd", "set_height_sd needs one value per sample");
                 }
                 field.height_sd = sd;
             },
@@ -93,10 +95,12 @@ void bind_height_field(py::module_& m) {
             "set_measured",
             [](HeightField& field, const std::vector<float>& measured) {
                 if (!measured.empty() && measured.size() != field.size()) {
-                    throw InputError("set_measured needs one value per sample, or none");
+                    throw InputError("call.measured",
+                                     "set_measured needs one value per sample, or none");
                 }
                 for (const float height : measured) {
-                    if (std::isinf(height)) throw InputError("a measured height is not finite");
+                    if (std::isinf(height))
+                        throw InputError("call.measured_height", "a measured height is not finite");
                 }
                 field.measured = measured;
             },

@@ -15,7 +15,8 @@ std::vector<Row> rows_of(const Array<T>& array, const char* what) {
     static_assert(sizeof(Row) == 3 * sizeof(T));
     if (array.size() == 0) return {};
     if (array.ndim() != 2 || array.shape(1) != 3)
-        throw InputError(std::string("picture: ") + what + " have the shape (n, 3)");
+        throw InputError("call.picture_rows", "picture: {name} have the shape (n, 3)",
+                         {{"name", what}});
     std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
     std::copy_n(array.data(), array.size(), reinterpret_cast<T*>(rows.data()));
     return rows;

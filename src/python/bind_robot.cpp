@@ -16,7 +16,8 @@ void read_limits(py::dict& d, RobotJoint& joint) {
 RobotArm arm_from(const std::string& convention, const py::list& rows,
                   const Eigen::Matrix4d& flange, double coupling) {
     if (rows.size() != 6)
-        throw InputError("robot: it has 6 joints, not " + std::to_string(rows.size()));
+        throw InputError("call.joints", "robot: it has 6 joints, not {count}",
+                         {{"count", rows.size()}});
     RobotModel model;
     std::array<py::dict, 6> given;
     for (std::size_t i = 0; i < 6; ++i) given[i] = copy_of(rows[i].cast<py::dict>());
@@ -24,7 +25,8 @@ RobotArm arm_from(const std::string& convention, const py::list& rows,
         for (std::size_t i = 0; i < 6; ++i) {
             model.joints[i].parent_from_joint = frame_from(
                 take(given[i], "parent_from_joint", Eigen::Matrix4d(Eigen::Matrix4d::Identity())),
-                "robot: joint " + std::to_string(i + 1) + ": parent_from_joint");
+                "parent_from_joint",
+                Fact{"robot.joint", "robot: joint {joint}: ", {{"joint", i + 1}}});
             model.joints[i].axis = take(given[i], "axis", model.joints[i].axis);
         }
     } else if (convention == "standard_dh" || convention == "modified_dh") {
@@ -39,8 +41,10 @@ RobotArm arm_from(const std::string& convention, const py::list& rows,
         model = model_from_dh(
             table, convention == "standard_dh" ? DhConvention::kStandard : DhConvention::kModified);
     } else {
-        throw InputError("robot: there is no convention '" + convention +
-                         "'; use urdf, standard_dh or modified_dh");
+        throw InputError(
+            "call.convention",
+            "robot: there is no convention '{name}'; use urdf, standard_dh or modified_dh",
+            {{"name", convention}});
     }
     for (std::size_t i = 0; i < 6; ++i) {
         read_limits(given[i], model.joints[i]);

@@ -23,7 +23,8 @@ std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
         return std::make_unique<HammannLaw>(p.coefficient);
     }
     if (model != "local") {
-        throw InputError("law: there is no model '" + model + "'; use local or hammann");
+        throw InputError("call.law", "law: there is no model '{name}'; use local or hammann",
+                         {{"name", model}});
     }
     p.pressure_threshold = take(d, "pressure_threshold", p.pressure_threshold);
     p.pressure_exponent = take(d, "pressure_exponent", p.pressure_exponent);
@@ -53,12 +54,15 @@ BeltWear wear_from(const py::dict& given) {
     } else if (model == "curve") {
         p.model = BeltWear::Model::kCurve;
     } else if (model != "none") {
-        throw InputError("wear: there is no model '" + model +
-                         "'; use none, exponential, two_stage or curve");
+        throw InputError(
+            "call.wear",
+            "wear: there is no model '{name}'; use none, exponential, two_stage or curve",
+            {{"name", model}});
     }
     const auto variable = take<std::string>(d, "variable", "work");
     if (variable != "work" && variable != "volume") {
-        throw InputError("wear: the variable is work or volume, not '" + variable + "'");
+        throw InputError("call.wear_variable", "wear: the variable is work or volume, not '{name}'",
+                         {{"name", variable}});
     }
     if (variable == "volume") p.variable = BeltWear::Variable::kVolume;
     p.scale = take(d, "scale", p.scale);
@@ -174,8 +178,9 @@ TimeLaw time_law_from(const py::dict& given) {
     if (timing == "trapezoidal") {
         law.timing = TimeLaw::Timing::kTrapezoidal;
     } else if (timing != "constant_feed") {
-        throw InputError("time law: there is no timing '" + timing +
-                         "'; use constant_feed or trapezoidal");
+        throw InputError("call.timing",
+                         "time law: there is no timing '{name}'; use constant_feed or trapezoidal",
+                         {{"name", timing}});
     }
     law.acceleration = take(d, "acceleration", law.acceleration);
     law.angular_acceleration = take(d, "angular_acceleration", law.angular_acceleration);
@@ -196,6 +201,7 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
         forces.size() != n || rapid.size() != n || lines.size() != n ||
         (joints && joints->size() != 6 * n) || (zones && zones->size() != n)) {
         throw InputError(
+            "call.path",
             "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines, "
             "joints, zones");
     }
@@ -203,7 +209,9 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
     if (holding == "part_in_hand") {
         cell.holding = Holding::kPartInHand;
     } else if (holding != "tool_in_hand") {
-        throw InputError("holding must be tool_in_hand or part_in_hand, not '" + holding + "'");
+        throw InputError("call.holding",
+                         "holding must be tool_in_hand or part_in_hand, not '{name}'",
+                         {{"name", holding}});
     }
     cell.base_from_work = frame_from(base_from_work, "base_from_work");
     cell.tcp_from_contact = frame_from(tcp_from_contact, "tcp_from_contact");

@@ -10,7 +10,8 @@ using Cells = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 ContactProblem problem_from(const Cells& gap, const Cells& coverage, double ds, double width) {
     if (gap.ndim() != 2 || coverage.ndim() != 2 || gap.size() != coverage.size()) {
-        throw InputError("contact: gap and coverage must be arrays (ny, nx)");
+        throw InputError("call.contact_arrays",
+                         "contact: gap and coverage must be arrays (ny, nx)");
     }
     ContactProblem problem;
     problem.grid.nx = static_cast<int>(gap.shape(1));
@@ -90,7 +91,8 @@ void bind_surrogate(py::module_& m) {
             problem.validate();
             const ContactFeatures features{cell, rim_thickness};
             if (!(approach > problem.gap.minCoeff())) {
-                throw InputError("surrogate: the approach must exceed the smallest gap");
+                throw InputError("call.approach",
+                                 "surrogate: the approach must exceed the smallest gap");
             }
             std::vector<int> cells = features.candidates(problem, approach);
             const Eigen::MatrixXf values = features.of(problem, approach, cells).transpose();

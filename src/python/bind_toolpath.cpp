@@ -10,8 +10,8 @@ using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::force
 
 void check_rows(const py::array& array, py::ssize_t columns, const char* name) {
     if (array.ndim() != 2 || array.shape(1) != columns) {
-        throw InputError(std::string(name) + " must have the shape (n, " + std::to_string(columns) +
-                         ")");
+        throw InputError("call.rows", "{name} must have the shape (n, {columns})",
+                         {{"name", name}, {"columns", columns}});
     }
 }
 
@@ -39,7 +39,7 @@ RasterSurface surface_from(const Doubles& points, const Doubles& normals, const 
     check_rows(scalars, 3, "scalars");
     const auto count = static_cast<std::size_t>(triangles.shape(0));
     if (static_cast<std::size_t>(scalars.shape(0)) != count)
-        throw InputError("scalars needs a row for every triangle");
+        throw InputError("call.scalars", "scalars needs a row for every triangle");
     surface.triangles.resize(count);
     surface.scalar.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +60,8 @@ py::dict raster(const Doubles& points, const Doubles& normals, const Indices& tr
     if (spacing == "even") {
         options.spacing = RasterSpacing::kEven;
     } else if (spacing != "lines") {
-        throw InputError("spacing is '" + spacing + "'; use lines or even");
+        throw InputError("call.raster_spacing", "spacing is '{name}'; use lines or even",
+                         {{"name", spacing}});
     }
     options.weld = weld;
     options.split_turn = split_turn;
@@ -110,12 +111,12 @@ void bind_toolpath(py::module_& m) {
            const Doubles& normals, const RunContext* context) {
             const ContactWheel shape = wheel_from(wheel);
             if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
-                throw InputError("frames must have the shape (n, 4, 4)");
+                throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
             std::vector<Frame> poses(static_cast<std::size_t>(frames.shape(0)));
             using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
             for (std::size_t i = 0; i < poses.size(); ++i)
-                poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i),
-                                      "frame " + std::to_string(i + 1));
+                poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i), "frame",
+                                      Fact{"call.pose", "pose {pose}: ", {{"pose", i + 1}}});
             const auto point = vectors(points, "points"), normal = vectors(normals, "normals");
             std::vector<double> depth;
             {

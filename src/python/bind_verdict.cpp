@@ -167,7 +167,9 @@ void bind_verdict(py::module_& m) {
         [](const HeightField& field, const std::vector<std::uint32_t>& samples,
            const TriangleMesh& others, const RunContext* context) {
             for (const std::uint32_t i : samples) {
-                if (i >= field.size()) throw InputError("there is no sample " + std::to_string(i));
+                if (i >= field.size())
+                    throw InputError("call.no_such_sample", "there is no sample {index}",
+                                     {{"index", i}});
             }
             Thickness found;
             {
@@ -194,7 +196,8 @@ void bind_verdict(py::module_& m) {
         [](const HeightField& field, const Doubles& ends, const Bools& begins,
            const RunContext* context) {
             if (ends.ndim() != 2 || ends.shape(1) != 3 || begins.size() != ends.shape(0)) {
-                throw InputError("waviness needs ends of shape (m, 3) and m flags");
+                throw InputError("call.waviness",
+                                 "waviness needs ends of shape (m, 3) and m flags");
             }
             std::vector<MotionEnd> motions(static_cast<std::size_t>(ends.shape(0)));
             const auto p = ends.unchecked<2>();

@@ -23,7 +23,8 @@ std::span<const T> values(const Array<T>& array) {
 
 SoHeightField& node_at(std::uintptr_t address) {
     SoHeightField* node = SoHeightField::at(address);
-    if (node == nullptr) throw InputError("there is no SoHeightField at this address");
+    if (node == nullptr)
+        throw InputError("coin.no_node", "there is no SoHeightField at this address");
     return *node;
 }
 

@@ -20,7 +20,8 @@ T take(py::dict& d, const char* key, T fallback) {
         d.attr("pop")(key);
         return value;
     } catch (const py::cast_error&) {
-        throw InputError(std::string("'") + key + "' has a value of the wrong type");
+        throw InputError("call.wrong_type", "'{key}' has a value of the wrong type",
+                         {{"key", key}});
     }
 }
 

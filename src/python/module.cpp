@@ -7,30 +7,34 @@
 #include "arrays.h"
 #include "base/threads.h"
 #include "beltgrinding/run_context.h"
+#include "facts.h"
 #include "heightfield/kdop_tree.h"
 
 namespace beltgrinding::python {
 
-Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name) {
+Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name,
+                 const std::optional<Fact>& context) {
     const Eigen::Matrix3d r = matrix.topLeftCorner<3, 3>();
     const bool rigid = matrix.allFinite() && (r.transpose() * r).isIdentity(1e-6) &&
                        r.determinant() > 0.0 &&
                        matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
-    if (!rigid) throw InputError(name + " is no rigid transform (4 x 4, rotation and translation)");
+    if (!rigid) {
+        const InputError error("call.frame",
+                               "{name} is no rigid transform (4 x 4, rotation and translation)",
+                               {{"name", name}});
+        throw context ? error.within(*context) : error;
+    }
     return Frame(matrix);
 }
 
 void bind_base(py::module_& m) {
-    static py::exception<InputError> input_error(m, "InputError", PyExc_ValueError);
+    define_facts(m);
+    static PyObject* const input_error = py::object(m.attr("InputError")).release().ptr();
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const InputError& error) {
-            // A path, or a word of a broken file, need not be UTF-8.
-            const std::string_view text = error.what();
-            const auto message = py::reinterpret_steal<py::object>(
-                PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
-            PyErr_SetObject(input_error.ptr(), message.ptr());
+            raise(error, input_error);
         }
     });
     py::register_exception<Cancelled>(m, "Cancelled", PyExc_Exception);
@@ -47,7 +51,8 @@ void bind_base(py::module_& m) {
     m.def(
         "set_threads",
         [](int count) {
-            if (count < 0) throw InputError("the number of threads must not be negative");
+            if (count < 0)
+                throw InputError("call.threads", "the number of threads must not be negative");
             set_threads(static_cast<std::size_t>(count));
         },
         py::arg("count"),

@@ -1,6 +1,7 @@
 // The binding `beltgrinding_scan`: apart from the core, which must load where there is no PCL.
 #include "arrays.h"
 #include "beltgrinding/registration.h"
+#include "facts.h"
 
 namespace {
 
@@ -12,7 +13,7 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 std::vector<Vec3> points_from(const Doubles& array, const char* what) {
     if (array.size() == 0) return {};
     if (array.ndim() != 2 || array.shape(1) != 3)
-        throw InputError(std::string(what) + " must be of shape (n, 3)");
+        throw InputError("call.points", "{name} must be of shape (n, 3)", {{"name", what}});
     std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
     std::copy_n(array.data(), array.size(), reinterpret_cast<double*>(points.data()));
     return points;
@@ -36,7 +37,7 @@ PYBIND11_MODULE(beltgrinding_scan, m) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const InputError& error) {
-            PyErr_SetString(input_error, error.what());
+            raise(error, input_error);
         } catch (const Cancelled& error) {
             PyErr_SetString(cancelled, error.what());
         }

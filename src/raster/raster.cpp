@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -20,12 +19,6 @@ constexpr double kLeastGradient = 0.1;  // of the usual one: 84 degrees against 
 constexpr double kSliver = 0.02;        // area over longest edge squared: its gradient is noise
 constexpr double kRounding = 1e-9;      // of a step-over
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.4g", value);
-    return buffer;
-}
 
 struct TriangleFacts {
     double area = 0.0;      ///< mm2
@@ -122,9 +115,10 @@ class Raster {
         const double length = nodes.back().length;
         const double wanted = std::ceil(length / options_.step_over - kRounding);
         if (!(double(levels_.size()) + wanted <= double(options_.most)))
-            throw InputError("the step-over of " + text(options_.step_over) +
-                             " mm gives more than " + std::to_string(options_.most) +
-                             " passes; enlarge it");
+            throw InputError(
+                "raster.too_many_passes",
+                "the step-over of {step_over:.4g} mm gives more than {count} passes; enlarge it",
+                {{"step_over", options_.step_over}, {"count", options_.most}});
         const auto count = static_cast<std::size_t>(std::max(1.0, wanted));
         for (std::size_t k = 0; k < count; ++k) {
             const double at = (double(k) + 0.5) / double(count) * length;
@@ -318,14 +312,16 @@ bool straight(const RasterLine& line, std::size_t i, std::size_t j, const PoseSp
 RasterLines raster_lines(const RasterSurface& surface, const RasterOptions& options,
                          const RunContext& context) {
     if (!(options.step_over > 0) || !std::isfinite(options.step_over))
-        throw InputError("the step-over must be above 0 mm");
+        throw InputError("raster.step_over", "the step-over must be above 0 mm");
     if (surface.scalar.size() != surface.triangles.size() ||
         surface.normal.size() != surface.point.size())
-        throw InputError("a raster needs a normal for every point, scalars for every triangle");
+        throw InputError("raster.lengths",
+                         "a raster needs a normal for every point, scalars for every triangle");
     for (const Triangle& t : surface.triangles)
         for (const std::uint32_t v : t)
             if (v >= surface.point.size())
-                throw InputError("a triangle names a point that is none");
+                throw InputError("raster.triangle_without_point",
+                                 "a triangle names a point that is none");
     return Raster(surface, options, context).run();
 }
 

@@ -30,7 +30,8 @@ struct RayScene::Impl {
 RayScene::RayScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
     impl_->device.reset(rtcNewDevice("threads=0"));
     if (!impl_->device)
-        throw InputError("Embree could not be started; is the processor without SSE2?");
+        throw InputError("rays.no_embree",
+                         "Embree could not be started; is the processor without SSE2?");
     impl_->scene.reset(rtcNewScene(impl_->device.get()));
     RTCScene scene = impl_->scene.get();
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -42,7 +43,7 @@ RayScene::RayScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
                                             sizeof(Triangle), mesh.triangles.size());
     if (vertices == nullptr || indices == nullptr) {
         rtcReleaseGeometry(geometry);
-        throw InputError("the mesh does not fit in memory");
+        throw InputError("rays.out_of_memory", "the mesh does not fit in memory");
     }
     std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
     std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));

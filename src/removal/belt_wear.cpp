@@ -10,7 +10,8 @@ namespace beltgrinding {
 void BeltState::validate() const {
     for (const double value : {work, volume, time}) {
         if (!std::isfinite(value) || value < 0.0) {
-            throw InputError("belt: its work, volume and time must be zero or positive");
+            throw InputError("wear.belt",
+                             "belt: its work, volume and time must be zero or positive");
         }
     }
 }
@@ -20,18 +21,19 @@ BeltWear::BeltWear(Parameters parameters) : parameters_(std::move(parameters)) {
     const auto share = [](double value) { return value >= 0.0 && value <= 1.0; };
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     if (p.model == Model::kCurve && p.curve.empty()) {
-        throw InputError("wear: the model curve needs a curve");
+        throw InputError("wear.no_curve", "wear: the model curve needs a curve");
     }
     if (p.model == Model::kExponential || p.model == Model::kTwoStage) {
         if (!positive(p.scale) || !share(p.rest)) {
-            throw InputError("wear: the scale must be positive and the rest lie in [0, 1]");
+            throw InputError("wear.scale",
+                             "wear: the scale must be positive and the rest lie in [0, 1]");
         }
     }
     if (p.model == Model::kTwoStage &&
         (!positive(p.first_scale) || !share(p.first_share) || p.rest + p.first_share > 1.0)) {
-        throw InputError(
-            "wear: the first stage's scale must be positive, and rest and first share "
-            "together at most 1");
+        throw InputError("wear.first_stage",
+                         "wear: the first stage's scale must be positive, and rest and first share "
+                         "together at most 1");
     }
 }
 

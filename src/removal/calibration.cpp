@@ -44,7 +44,9 @@ class Bounds {
             if (!settings.free[static_cast<std::size_t>(k)]) continue;
             const bool sound = settings.lower[k] < settings.upper[k] &&
                                std::isfinite(settings.lower[k] + settings.upper[k]);
-            if (!sound) throw InputError("calibration: bounds of a parameter are not in order");
+            if (!sound)
+                throw InputError("calibration.bounds",
+                                 "calibration: bounds of a parameter are not in order");
             indices_.push_back(k);
         }
     }
@@ -142,8 +144,10 @@ class Fit {
         : grinds_(grinds), references_(references), bounds_(settings) {
         const Eigen::Index n = grinds.measured.size(), levels = grinds.areas.size();
         if (n <= bounds_.size()) {
-            throw InputError("calibration: " + std::to_string(n) + " grinds cannot tell " +
-                             std::to_string(bounds_.size()) + " parameters; measure more");
+            throw InputError(
+                "calibration.too_few",
+                "calibration: {grinds} grinds cannot tell {parameters} parameters; measure more",
+                {{"grinds", n}, {"parameters", bounds_.size()}});
         }
         counts_ = Eigen::ArrayXd::Zero(levels);
         for (Eigen::Index i = 0; i < n; ++i) {
@@ -202,7 +206,8 @@ class Fit {
         solver.setFtol(1e-10);
         solver.setXtol(1e-10);
         solver.minimize(u);
-        if (!u.allFinite()) throw InputError("calibration: the fit does not converge");
+        if (!u.allFinite())
+            throw InputError("calibration.not_converged", "calibration: the fit does not converge");
     }
 
     /// Residuals, scatter, weights, and the probabilities of unknown areas.
@@ -329,22 +334,26 @@ class Fit {
 void MeasuredGrinds::validate() const {
     const Eigen::Index n = measured.size();
     for (const auto* column : {&force, &area, &speed, &feed, &time, &wear, &spread}) {
-        if (column->size() != n) throw InputError("calibration: columns differ in length");
+        if (column->size() != n)
+            throw InputError("calibration.lengths", "calibration: columns differ in length");
     }
     for (const auto* column : {&force, &speed, &time, &measured}) {
         if (!column->allFinite() || !(*column > 0.0).all()) {
-            throw InputError("calibration: force, speed, time and removal must be positive");
+            throw InputError("calibration.not_positive",
+                             "calibration: force, speed, time and removal must be positive");
         }
     }
     if (!feed.allFinite() || (feed < 0.0).any() || !wear.allFinite() || (wear < 0.0).any()) {
-        throw InputError("calibration: feed and wear must be zero or positive");
+        throw InputError("calibration.negative",
+                         "calibration: feed and wear must be zero or positive");
     }
     if (!areas.allFinite() || !(areas > 0.0).all() || (area <= 0.0).any() || area.isInf().any() ||
         (spread <= 0.0).any() || spread.isInf().any()) {
-        throw InputError("calibration: areas must be positive");
+        throw InputError("calibration.areas", "calibration: areas must be positive");
     }
     if (areas.size() == 0 && area.isNaN().any()) {
-        throw InputError("calibration: an area is unknown, and what it can be as well");
+        throw InputError("calibration.area_unknown",
+                         "calibration: an area is unknown, and what it can be as well");
     }
 }
 

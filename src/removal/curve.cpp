@@ -26,8 +26,10 @@ Curve::Curve(std::vector<Eigen::Vector2d> points, const std::string& name)
                  (k == 0 || points_[k].x() > points_[k - 1].x());
     }
     if (!usable) {
-        throw InputError(name + ": a curve needs at least two points [x, value], x ascending and " +
-                         "values zero or positive");
+        throw InputError("law.curve",
+                         "{key}: a curve needs at least two points [x, value], x ascending and "
+                         "values zero or positive",
+                         {{"key", name}});
     }
     const std::size_t n = points_.size();
     std::vector<double> h(n - 1), d(n - 1);

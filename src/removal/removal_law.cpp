@@ -11,8 +11,10 @@ namespace {
 
 double checked(double coefficient) {
     if (!std::isfinite(coefficient) || coefficient < 0.0) {
-        throw InputError("removal law: the coefficient is " + std::to_string(coefficient) +
-                         " mm2/N; give zero or a positive one");
+        throw InputError(
+            "law.coefficient",
+            "removal law: the coefficient is {coefficient:f} mm2/N; give zero or a positive one",
+            {{"coefficient", coefficient}});
     }
     return coefficient;
 }
@@ -28,20 +30,25 @@ std::string text(const char* name, double coefficient) {
 LocalLaw::LocalLaw(LocalLawParameters parameters) : parameters_(std::move(parameters)) {
     LocalLawParameters& p = parameters_;
     checked(p.coefficient);
-    const auto require = [](bool holds, const char* what) {
-        if (!holds) throw InputError(std::string("removal law: ") + what);
+    const auto require = [](bool holds, const char* code, const char* form) {
+        if (!holds) throw InputError(code, form);
     };
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     const auto not_negative = [](double value) { return std::isfinite(value) && value >= 0.0; };
-    require(not_negative(p.pressure_threshold), "the threshold pressure must not be negative");
-    require(positive(p.pressure_exponent), "the pressure's exponent must be positive");
-    require(std::isfinite(p.speed_exponent) && std::isfinite(p.feed_exponent),
-            "the exponents of speed and feed must be finite");
+    require(not_negative(p.pressure_threshold), "law.pressure_threshold",
+            "removal law: the threshold pressure must not be negative");
+    require(positive(p.pressure_exponent), "law.pressure_exponent",
+            "removal law: the pressure's exponent must be positive");
+    require(std::isfinite(p.speed_exponent) && std::isfinite(p.feed_exponent), "law.exponents",
+            "removal law: the exponents of speed and feed must be finite");
     require(
         positive(p.reference_pressure) && positive(p.reference_speed) && positive(p.reference_feed),
-        "the references of pressure, speed and feed must be positive");
-    require(not_negative(p.saturation_pressure), "the saturation pressure must not be negative");
-    require(p.land_share > 0.0 && p.land_share <= 1.0, "the land share must lie in (0, 1]");
+        "law.references",
+        "removal law: the references of pressure, speed and feed must be positive");
+    require(not_negative(p.saturation_pressure), "law.saturation_pressure",
+            "removal law: the saturation pressure must not be negative");
+    require(p.land_share > 0.0 && p.land_share <= 1.0, "law.land_share",
+            "removal law: the land share must lie in (0, 1]");
     if (!p.land_curve.empty()) serration_ = p.land_curve(p.land_share);
 }
 
@@ -82,23 +89,28 @@ std::optional<OutsideRange> LocalLaw::outside(double peak_pressure,
                                               const ProcessState& state) const {
     const LocalLawParameters& p = parameters_;
     std::optional<OutsideRange> found;
-    const auto look = [&](const Curve& curve, double value, double unit, const char* what,
-                          const char* name) {
+    const auto look = [&](const Curve& curve, double value, double unit, const char* name,
+                          const char* code, const char* form) {
         if (curve.empty() || curve.measured(value) || found) return;
-        std::ostringstream text;
-        text.precision(3);
-        const std::string space = *name ? " " : "";
-        text << what << " of " << value / unit << space << name << " lies outside the measured "
-             << curve.lower() / unit << " to " << curve.upper() / unit << space << name;
         const double limit = value > curve.upper() ? curve.upper() : curve.lower();
-        found = OutsideRange{text.str(), name, value / unit, limit / unit};
+        const Arguments arguments = {{"value", value / unit},
+                                     {"least", curve.lower() / unit},
+                                     {"most", curve.upper() / unit}};
+        found = OutsideRange{{code, form, arguments}, name, value / unit, limit / unit};
     };
     if (!p.pressure_curve.empty() && peak_pressure / p.land_share > p.pressure_curve.upper()) {
-        look(p.pressure_curve, peak_pressure / p.land_share, 1.0, "the peak pressure", "MPa");
+        look(p.pressure_curve, peak_pressure / p.land_share, 1.0, "MPa",
+             "event.pressure_not_measured",
+             "the peak pressure of {value:.3g} MPa lies outside the measured {least:.3g} to "
+             "{most:.3g} MPa");
     }
-    look(p.speed_curve, state.belt_speed, 1000.0, "the belt speed", "m/s");
-    look(p.feed_curve, state.feed, 1.0, "the feed", "mm/s");
-    look(p.land_curve, p.land_share, 1.0, "the land share", "");
+    look(p.speed_curve, state.belt_speed, 1000.0, "m/s", "event.speed_not_measured",
+         "the belt speed of {value:.3g} m/s lies outside the measured {least:.3g} to {most:.3g} "
+         "m/s");
+    look(p.feed_curve, state.feed, 1.0, "mm/s", "event.feed_not_measured",
+         "the feed of {value:.3g} mm/s lies outside the measured {least:.3g} to {most:.3g} mm/s");
+    look(p.land_curve, p.land_share, 1.0, "", "event.land_not_measured",
+         "the land share of {value:.3g} lies outside the measured {least:.3g} to {most:.3g}");
     return found;
 }
 

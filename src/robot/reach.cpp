@@ -1,10 +1,9 @@
 #include "robot/reach.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "beltgrinding/error.h"
 #include "configuration.h"
@@ -21,13 +20,6 @@ constexpr double kLimitTolerance = 1e-9;  // rad
 constexpr double kTurnSpeed = M_PI;
 constexpr int kWristJoint = 3;      // joints 4 to 6 are the wrist's
 constexpr double kFarAngle = 1e-3;  // rad; less is no matter of orientation
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-    std::array<char, 240> buffer;
-    std::snprintf(buffer.data(), buffer.size(), format, values...);
-    return buffer.data();
-}
 
 class Check {
   public:
@@ -111,12 +103,11 @@ class Check {
         return here_;
     }
 
-    void note(const char* kind, double value, double limit, const std::string& message,
-              int part = 0) {
+    void note(const char* kind, double value, double limit, std::vector<Fact> facts, int part = 0) {
         Event* event = events_.note(kind, index_, step_, value, part);
         if (event == nullptr) return;
         event->limit = limit;
-        event->message = message;
+        event->facts = std::move(facts);
         event->point =
             path_.frames().work_from_contact(path_.base_from_tcp(step_.pose, share_)).translation();
     }
@@ -126,11 +117,15 @@ class Check {
         if (!astray_) astray_ = at_ ? at_->q : Joints(0.5 * (arm_.lower() + arm_.upper()));
         const NearestReach end = approach(arm_, target, *astray_);
         astray_ = end.q;
-        std::string message =
-            text("the robot cannot reach it: %.1f mm are missing", end.position_error);
-        if (end.angle_error > kFarAngle)
-            message += text(" and %.1f deg", kDegrees * end.angle_error);
-        note("out_of_reach", end.position_error, Event::kNone, message);
+        Fact fact = {"event.out_of_reach",
+                     "the robot cannot reach it: {missing:.1f} mm are missing",
+                     {{"missing", end.position_error}}};
+        if (end.angle_error > kFarAngle) {
+            fact = {"event.out_of_reach_turned",
+                    "the robot cannot reach it: {missing:.1f} mm are missing and {angle:.1f} deg",
+                    {{"missing", end.position_error}, {"angle", kDegrees * end.angle_error}}};
+        }
+        note("out_of_reach", end.position_error, Event::kNone, {fact});
     }
 
     void note_joints() {
@@ -143,13 +138,20 @@ class Check {
             const double low = arm_.lower()[j], high = arm_.upper()[j];
             const double beyond = std::max(low - q[j], q[j] - high);
             if (beyond <= kLimitTolerance) continue;
-            std::string message =
-                text("joint %d at %.1f deg, %.1f deg beyond its limit of %.1f deg", j + 1,
-                     kDegrees * q[j], kDegrees * beyond, kDegrees * (q[j] < low ? low : high));
+            std::vector<Fact> facts = {{"event.joint_limit",
+                                        "joint {joint} at {angle:.1f} deg, {beyond:.1f} deg beyond "
+                                        "its limit of {limit:.1f} deg",
+                                        {{"joint", j + 1},
+                                         {"angle", kDegrees * q[j]},
+                                         {"beyond", kDegrees * beyond},
+                                         {"limit", kDegrees * (q[j] < low ? low : high)}}}};
             const double back = q[j] + (q[j] < low ? 2.0 : -2.0) * M_PI;
-            if (back >= low && back <= high)
-                message += text("; wound up: it would fit at %.1f deg", kDegrees * back);
-            note("joint_limit", kDegrees * beyond, 0.0, message, j);
+            if (back >= low && back <= high) {
+                facts.push_back({"event.wound_up",
+                                 "wound up: it would fit at {angle:.1f} deg",
+                                 {{"angle", kDegrees * back}}});
+            }
+            note("joint_limit", kDegrees * beyond, 0.0, std::move(facts), j);
         }
     }
 
@@ -159,11 +161,18 @@ class Check {
             for (int j = first; j < first + kWristJoint; ++j)
                 if (std::abs(turned[j]) > std::abs(turned[worst])) worst = j;
             if (std::abs(turned[worst]) <= options_.flip) continue;
-            std::string message = "between two checks";
-            for (int j = first; j < first + kWristJoint; ++j)
-                message += text(", joint %d turns %.0f deg", j + 1, kDegrees * turned[j]);
+            const Fact fact = {
+                "event.joints_turn",
+                "between two checks, joint {first} turns {by_first:.0f} deg, joint {second} turns "
+                "{by_second:.0f} deg, joint {third} turns {by_third:.0f} deg",
+                {{"first", first + 1},
+                 {"by_first", kDegrees * turned[first]},
+                 {"second", first + 2},
+                 {"by_second", kDegrees * turned[first + 1]},
+                 {"third", first + 3},
+                 {"by_third", kDegrees * turned[first + 2]}}};
             note(first == 0 ? "arm_flip" : "wrist_flip", kDegrees * std::abs(turned[worst]),
-                 kDegrees * options_.flip, message);
+                 kDegrees * options_.flip, {fact});
         }
         const double time = std::max(step_.duration, turn / kTurnSpeed);
         if (time <= 0.0) return;
@@ -171,13 +180,13 @@ class Check {
             const double limit = arm_.max_speed()[j];
             const double ratio = limit > 0.0 ? std::abs(turned[j]) / time / limit : 0.0;
             if (ratio <= 1.0 + kSpeedTolerance) continue;
-            note(
-                "joint_speed", ratio, 1.0,
-                text(
-                    "joint %d would have to turn at %.0f deg/s, %.2f times its greatest speed; the "
-                    "robot will be slower than programmed or stop",
-                    j + 1, kDegrees * ratio * limit, ratio),
-                j);
+            note("joint_speed", ratio, 1.0,
+                 {{"event.joint_speed",
+                   "joint {joint} would have to turn at {speed:.0f} deg/s, {ratio:.2f} times its "
+                   "greatest speed",
+                   {{"joint", j + 1}, {"speed", kDegrees * ratio * limit}, {"ratio", ratio}}},
+                  {"event.robot_slower", "the robot will be slower than programmed or stop", {}}},
+                 j);
         }
     }
 
@@ -185,16 +194,22 @@ class Check {
         const SingularDistance d = singular_distance(arm_, at_->q);
         const struct {
             double angle;
-            const char* what;
-        } kinds[] = {{d.wrist, "wrist: axes 4 and 6 are %.2f deg off one line"},
-                     {d.elbow, "elbow: the arm is %.2f deg off stretched out"},
-                     {d.shoulder, "shoulder: the wrist is %.2f deg off the plane over axis 1"},
-                     {d.general, "the least singular value of the Jacobian is that of %.2f deg"}};
+            const char* code;
+            const char* form;
+        } kinds[] = {{d.wrist, "event.wrist_singularity",
+                      "wrist: axes 4 and 6 are {angle:.2f} deg off one line"},
+                     {d.elbow, "event.elbow_singularity",
+                      "elbow: the arm is {angle:.2f} deg off stretched out"},
+                     {d.shoulder, "event.shoulder_singularity",
+                      "shoulder: the wrist is {angle:.2f} deg off the plane over axis 1"},
+                     {d.general, "event.singularity",
+                      "the least singular value of the Jacobian is that of {angle:.2f} deg"}};
         int part = 0;
         for (const auto& kind : kinds) {
             if (kind.angle < options_.singularity) {
-                note("singularity", kDegrees * kind.angle, kDegrees * options_.singularity,
-                     text(kind.what, kDegrees * kind.angle), part);
+                const double angle = kDegrees * kind.angle;
+                note("singularity", angle, kDegrees * options_.singularity,
+                     {{kind.code, kind.form, {{"angle", angle}}}}, part);
             }
             ++part;
         }
@@ -222,10 +237,11 @@ ReachResult check_reach(const ToolPath& path, const RobotArm& arm, const ReachOp
                         const RunContext& context) {
     if (!(options.max_travel > 0.0) || !(options.max_angle > 0.0) || !(options.flip > 0.0) ||
         !(options.singularity >= 0.0)) {
-        throw InputError("reach: travel and angle between checks and the flip must be positive");
+        throw InputError("reach.steps",
+                         "reach: travel and angle between checks and the flip must be positive");
     }
     if (options.start && !options.start->allFinite()) {
-        throw InputError("reach: the joints at the start are not finite");
+        throw InputError("reach.start", "reach: the joints at the start are not finite");
     }
     return Check(path, arm, options).run(context);
 }

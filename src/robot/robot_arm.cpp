@@ -59,20 +59,29 @@ double line_angle(const Vec3& u, const Vec3& v) {
 }
 
 void check(const RobotJoint& joint, std::size_t i) {
-    const std::string where = "robot: joint " + std::to_string(i + 1);
     const Eigen::Matrix3d r = joint.parent_from_joint.linear();
     if (!joint.parent_from_joint.matrix().allFinite() || !(r.transpose() * r).isIdentity(1e-6) ||
         joint.parent_from_joint.translation().norm() > kFarthest) {
-        throw InputError(where + ": its frame is no rigid transform of an arm's size in mm");
+        throw InputError(
+            "robot.joint_frame",
+            "robot: joint {joint}: its frame is no rigid transform of an arm's size in mm",
+            {{"joint", i + 1}});
     }
     if (!joint.axis.allFinite() || joint.axis.norm() < 1e-9) {
-        throw InputError(where + ": its axis has no direction; give a vector such as 0, 0, 1");
+        throw InputError(
+            "robot.joint_axis",
+            "robot: joint {joint}: its axis has no direction; give a vector such as 0, 0, 1",
+            {{"joint", i + 1}});
     }
     if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower >= joint.upper) {
-        throw InputError(where + ": its lower limit must lie below its upper one");
+        throw InputError("robot.joint_limits",
+                         "robot: joint {joint}: its lower limit must lie below its upper one",
+                         {{"joint", i + 1}});
     }
     if (!std::isfinite(joint.max_speed) || joint.max_speed < 0.0) {
-        throw InputError(where + ": its greatest speed must not be negative");
+        throw InputError("robot.joint_speed",
+                         "robot: joint {joint}: its greatest speed must not be negative",
+                         {{"joint", i + 1}});
     }
 }
 
@@ -84,8 +93,8 @@ RobotModel model_from_dh(const std::array<DhRow, 6>& rows, DhConvention conventi
     for (std::size_t i = 0; i < 6; ++i) {
         const DhRow& row = rows[i];
         if (row.direction != 1.0 && row.direction != -1.0) {
-            throw InputError("robot: joint " + std::to_string(i + 1) +
-                             ": the direction is 1 or -1");
+            throw InputError("robot.joint_direction",
+                             "robot: joint {joint}: the direction is 1 or -1", {{"joint", i + 1}});
         }
         const Frame link = Eigen::Translation3d(row.a, 0, 0) * rotation(Vec3::UnitX(), row.alpha);
         Frame& at = model.joints[i].parent_from_joint;
@@ -101,10 +110,11 @@ RobotModel model_from_dh(const std::array<DhRow, 6>& rows, DhConvention conventi
 
 RobotArm::RobotArm(const RobotModel& model) : model_(model) {
     if (!model.joint6_from_flange.matrix().allFinite()) {
-        throw InputError("robot: its flange is not finite");
+        throw InputError("robot.flange", "robot: its flange is not finite");
     }
     if (model.coupling != 0.0 && std::abs(model.coupling) != 1.0) {
-        throw InputError("robot: the coupling of joint 3 with joint 2 is 0, 1 or -1");
+        throw InputError("robot.coupling",
+                         "robot: the coupling of joint 3 with joint 2 is 0, 1 or -1");
     }
     Frame at = Frame::Identity();
     for (std::size_t i = 0; i < 6; ++i) {
@@ -138,7 +148,8 @@ RobotArm::RobotArm(const RobotModel& model) : model_(model) {
     length_ =
         across(point_[2] - point_[1], axis_[1]).norm() + across(end - point_[2], axis_[1]).norm();
     if (length_ < kLengthTolerance) {
-        throw InputError("robot: upper arm and forearm have no length; check the joints' origins");
+        throw InputError("robot.no_length",
+                         "robot: upper arm and forearm have no length; check the joints' origins");
     }
 }
 

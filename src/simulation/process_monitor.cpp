@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace beltgrinding {
@@ -25,13 +24,6 @@ constexpr int kHollowCells = 2;  // that are not touched between touched ones, a
 constexpr double kHollow = 0.02;
 constexpr double kSlopeReach = 2.0;  // cells over whose samples a slope is averaged
 constexpr double kStill = 1e-9;      // mm, no way
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-    std::array<char, 240> buffer;
-    std::snprintf(buffer.data(), buffer.size(), format, values...);
-    return buffer.data();
-}
 
 }  // namespace
 
@@ -84,10 +76,19 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     Event* event = events_.note(low ? "force_not_reached" : "force_exceeded", index, step, force);
     if (event == nullptr) return;
     event->limit = step.force;
-    event->message =
-        text("%.3g N in place of %.3g N: the force control is at the end of its travel, %.3g mm %s",
-             force, step.force, options_.force_travel,
-             pressing.approach() > 0.0 ? "towards the work" : "away from the work");
+    const Arguments arguments = {
+        {"force", force}, {"commanded", step.force}, {"travel", options_.force_travel}};
+    if (pressing.approach() > 0.0) {
+        event->facts = {{"event.travel_ends_towards",
+                         "{force:.3g} N in place of {commanded:.3g} N: the force control is at the "
+                         "end of its travel, {travel:.3g} mm towards the work",
+                         arguments}};
+    } else {
+        event->facts = {{"event.travel_ends_away",
+                         "{force:.3g} N in place of {commanded:.3g} N: the force control is at the "
+                         "end of its travel, {travel:.3g} mm away from the work",
+                         arguments}};
+    }
     put(*event, pressing, 0.0, 0.0);
 }
 
@@ -104,8 +105,9 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     };
     if (!contact.converged) {
         if (Event* event = events_.note("not_converged", index, step, contact.iterations)) {
-            event->message =
-                text("the contact did not converge in %d iterations", contact.iterations);
+            event->facts = {{"event.not_converged",
+                             "the contact did not converge in {iterations} iterations",
+                             {{"iterations", contact.iterations}}}};
             put_at_peak(*event);
         }
     }
@@ -113,8 +115,10 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     if (options_.pressure_limit > 0.0 && peak > options_.pressure_limit) {
         if (Event* event = events_.note("over_pressure", index, step, peak)) {
             event->limit = options_.pressure_limit;
-            event->message = text("the pressure reaches %.3g MPa, above the limit of %.3g MPa",
-                                  peak, options_.pressure_limit);
+            event->facts = {
+                {"event.over_pressure",
+                 "the pressure reaches {pressure:.3g} MPa, above the limit of {limit:.3g} MPa",
+                 {{"pressure", peak}, {"limit", options_.pressure_limit}}}};
             put_at_peak(*event);
         }
     }
@@ -123,9 +127,10 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     if (heat_limit > 0.0 && heat > heat_limit) {
         if (Event* event = events_.note("burn_risk", index, step, heat)) {
             event->limit = heat_limit;
-            event->message = text(
-                "pressure times belt speed reaches %.3g MPa m/s, above the limit of %.3g MPa m/s",
-                heat, heat_limit);
+            event->facts = {{"event.burn_risk",
+                             "pressure times belt speed reaches {heat:.3g} MPa m/s, above the "
+                             "limit of {limit:.3g} MPa m/s",
+                             {{"heat", heat}, {"limit", heat_limit}}}};
             put_at_peak(*event);
         }
     }
@@ -137,14 +142,16 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
         if (event != nullptr) {
             event->limit = outside->limit;
             event->unit = outside->unit;
-            event->message = outside->text + "; the curve's last value is used";
+            event->facts = {outside->fact,
+                            {"event.last_value_used", "the curve's last value is used", {}}};
             put_at_peak(*event);
         }
     }
     if (!options_.wear.measured(belt)) {
         if (Event* event = events_.note("belt_out_of_range", index, step, belt.work)) {
-            event->message =
-                text("the belt has done more than its wear was measured for: %.4g J", belt.work);
+            event->facts = {{"event.belt_not_measured",
+                             "the belt has done more than its wear was measured for: {work:.4g} J",
+                             {{"work", belt.work}}}};
         }
     }
 }
@@ -173,9 +180,18 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     if (!(options_.tilt_limit > 0.0) || tilt <= options_.tilt_limit) return;
     if (Event* event = events_.note("tilted_contact", index, steps_[index], kDegrees * tilt)) {
         event->limit = kDegrees * options_.tilt_limit;
-        event->message =
-            text("the wheel touches %.1f deg round its rim from the programmed contact point, %s",
-                 kDegrees * tilt, centre > 0.0 ? "along the belt's travel" : "against it");
+        const Arguments arguments = {{"angle", kDegrees * tilt}};
+        if (centre > 0.0) {
+            event->facts = {{"event.tilted_along",
+                             "the wheel touches {angle:.1f} deg round its rim from the programmed "
+                             "contact point, along the belt's travel",
+                             arguments}};
+        } else {
+            event->facts = {{"event.tilted_against",
+                             "the wheel touches {angle:.1f} deg round its rim from the programmed "
+                             "contact point, against it",
+                             arguments}};
+        }
         put(*event, pressing, centre, 0.0);
     }
 }
@@ -200,10 +216,18 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
         events_.note("edge_contact", index, steps_[index], share, static_cast<int>(more));
     if (event == nullptr) return;
     event->limit = 100.0 * even;
-    event->message = text(
-        "the wheel presses with its edge at %cy: the outer tenth of its width carries %.0f %% of "
-        "the force there, %.0f %% if it were even",
-        more == 1 ? '+' : '-', share, event->limit);
+    const Arguments arguments = {{"share", share}, {"even", event->limit}};
+    if (more == 1) {
+        event->facts = {{"event.edge_at_plus_y",
+                         "the wheel presses with its edge at +y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    } else {
+        event->facts = {{"event.edge_at_minus_y",
+                         "the wheel presses with its edge at -y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    }
     put(*event, pressing, 0.0, more == 1 ? grid.y(grid.ny - 1) : grid.y(0));
 }
 
@@ -252,10 +276,18 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     Event* event = events_.note("wheel_too_large", index, steps_[index], hollow, across ? 1 : 0);
     if (event == nullptr) return;
     if (radius > 0.0) event->limit = radius;
-    event->message = text(
-        "%s, the surface is hollow with a radius of about %.3g mm: the wheel spans %.3g mm "
-        "without touching",
-        across ? "across the wheel" : "along the belt", hollow, span);
+    const Arguments arguments = {{"radius", hollow}, {"span", span}};
+    if (across) {
+        event->facts = {{"event.hollow_across",
+                         "across the wheel, the surface is hollow with a radius of about "
+                         "{radius:.3g} mm: the wheel spans {span:.3g} mm without touching",
+                         arguments}};
+    } else {
+        event->facts = {{"event.hollow_along",
+                         "along the belt, the surface is hollow with a radius of about "
+                         "{radius:.3g} mm: the wheel spans {span:.3g} mm without touching",
+                         arguments}};
+    }
     put(*event, pressing, middle.x(), middle.y());  // for the face
     // No sample is in reach there: it is the rim's point over the hollow.
     const double angle = middle.x() / options_.wheel.radius;
@@ -283,16 +315,19 @@ void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> ch
     if (fresh) {
         if (Event* event = events_.note("gouge", index, step, field_.height[worst_at], 0, -worst)) {
             event->limit = lower_limit(worst_at);
-            event->message = text("ground to %.3f mm, below the lower limit of %.3g mm",
-                                  field_.height[worst_at], event->limit);
+            event->facts = {{"event.gouge",
+                             "ground to {height:.3f} mm, below the lower limit of {limit:.3g} mm",
+                             {{"height", field_.height[worst_at]}, {"limit", event->limit}}}};
             put(*event, worst_at);
         }
     }
     if (deepest < -field_.depth) {
         if (Event* event = events_.note("depth_exceeded", index, step, deepest)) {
             event->limit = -field_.depth;
-            event->message =
-                text("ground %.3g mm below the design, deeper than the segments reach", -deepest);
+            event->facts = {
+                {"event.depth_exceeded",
+                 "ground {depth:.3g} mm below the design, deeper than the segments reach",
+                 {{"depth", -deepest}}}};
             put(*event, deepest_at);
         }
     }
@@ -314,7 +349,9 @@ void ProcessMonitor::note_orientation_jumps() {
         Event* event = events_.note("orientation_jump", i * (kPause + 1), step, kDegrees * angle);
         if (event == nullptr) continue;
         event->limit = kDegrees * options_.orientation_jump;
-        event->message = text("the tool turns by %.1f deg from pose to pose", kDegrees * angle);
+        event->facts = {{"event.orientation_jump",
+                         "the tool turns by {angle:.1f} deg from pose to pose",
+                         {{"angle", kDegrees * angle}}}};
         event->point = path_.frames().work_from_contact(path_.base_from_tcp(i, 0.5)).translation();
     }
 }
@@ -348,7 +385,9 @@ void ProcessMonitor::note_lost_contact() {
             way += steps_[k].feed * steps_[k].duration;
             Event* event = events_.note("loss_of_contact", k, steps_[k], way);
             if (event == nullptr) continue;
-            event->message = text("the wheel loses the work for %.3g mm of its way", way);
+            event->facts = {{"event.loss_of_contact",
+                             "the wheel loses the work for {way:.3g} mm of its way",
+                             {{"way", way}}}};
             event->point = position(before + (k - before + 1) / 2);
         }
     }

@@ -87,9 +87,10 @@ void Recording::begin(const HeightField& field, double duration) {
     if (start_.empty()) {
         start_.assign(field.height.begin(), field.height.end());
     } else if (start_.size() != field.size()) {
-        throw InputError("the recording has " + std::to_string(start_.size()) +
-                         " samples, the height field " + std::to_string(field.size()) +
-                         "; record each field on its own");
+        throw InputError("recording.other_field",
+                         "the recording has {recorded} samples, the height field {given}; record "
+                         "each field on its own",
+                         {{"recorded", start_.size()}, {"given", field.size()}});
     }
     offset_ = duration_;
     duration_ += duration;
@@ -183,8 +184,9 @@ std::size_t Recording::bytes() const {
 
 void Recording::check_frame(std::size_t frame) const {
     if (frame > last()) {
-        throw InputError("there is no frame " + std::to_string(frame) + "; the recording has " +
-                         std::to_string(last()));
+        throw InputError("recording.no_such_frame",
+                         "there is no frame {frame}; the recording has {last}",
+                         {{"frame", frame}, {"last", last()}});
     }
 }
 

@@ -13,7 +13,11 @@ using namespace hdf5;
 
 namespace {
 constexpr int kFormat = 1;  // of the file; a reader refuses newer ones
+
+Fact within(const std::string& path) {
+    return {"recording.file", "{file}: the recording ", {{"file", path}}};
 }
+}  // namespace
 
 /// The only one that sees a recording's arrays. Key frames are no part of the file: they follow.
 struct RecordingFile {
@@ -31,7 +35,7 @@ struct RecordingFile {
 
     static void write(const Recording& r, const std::string& path, const std::string& attributes) {
         const Handle file(create_file(path), H5Fclose);
-        require(file.ok(), "cannot be made there");
+        require(file.ok(), "hdf5.not_made", "cannot be made there");
         write_scalar(file, "recording_format", H5T_NATIVE_INT, &kFormat);
         write_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
         const auto stride = static_cast<std::uint64_t>(r.stride_);
@@ -40,19 +44,21 @@ struct RecordingFile {
             write_array(file, name, data, type, row);
         });
         write_text(file, "attributes", attributes);
-        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot be written; is the disk full?");
+        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.disk_full",
+                "cannot be written; is the disk full?");
     }
 
     static Recording read(const std::string& path, std::string* attributes) {
         std::error_code error;
         const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
-        require(!error, "cannot be opened: " + error.message());
+        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
+                {{"reason", error.message()}});
         const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-        require(file.ok(), "is no HDF5 file");
+        require(file.ok(), "hdf5.no_file", "is no HDF5 file");
         int format = 0;
         read_scalar(file, "recording_format", H5T_NATIVE_INT, &format);
-        require(format == kFormat, "has format " + std::to_string(format) +
-                                       ", this version reads " + std::to_string(kFormat));
+        require(format == kFormat, "hdf5.format", "has format {format}, this version reads {known}",
+                {{"format", format}, {"known", kFormat}});
         Recording r;
         std::uint64_t stride = 1;
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
@@ -74,38 +80,41 @@ struct RecordingFile {
 
     static void check(const Recording& r) {
         const ChangeLog& log = r.log_;
-        require(r.stride_ > 0 && std::isfinite(r.duration_), "has no duration");
+        require(r.stride_ > 0 && std::isfinite(r.duration_), "recording.no_duration",
+                "has no duration");
         require(r.times_.size() == log.blocks() + 1 && r.steps_.size() == log.blocks() + 1 &&
                     r.times_[0] == 0.0 && r.steps_[0] == 0 &&
                     std::all_of(r.times_.begin(), r.times_.end(),
                                 [](double t) { return std::isfinite(t); }) &&
                     std::is_sorted(r.times_.begin(), r.times_.end()) &&
                     std::is_sorted(r.steps_.begin(), r.steps_.end()),
-                "has frames without a time");
+                "recording.no_time", "has frames without a time");
         std::size_t run = 0, height = 0;
         for (const ChangeLog::End& end : log.ends_) {
-            require(end.run >= run && end.run <= log.runs_.size(), "has a frame that is cut off");
+            require(end.run >= run && end.run <= log.runs_.size(), "recording.cut_off",
+                    "has a frame that is cut off");
             for (; run < end.run; ++run) {
                 const ChangeLog::Run& r0 = log.runs_[run];
                 require(std::uint64_t{r0.first} + r0.count <= r.start_.size(),
-                        "names a sample that is not there");
+                        "recording.no_such_sample", "names a sample that is not there");
                 height += r0.count;
             }
-            require(end.height == height && height <= log.height_.size(),
+            require(end.height == height && height <= log.height_.size(), "recording.cut_off",
                     "has a frame that is cut off");
         }
-        require(run == log.runs_.size() && height == log.height_.size(), "has heights of no frame");
+        require(run == log.runs_.size() && height == log.height_.size(), "recording.no_frame",
+                "has heights of no frame");
         const auto finite = [](float h) { return std::isfinite(h); };
         require(std::all_of(r.start_.begin(), r.start_.end(), finite) &&
                     std::all_of(log.height_.begin(), log.height_.end(), finite),
-                "has a height that is not finite");
+                "recording.height", "has a height that is not finite");
     }
 };
 
 void write_hdf5(const Recording& recording, const std::string& path,
                 const std::string& attributes) {
     const auto lock = hdf5_lock();
-    write_whole(path, "the recording", [&](const std::string& temporary) {
+    write_whole(path, within(path), [&](const std::string& temporary) {
         RecordingFile::write(recording, temporary, attributes);
     });
 }
@@ -115,7 +124,7 @@ Recording read_recording(const std::string& path, std::string* attributes) {
     try {
         return RecordingFile::read(path, attributes);
     } catch (const FileFault& fault) {
-        throw InputError(path + ": the recording " + fault.what);
+        throw InputError(fault.fact, {within(path)});
     }
 }
 

@@ -27,37 +27,47 @@ constexpr std::size_t kReportEvery = 16;  // steps between two looks at progress
 void validate(const HeightField& field, const SimulationOptions& options) {
     options.wheel.validate();
     if (field.size() == 0)
-        throw InputError("the height field is empty; select a face with an area");
-    const auto positive = [](double value, const char* name) {
+        throw InputError("simulation.empty_field",
+                         "the height field is empty; select a face with an area");
+    const auto positive = [](double value, const char* code, const char* form) {
         if (!std::isfinite(value) || value <= 0.0) {
-            throw InputError(std::string(name) + " must be positive and finite");
+            throw InputError(code, form);
         }
     };
-    positive(options.belt_speed, "the belt speed");
-    positive(options.contact_spacing, "the contact grid's spacing");
-    positive(options.contact_tolerance, "the contact tolerance");
-    if (options.force_control) positive(options.force_travel, "the travel of the force control");
+    positive(options.belt_speed, "simulation.belt_speed",
+             "the belt speed must be positive and finite");
+    positive(options.contact_spacing, "simulation.contact_spacing",
+             "the contact grid's spacing must be positive and finite");
+    positive(options.contact_tolerance, "simulation.contact_tolerance",
+             "the contact tolerance must be positive and finite");
+    if (options.force_control)
+        positive(options.force_travel, "simulation.force_travel",
+                 "the travel of the force control must be positive and finite");
     if (!std::isfinite(options.robot_stiffness) || options.robot_stiffness < 0.0) {
-        throw InputError("the robot's stiffness must be zero (rigid) or positive");
+        throw InputError("simulation.robot_stiffness",
+                         "the robot's stiffness must be zero (rigid) or positive");
     }
     options.belt.validate();
     if (!std::isfinite(options.heat_limit) || options.heat_limit < 0.0) {
-        throw InputError("the limit of heat must be zero (none) or positive");
+        throw InputError("simulation.heat_limit",
+                         "the limit of heat must be zero (none) or positive");
     }
     const std::size_t limits = options.lower_limits.size();
     if (limits > 1 && limits != field.size()) {
-        throw InputError("the lower limits are neither one for all nor one per sample");
+        throw InputError("simulation.lower_limits",
+                         "the lower limits are neither one for all nor one per sample");
     }
     for (const double limit :
          {options.pressure_limit, options.orientation_jump, options.tilt_limit}) {
         if (!std::isfinite(limit) || limit < 0.0) {
             throw InputError(
+                "simulation.limits",
                 "the limits of pressure, orientation jump and tilt must be zero (none) or "
                 "positive");
         }
     }
     if (!std::isfinite(options.belt_wear) || options.belt_wear < 0.0) {
-        throw InputError("the belt's wear factor must be zero or positive");
+        throw InputError("simulation.belt_wear", "the belt's wear factor must be zero or positive");
     }
 }
 
@@ -65,25 +75,32 @@ void validate(const HeightField& field, const SimulationOptions& options) {
 /// its cells would be too many across.
 double contact_cell(const HeightField& field, const SimulationOptions& options) {
     const double cell = std::max(options.contact_spacing, kSamplesPerCell * field.spacing);
-    std::ostringstream text;
-    text.precision(3);
     if (cell > options.wheel.radius) {
-        text << "the contact's cells of " << cell << " mm are larger than the wheel's radius of "
-             << options.wheel.radius << " mm; lower "
-             << (cell > options.contact_spacing ? "the samples' spacing" : "the contact spacing");
-        throw InputError(text.str());
+        const Arguments arguments = {{"cell", cell}, {"radius", options.wheel.radius}};
+        if (cell > options.contact_spacing) {
+            throw InputError("simulation.samples_too_coarse",
+                             "the contact's cells of {cell:.3g} mm are larger than the wheel's "
+                             "radius of {radius:.3g} mm; lower the samples' spacing",
+                             arguments);
+        }
+        throw InputError("simulation.cells_too_coarse",
+                         "the contact's cells of {cell:.3g} mm are larger than the wheel's radius "
+                         "of {radius:.3g} mm; lower the contact spacing",
+                         arguments);
     }
     if (options.wheel.width / cell > kMostCellsAcross) {
-        text << "contact cells of " << cell << " mm are too many across a wheel of "
-             << options.wheel.width << " mm; raise the contact spacing, or check the wheel's width";
-        throw InputError(text.str());
+        throw InputError("simulation.cells_too_many",
+                         "contact cells of {cell:.3g} mm are too many across a wheel of "
+                         "{width:.3g} mm; raise the contact spacing, or check the wheel's width",
+                         {{"cell", cell}, {"width", options.wheel.width}});
     }
     return cell;
 }
 
 void refuse_force_of_rigid(const ContactModel& model, const SimulationOptions& options) {
     if (model.rigid() && options.force_control) {
-        throw InputError("a geometric (rigid) tool has no force; set the control to position");
+        throw InputError("simulation.rigid_force",
+                         "a geometric (rigid) tool has no force; set the control to position");
     }
 }
 
@@ -188,6 +205,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     const std::vector<PathStep> steps = path.steps(stepping);
     if (steps.empty()) {
         throw InputError(
+            "simulation.no_grinding_motion",
             "the path has no motion that grinds: it needs at least two poses, and other "
             "motions than rapid ones");
     }
@@ -264,6 +282,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     }
     if (!touched && options.must_touch) {
         throw InputError(
+            "simulation.never_touches",
             "the wheel never touches the stock on this path; check the frames of the "
             "cell (tool in hand or part in hand), the unit and the travel of the force "
             "control");
@@ -288,12 +307,13 @@ PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size
                        ContactModel& model, const SimulationOptions& options) {
     validate(field, options);
     if (pose >= path.poses().size()) {
-        throw InputError("there is no pose " + std::to_string(pose + 1) + "; the path has " +
-                         std::to_string(path.poses().size()));
+        throw InputError("simulation.no_such_pose", "there is no pose {pose}; the path has {count}",
+                         {{"pose", pose + 1}, {"count", path.poses().size()}});
     }
     const PathPose& at = path.poses()[pose];
     if (model.rigid()) {
-        throw InputError("a geometric (rigid) tool has no pressure; choose an elastic model");
+        throw InputError("simulation.rigid_pressure",
+                         "a geometric (rigid) tool has no pressure; choose an elastic model");
     }
     PoseContact contact;
     contact.commanded = at.force >= 0.0 ? at.force : options.force;
@@ -303,7 +323,8 @@ PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size
     const auto state = pressing.press(
         field, tree, path.frames().work_from_contact(at.base_from_tcp), contact.commanded, phases);
     if (state == Pressing::State::kNoContact) {
-        throw InputError("the wheel does not touch the stock at pose " + std::to_string(pose + 1));
+        throw InputError("simulation.no_contact_at_pose",
+                         "the wheel does not touch the stock at pose {pose}", {{"pose", pose + 1}});
     }
     contact.grid = pressing.map().grid();
     contact.gap = pressing.map().gap();

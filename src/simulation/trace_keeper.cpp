@@ -8,7 +8,7 @@ TraceKeeper::TraceKeeper(const HeightField& field)
     : trace_(field.trace), height_(field.height), removed_(field.size(), 0.0F) {
     if (trace_.empty()) trace_.reset(field.size());
     if (trace_.first.size() != field.size()) {
-        throw InputError("the field's removal trace is of another field");
+        throw InputError("simulation.other_trace", "the field's removal trace is of another field");
     }
 }
 

@@ -7,7 +7,8 @@ namespace beltgrinding {
 
 StockReport apply_allowance(HeightField& field, double allowance) {
     if (!std::isfinite(allowance)) {
-        throw InputError("stock: the allowance must be a finite number of millimetres");
+        throw InputError("stock.allowance",
+                         "stock: the allowance must be a finite number of millimetres");
     }
     StockReport report;
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -22,7 +23,9 @@ StockReport apply_allowance(HeightField& field, double allowance) {
     }
     if (allowance < 0.0) {
         report.warnings.push_back(
-            "the stock allowance is negative: the stock lies below the design");
+            {"stock.negative_allowance",
+             "the stock allowance is negative: the stock lies below the design",
+             {}});
     }
     return report;
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -57,36 +56,35 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
     return std::nanf("");
 }
 
-std::string number(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    return text.data();
-}
-
 void validate(const HeightField& field, const TriangleMesh& mesh, const StockOptions& options) {
     if (mesh.vertices.empty() || mesh.triangles.empty()) {
-        throw InputError("stock: the mesh has no triangle");
+        throw InputError("stock.no_triangle", "stock: the mesh has no triangle");
     }
     if (!(options.search_above > 0.0) || !(options.search_below >= 0.0)) {
-        throw InputError("stock: the search distances must be positive, in millimetres");
+        throw InputError("stock.search",
+                         "stock: the search distances must be positive, in millimetres");
     }
     if (!(options.least_cosine >= 0.0 && options.least_cosine < 1.0)) {
-        throw InputError("stock: the least cosine must be in [0, 1)");
+        throw InputError("stock.least_cosine", "stock: the least cosine must be in [0, 1)");
     }
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (!mesh.vertices[i].allFinite()) {
-            throw InputError("stock: vertex " + std::to_string(i) + " of the mesh is not finite");
+            throw InputError("stock.vertex_not_finite",
+                             "stock: vertex {vertex} of the mesh is not finite", {{"vertex", i}});
         }
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const std::uint32_t v : mesh.triangles[i]) {
             if (v >= mesh.vertices.size()) {
-                throw InputError("stock: triangle " + std::to_string(i) +
-                                 " of the mesh names a vertex that is not there");
+                throw InputError(
+                    "stock.triangle_without_vertex",
+                    "stock: triangle {triangle} of the mesh names a vertex that is not there",
+                    {{"triangle", i}});
             }
         }
     }
-    if (field.size() == 0) throw InputError("stock: the height field is empty");
+    if (field.size() == 0)
+        throw InputError("stock.empty_field", "stock: the height field is empty");
 }
 
 /// What is wrong when hardly a ray hits: a unit, or a frame.
@@ -94,22 +92,40 @@ void validate(const HeightField& field, const TriangleMesh& mesh, const StockOpt
     Box design, stock;
     for (const Vec3& p : field.point) design.extend(p);
     for (const Vec3f& v : mesh.vertices) stock.extend(v.cast<double>());
-    const double ratio = design.diagonal().norm() / std::max(stock.diagonal().norm(), 1e-12);
-    const std::string sizes = " (the design is " + number(design.diagonal().norm()) +
-                              " mm across, the stock " + number(stock.diagonal().norm()) + " mm)";
-    for (const auto& [factor, unit] : {std::pair{1000.0, "metres"},
-                                       {25.4, "inches"},
-                                       {10.0, "centimetres"},
-                                       {0.001, "micrometres"}}) {
-        if (ratio > factor / 2.0 && ratio < factor * 2.0) {
-            throw InputError("stock: no ray meets the mesh; it seems to be in " +
-                             std::string(unit) + sizes + "; set its unit to " + number(factor) +
-                             " mm");
+    const double across = design.diagonal().norm(), stock_across = stock.diagonal().norm();
+    const double ratio = across / std::max(stock_across, 1e-12);
+    const struct {
+        double factor;
+        const char* code;
+        const char* form;
+    } units[] = {
+        {1000.0, "stock.in_metres",
+         "stock: no ray meets the mesh; it seems to be in metres (the design is {design:.4g} mm "
+         "across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
+        {25.4, "stock.in_inches",
+         "stock: no ray meets the mesh; it seems to be in inches (the design is {design:.4g} mm "
+         "across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
+        {10.0, "stock.in_centimetres",
+         "stock: no ray meets the mesh; it seems to be in centimetres (the design is {design:.4g} "
+         "mm across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
+        {0.001, "stock.in_micrometres",
+         "stock: no ray meets the mesh; it seems to be in micrometres (the design is {design:.4g} "
+         "mm across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
+    };
+    for (const auto& unit : units) {
+        if (ratio > unit.factor / 2.0 && ratio < unit.factor * 2.0) {
+            throw InputError(unit.code, unit.form,
+                             {{"design", across}, {"stock", stock_across}, {"unit", unit.factor}});
         }
     }
-    throw InputError("stock: no ray meets the mesh within the search distance" + sizes +
-                     ", their centres are " + number((design.center() - stock.center()).norm()) +
-                     " mm apart; check the stock's placement and unit, or search farther");
+    throw InputError(
+        "stock.no_hit",
+        "stock: no ray meets the mesh within the search distance (the design is {design:.4g} mm "
+        "across, the stock {stock:.4g} mm), their centres are {apart:.4g} mm apart; check the "
+        "stock's placement and unit, or search farther",
+        {{"design", across},
+         {"stock", stock_across},
+         {"apart", (design.center() - stock.center()).norm()}});
 }
 
 }  // namespace
@@ -155,13 +171,15 @@ StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const Stock
         report.volume += field.area[i] * std::max(height, 0.0F);
     }
     if (report.missed > 0) {
-        report.warnings.push_back(std::to_string(report.missed) + " of " +
-                                  std::to_string(field.size()) +
-                                  " rays meet no stock within the search distance");
+        report.warnings.push_back(
+            {"stock.rays_miss",
+             "{missed} of {count} rays meet no stock within the search distance",
+             {{"missed", report.missed}, {"count", field.size()}}});
     }
     if (report.defective > 0) {
-        report.warnings.push_back("the stock lies below the design at " +
-                                  std::to_string(report.defective) + " samples");
+        report.warnings.push_back({"stock.below_design",
+                                   "the stock lies below the design at {count} samples",
+                                   {{"count", report.defective}}});
     }
     return report;
 }

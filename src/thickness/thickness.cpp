@@ -29,7 +29,9 @@ TriangleMesh whole_surface(const HeightField& field, const TriangleMesh& others,
     mesh.vertices.reserve(field.size() + others.vertices.size());
     for (const Vec3& p : field.point) mesh.vertices.push_back((p - origin).cast<float>());
     for (const Vec3f& v : others.vertices) {
-        if (!v.allFinite()) throw InputError("thickness: a vertex of the mesh is not finite");
+        if (!v.allFinite())
+            throw InputError("thickness.vertex_not_finite",
+                             "thickness: a vertex of the mesh is not finite");
         mesh.vertices.push_back((v.cast<double>() - origin).cast<float>());
     }
     mesh.triangles = field.triangles;
@@ -37,7 +39,8 @@ TriangleMesh whole_surface(const HeightField& field, const TriangleMesh& others,
     const auto base = static_cast<std::uint32_t>(field.size());
     for (const Triangle& t : others.triangles) {
         if (std::max({t[0], t[1], t[2]}) >= others.vertices.size()) {
-            throw InputError("thickness: a triangle names a vertex that is not there");
+            throw InputError("thickness.triangle_without_vertex",
+                             "thickness: a triangle names a vertex that is not there");
         }
         mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
     }

@@ -55,16 +55,20 @@ double corner_speed(const Way& before, const Way& after, double zone, const Time
 }  // namespace
 
 void TimeLaw::validate() const {
-    const auto positive = [](double value, const char* name) {
+    const auto positive = [](double value, const char* code, const char* form) {
         if (!std::isfinite(value) || value <= 0.0) {
-            throw InputError(std::string("time law: ") + name + " must be positive and finite");
+            throw InputError(code, form);
         }
     };
-    positive(acceleration, "the path acceleration");
-    positive(angular_acceleration, "the angular acceleration");
-    positive(rotation_speed, "the rotation speed");
+    positive(acceleration, "path.acceleration",
+             "time law: the path acceleration must be positive and finite");
+    positive(angular_acceleration, "path.angular_acceleration",
+             "time law: the angular acceleration must be positive and finite");
+    positive(rotation_speed, "path.rotation_speed",
+             "time law: the rotation speed must be positive and finite");
     if (!std::isfinite(default_zone) || default_zone < 0.0) {
-        throw InputError("time law: the default zone must be zero (stop) or positive, in mm");
+        throw InputError("path.default_zone",
+                         "time law: the default zone must be zero (stop) or positive, in mm");
     }
 }
 

@@ -14,32 +14,41 @@ constexpr int kHalvings = 40;                  // of a motion's way, to find whe
 constexpr double kRotationTolerance = 1e-6;    // of R^T R from the identity
 constexpr std::size_t kMaxSteps = 50'000'000;  // more is a mistake in feed or step, not a job
 
-std::string place(const PathPose& pose, std::size_t index) {
-    std::string text = "pose " + std::to_string(index + 1);
-    if (pose.line > 0) text += " (line " + std::to_string(pose.line) + ")";
-    return text;
+/// Names the pose before what `error` says of it.
+InputError at(const PathPose& pose, std::size_t index, const InputError& error) {
+    if (pose.line <= 0)
+        return error.within({"path.at_pose", "pose {pose}: ", {{"pose", index + 1}}});
+    return error.within({"path.at_line",
+                         "pose {pose} (line {line}): ",
+                         {{"pose", index + 1}, {"line", pose.line}}});
 }
 
 void validate(const PathPose& pose, std::size_t index) {
     const auto matrix = pose.base_from_tcp.matrix();
     if (!matrix.allFinite()) {
-        throw InputError(place(pose, index) + ": the pose is not finite; give six real numbers");
+        throw at(
+            pose, index,
+            InputError("path.pose_not_finite", "the pose is not finite; give six real numbers"));
     }
     const Eigen::Matrix3d r = pose.base_from_tcp.linear();
     const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (error > kRotationTolerance || r.determinant() < 0.0) {
-        throw InputError(place(pose, index) + ": the orientation is no rotation (off by " +
-                         std::to_string(error) + "); give a unit quaternion");
+        throw at(
+            pose, index,
+            InputError("path.no_rotation",
+                       "the orientation is no rotation (off by {error:f}); give a unit quaternion",
+                       {{"error", error}}));
     }
     if (!std::isfinite(pose.feed) || pose.feed <= 0.0) {
-        throw InputError(place(pose, index) + ": feed is " + std::to_string(pose.feed) +
-                         " mm/s; give a positive one");
+        throw at(pose, index,
+                 InputError("path.feed", "feed is {feed:f} mm/s; give a positive one",
+                            {{"feed", pose.feed}}));
     }
     if (!std::isfinite(pose.force)) {
-        throw InputError(place(pose, index) + ": force is not finite; give newtons");
+        throw at(pose, index, InputError("path.force", "force is not finite; give newtons"));
     }
     if (!std::isfinite(pose.zone)) {
-        throw InputError(place(pose, index) + ": the zone is not finite; give millimetres");
+        throw at(pose, index, InputError("path.zone", "the zone is not finite; give millimetres"));
     }
 }
 
@@ -63,13 +72,15 @@ ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw
     : poses_(std::move(poses)), frames_(frames), law_(law) {
     law_.validate();
     if (poses_.empty()) {
-        throw InputError("the path has no pose; the program needs at least one Cartesian target");
+        throw InputError("path.no_pose",
+                         "the path has no pose; the program needs at least one Cartesian target");
     }
     for (std::size_t i = 0; i < poses_.size(); ++i) validate(poses_[i], i);
     for (const Frame* f : {&frames_.base_from_work, &frames_.tcp_from_contact,
                            &frames_.tcp_from_work, &frames_.base_from_contact}) {
         if (!f->matrix().allFinite()) {
-            throw InputError("a frame of the cell is not finite; check the belt machine's set-up");
+            throw InputError("path.frame_not_finite",
+                             "a frame of the cell is not finite; check the belt machine's set-up");
         }
     }
     if (trapezoidal()) plan_ = MotionPlan(poses_, law_);
@@ -119,9 +130,9 @@ ToolPath::Moment ToolPath::at(double time) const {
 
 std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
     if (!(options.max_travel > 0.0) || !(options.max_angle > 0.0)) {
-        throw InputError(
-            "the largest step of the simulation must be positive (travel in mm and "
-            "angle in degrees)");
+        throw InputError("path.step",
+                         "the largest step of the simulation must be positive (travel in mm and "
+                         "angle in degrees)");
     }
     std::vector<PathStep> steps;
     double time = 0.0;
@@ -147,8 +158,10 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
             const double wanted = std::max({1.0, std::ceil(travel / options.max_travel),
                                             std::ceil(angle / options.max_angle)});
             if (wanted + static_cast<double>(steps.size()) > static_cast<double>(kMaxSteps)) {
-                throw InputError(place(to, i) + ": the path needs more than " +
-                                 std::to_string(kMaxSteps) + " steps; enlarge the step");
+                throw at(to, i,
+                         InputError("path.too_many_steps",
+                                    "the path needs more than {count} steps; enlarge the step",
+                                    {{"count", kMaxSteps}}));
             }
             const int parts = static_cast<int>(wanted);
             const double force = to.force >= 0.0 ? to.force : options.default_force;

@@ -139,7 +139,7 @@ TEST(Collision, NoMotionIsTooFastForAThinPlate) {
     ASSERT_EQ(hit.events.size(), 1u);
     EXPECT_EQ(hit.events[0].kind, "collision");
     EXPECT_NEAR(hit.events[0].time, 244.9 / kFeed, 2.0 * kResolution / kFeed);
-    EXPECT_NE(hit.events[0].message.find("rapid"), std::string::npos);
+    EXPECT_NE(hit.events[0].message().find("rapid"), std::string::npos);
     // Past its edge, 1.5 mm away: seen, and no collision.
     const auto miss = run(56.5);
     ASSERT_EQ(miss.events.size(), 1u);
@@ -267,7 +267,7 @@ TEST(Collision, ThreadsDoNotMatter) {
     ASSERT_EQ(one.events.size(), two.events.size());
     for (std::size_t i = 0; i < one.events.size(); ++i) {
         EXPECT_EQ(one.events[i].time, two.events[i].time);
-        EXPECT_EQ(one.events[i].message, two.events[i].message);
+        EXPECT_EQ(one.events[i].message(), two.events[i].message());
     }
     for (std::size_t i = 0; i < one.pairs.size(); ++i) {
         EXPECT_EQ(one.pairs[i].distance, two.pairs[i].distance);

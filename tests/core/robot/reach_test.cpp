@@ -131,8 +131,8 @@ TEST(Reach, ALimitIsNamedWithItsJoint) {
     ASSERT_EQ(events.size(), 1u);
     EXPECT_EQ(events[0].pose, 11u);
     EXPECT_NEAR(events[0].value, 10.0, 1e-6);
-    EXPECT_NE(events[0].message.find("joint 1"), std::string::npos);
-    EXPECT_NE(events[0].message.find("170.0"), std::string::npos);
+    EXPECT_NE(events[0].message().find("joint 1"), std::string::npos);
+    EXPECT_NE(events[0].message().find("170.0"), std::string::npos);
 }
 
 TEST(Reach, WindingUpIsALimitThatAnotherTurnWouldFit) {
@@ -149,7 +149,7 @@ TEST(Reach, WindingUpIsALimitThatAnotherTurnWouldFit) {
     const auto events = of_kind(check_reach(path_of(poses), arm, options), "joint_limit");
     ASSERT_EQ(events.size(), 1u);
     EXPECT_NEAR(events[0].value, 30.0, 1e-6);
-    EXPECT_NE(events[0].message.find("would fit at 20.0"), std::string::npos);
+    EXPECT_NE(events[0].message().find("would fit at 20.0"), std::string::npos);
     // Without a start given, the turn is chosen that lasts.
     EXPECT_TRUE(check_reach(path_of(poses), arm, {}).events.empty());
 }
@@ -167,7 +167,7 @@ TEST(Reach, PassingCloseByTheWristSingularityIsAFlip) {
     EXPECT_EQ(flips[0].pose, 1u);
     EXPECT_EQ(flips[0].line, 20);
     EXPECT_GT(flips[0].value, 90.0);
-    EXPECT_NE(flips[0].message.find("joint 4"), std::string::npos);
+    EXPECT_NE(flips[0].message().find("joint 4"), std::string::npos);
     // The branch is kept: joint 5 has its sign, joints 4 and 6 have turned by half a turn.
     EXPECT_LT(result.joints[1][4], 0.0);
     EXPECT_NEAR(std::abs(result.joints[1][3]), M_PI, 0.01);
@@ -221,7 +221,7 @@ TEST(Reach, SpeedIsComparedWithTheFastestOfTheJoint) {
     ASSERT_FALSE(events.empty());
     double first = 0.0;
     for (const Event& event : events)
-        if (event.message.find("joint 1 ") != std::string::npos) first = event.value;
+        if (event.message().find("joint 1 ") != std::string::npos) first = event.value;
     EXPECT_NEAR(first, feed / radius / (300 * kDegree), 0.01 * first);
     // At a tenth of the limit, none.
     const double slow = 0.1 * 300 * kDegree * radius;

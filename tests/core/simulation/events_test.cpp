@@ -136,8 +136,8 @@ TEST(Events, AWheelHeldAskewPressesWithOneEdge) {
         ASSERT_EQ(events.size(), 1u);
         // Turned about x by a positive angle, base y rises: the lower edge is that at base y < 20,
         // which is +y of a contact frame whose y points the other way.
-        EXPECT_NE(events[0].message.find(side > 0.0 ? "at +y" : "at -y"), std::string::npos)
-            << events[0].message;
+        EXPECT_NE(events[0].message().find(side > 0.0 ? "at +y" : "at -y"), std::string::npos)
+            << events[0].message();
         EXPECT_EQ(events[0].point.y() < 20.0, side > 0.0);
         EXPECT_NEAR(std::abs(events[0].point.y() - 20.0), 10.0, 1.5);
         EXPECT_GT(events[0].value, 2.0 * events[0].limit);
@@ -171,7 +171,7 @@ TEST(Events, AWheelTooLargeForAHollowSpansIt) {
     EXPECT_NEAR(events[0].point.x(), 0.0, 4.0);
     EXPECT_NEAR(events[0].point.y(), 18.0, 10.0);
     EXPECT_EQ(events[0].face, 1u);
-    EXPECT_NE(events[0].message.find("along the belt"), std::string::npos);
+    EXPECT_NE(events[0].message().find("along the belt"), std::string::npos);
 
     // The same trough along the feed: hollow across the wheel.
     HeightField across = trough(35.0, 60.0, 40.0);
@@ -183,7 +183,7 @@ TEST(Events, AWheelTooLargeForAHollowSpansIt) {
     const auto found = of(grind(across, poses, o, 0.0), "wheel_too_large");
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NEAR(found[0].value, 35.0 - kAllowance, 0.5);
-    EXPECT_NE(found[0].message.find("across the wheel"), std::string::npos);
+    EXPECT_NE(found[0].message().find("across the wheel"), std::string::npos);
 
     // A groove ground into a plate before is no hollow of the design.
     HeightField plate = testing::plate(80, 40, 0.5, kAllowance);
@@ -282,7 +282,7 @@ TEST(Events, AreTheSameForAnyNumberOfThreads) {
         EXPECT_EQ(one[i].value, two[i].value);
         EXPECT_EQ(one[i].time, two[i].time);
         EXPECT_EQ(one[i].duration, two[i].duration);
-        EXPECT_EQ(one[i].message, two[i].message);
+        EXPECT_EQ(one[i].message(), two[i].message());
         if (one[i].point.allFinite()) {
             EXPECT_EQ(one[i].point, two[i].point);
         }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "beltgrinding/fact.h"
 #include "beltgrinding/geometry.h"
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/run_context.h"
@@ -40,7 +41,7 @@ class Shape {
     bool valid() const;
     /// Things the user should know: not valid, open shell, extents beyond 10 m or below 0.1 mm
     /// (a unit mistake), zero-area faces. Each is one sentence that names the face.
-    std::vector<std::string> warnings() const;
+    std::vector<Fact> warnings() const;
 
     const Impl& impl() const { return *impl_; }
     /// For this room: a shape around OpenCASCADE's data.
@@ -60,8 +61,8 @@ struct SamplingOptions {
 
 /// What sampling found besides the field.
 struct SamplingReport {
-    std::vector<double> face_area;      ///< mm2, exact area of each sampled face, in `faces` order
-    std::vector<std::string> warnings;  ///< one sentence each, naming the face (from 1)
+    std::vector<double> face_area;  ///< mm2, exact area of each sampled face, in `faces` order
+    std::vector<Fact> warnings;     ///< of one face each
     /// u, v of every sample on its face's surface, if asked for. A sample on a seam has those of
     /// one side, a pole (SampleFlag kDegenerate) those of one of its nodes.
     std::vector<std::array<double, 2>> parameters;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "beltgrinding/event_kinds.h"
+#include "beltgrinding/fact.h"
 #include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
@@ -28,8 +29,11 @@ struct Event {
     std::string unit;                    ///< of the kind, unless said otherwise
     Vec3 point = Vec3::Constant(kNone);  ///< on the part, work frame, mm; NaN: no place
     std::uint32_t face = 0;              ///< from 1; 0: none
-    std::string message;                 ///< one sentence
+    std::vector<Fact> facts;             ///< what happened, and what follows
     std::vector<std::string> bodies;     ///< that meet
+
+    /// The facts in English, one line.
+    std::string message() const { return sentence(facts); }
 };
 
 /// Collects events; a condition that lasts over consecutive steps is one event with its worst
@@ -41,7 +45,7 @@ class EventLog {
 
     /// Notes the condition `kind` in the step number `index`. `part` tells apart what may last side
     /// by side, such as joints. Returns the event if this is its worst so far, for limit, place and
-    /// message to be set, until the next call; else null. `badness` decides what is worst; without
+    /// facts to be set, until the next call; else null. `badness` decides what is worst; without
     /// it, the value does.
     Event* note(const std::string& kind, std::size_t index, const PathStep& step, double value,
                 int part = 0, double badness = Event::kNone);

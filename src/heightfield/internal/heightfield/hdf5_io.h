@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/error.h"
@@ -34,27 +35,28 @@ class Handle {
 /// Thrown by all below; the reader or writer of a file makes an InputError of it that names the
 /// path.
 struct FileFault {
-    std::string what;
+    Fact fact;
 };
 
-inline void require(bool ok, const std::string& what) {
-    if (!ok) throw FileFault{what};
+inline void require(bool ok, const char* code, const char* form, Arguments arguments = {}) {
+    if (!ok) throw FileFault{{code, form, std::move(arguments)}};
 }
 
 /// Lets `write(temporary)` write a file beside `path`, which it then becomes: whole or not at all.
-/// Throws InputError naming the path and `what` it holds. Call it with the lock held.
+/// Throws InputError within `context`, which names the path. Call it with the lock held.
 template <class Write>
-void write_whole(const std::string& path, const std::string& what, Write&& write) {
+void write_whole(const std::string& path, const Fact& context, Write&& write) {
     const std::string temporary = path + ".part";
     try {
         write(temporary);
         std::error_code error;
         std::filesystem::rename(temporary, path, error);
-        require(!error, "cannot be written: " + error.message());
+        require(!error, "hdf5.not_written", "cannot be written: {reason}",
+                {{"reason", error.message()}});
     } catch (const FileFault& fault) {
         std::error_code ignored;
         std::filesystem::remove(temporary, ignored);
-        throw InputError(path + ": " + what + " " + fault.what);
+        throw InputError(fault.fact, {context});
     }
 }
 
@@ -69,15 +71,16 @@ inline std::unique_lock<std::mutex> hdf5_lock() {
 inline void write_scalar(hid_t file, const char* name, hid_t type, const void* value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    require(attribute.ok() && H5Awrite(attribute, type, value) >= 0, "cannot write it");
+    require(attribute.ok() && H5Awrite(attribute, type, value) >= 0, "hdf5.not_writable",
+            "cannot write it");
 }
 
 inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
     const Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
-    require(attribute.ok(), std::string("has no attribute '") + name + "'");
+    require(attribute.ok(), "hdf5.no_attribute", "has no attribute '{name}'", {{"name", name}});
     const Handle space(H5Aget_space(attribute), H5Sclose);
     require(H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, type, value) >= 0,
-            std::string("its attribute '") + name + "' is not a number");
+            "hdf5.attribute", "its attribute '{name}' is not a number", {{"name", name}});
 }
 
 /// A new file, empty, without times of its own: the same data make the same bytes at any time. In
@@ -102,31 +105,33 @@ inline void write_array(hid_t file, const char* name, const std::vector<T>& data
     H5Pset_obj_track_times(creation, false);  // the same data make the same bytes at any time
     const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                      H5Dclose);
-    require(creation.ok() && set.ok(), "cannot write it");
+    require(creation.ok() && set.ok(), "hdf5.not_writable", "cannot write it");
     if (!data.empty()) {
         require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                "cannot write it; is the disk full?");
+                "hdf5.not_writable_full", "cannot write it; is the disk full?");
     }
 }
 
 template <class T>
 inline void read_array(hid_t file, hsize_t file_bytes, const char* name, std::vector<T>& data,
                        hid_t type, hsize_t row) {
-    const std::string quoted = std::string("its array '") + name + "'";
     const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-    require(set.ok(), std::string("has no array '") + name + "'");
+    require(set.ok(), "hdf5.no_array", "has no array '{name}'", {{"name", name}});
     const Handle space(H5Dget_space(set), H5Sclose);
     hsize_t dims[2] = {0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
-    require(rank == (row == 1 ? 1 : 2), quoted + " has the wrong shape");
+    require(rank == (row == 1 ? 1 : 2), "hdf5.array_shape",
+            "its array '{name}' has the wrong shape", {{"name", name}});
     H5Sget_simple_extent_dims(space, dims, nullptr);
-    require(dims[1] == row, quoted + " has the wrong shape");
+    require(dims[1] == row, "hdf5.array_shape", "its array '{name}' has the wrong shape",
+            {{"name", name}});
     // A broken header must not make us ask for memory that no such file can fill.
-    require(dims[0] <= file_bytes, quoted + " is longer than the file");
+    require(dims[0] <= file_bytes, "hdf5.array_too_long",
+            "its array '{name}' is longer than the file", {{"name", name}});
     data.resize(dims[0]);
     if (dims[0] > 0) {
         require(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                quoted + " cannot be read");
+                "hdf5.array_unreadable", "its array '{name}' cannot be read", {{"name", name}});
     }
 }
 

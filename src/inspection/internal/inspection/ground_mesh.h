@@ -54,7 +54,7 @@ struct GroundMesh {
     std::size_t slid = 0;           ///< vertices that follow a moved edge along their face
     std::size_t missed = 0;         ///< vertices left on the design: no stock was found there
     std::size_t defective = 0;      ///< samples whose stock lay below the design; taken as found
-    std::vector<std::string> warnings;
+    std::vector<Fact> warnings;
 };
 
 /// Displaces the vertices of `mesh` on the faces of `field` by the height, linear in the triangles

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "beltgrinding/fact.h"
 #include "beltgrinding/geometry.h"
 
 namespace beltgrinding {
@@ -16,11 +16,11 @@ struct SurfaceMesh {
         std::uint32_t face = 0;  ///< index in the shape, from 0
         Vec3f normal = Vec3f::Zero();
     };
-    std::vector<Vec3> vertices;         ///< on the faces' surfaces and the edges' curves
-    std::vector<Triangle> triangles;    ///< counter-clockwise seen from outside
-    std::vector<std::uint32_t> face;    ///< of each triangle, from 0
-    std::vector<Meeting> meetings;      ///< sorted by vertex, then by face
-    std::vector<std::string> warnings;  ///< one sentence each
+    std::vector<Vec3> vertices;       ///< on the faces' surfaces and the edges' curves
+    std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
+    std::vector<std::uint32_t> face;  ///< of each triangle, from 0
+    std::vector<Meeting> meetings;    ///< sorted by vertex, then by face
+    std::vector<Fact> warnings;
 };
 
 }  // namespace beltgrinding

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "beltgrinding/curve.h"
+#include "beltgrinding/fact.h"
 
 namespace beltgrinding {
 
@@ -19,7 +20,7 @@ struct ProcessState {
 
 /// A quantity beyond the range that a law was measured in.
 struct OutsideRange {
-    std::string text;    ///< one sentence
+    Fact fact;
     std::string unit;    ///< of the values
     double value = 0.0;  ///< of the quantity
     double limit = 0.0;  ///< the end of the range that it is beyond

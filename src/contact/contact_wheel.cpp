@@ -43,16 +43,19 @@ double ContactWheel::drop_slope(double y) const {
 
 void ContactWheel::validate() const {
     if (!std::isfinite(radius) || radius <= 0.0) {
-        throw InputError("contact wheel: radius is " + std::to_string(radius) +
-                         " mm; give a positive one");
+        throw InputError("wheel.radius",
+                         "contact wheel: radius is {radius:f} mm; give a positive one",
+                         {{"radius", radius}});
     }
     if (!std::isfinite(width) || width <= 0.0) {
-        throw InputError("contact wheel: width is " + std::to_string(width) +
-                         " mm; give a positive one");
+        throw InputError("wheel.width", "contact wheel: width is {width:f} mm; give a positive one",
+                         {{"width", width}});
     }
     if (!std::isfinite(crown_radius) || crown_radius < 0.0) {
-        throw InputError("contact wheel: crown radius is " + std::to_string(crown_radius) +
-                         " mm; give a positive one, or 0 for a cylinder");
+        throw InputError("wheel.crown_radius",
+                         "contact wheel: crown radius is {radius:f} mm; give a positive one, or 0 "
+                         "for a cylinder",
+                         {{"radius", crown_radius}});
     }
     if (!profile.empty()) {
         const double half = 0.5 * width * (1.0 - 1e-9);
@@ -64,15 +67,17 @@ void ContactWheel::validate() const {
         }
         if (!usable) {
             throw InputError(
-                "contact wheel: the profile needs points (y, drop) with y ascending from " +
-                std::to_string(-0.5 * width) + " to " + std::to_string(0.5 * width) +
-                " mm at least, and drops from 0 to below the radius");
+                "wheel.profile",
+                "contact wheel: the profile needs points (y, drop) with y ascending from {begin:f} "
+                "to {end:f} mm at least, and drops from 0 to below the radius",
+                {{"begin", -0.5 * width}, {"end", 0.5 * width}});
         }
     }
     if (crown_radius > 0.0 && (crown_radius <= 0.5 * width || drop(0.5 * width) >= radius)) {
-        throw InputError("contact wheel: a crown radius of " + std::to_string(crown_radius) +
-                         " mm does not reach across the width of " + std::to_string(width) +
-                         " mm; give one larger than half the width");
+        throw InputError("wheel.crown_too_strong",
+                         "contact wheel: a crown radius of {radius:f} mm does not reach across the "
+                         "width of {width:f} mm; give one larger than half the width",
+                         {{"radius", crown_radius}, {"width", width}});
     }
 }
 

@@ -21,14 +21,16 @@ void TrainedRegression::validate(int features) const {
     const bool fits = vectors.rows() == features && vectors.cols() == coefficients.size() &&
                       mean.size() == features && deviation.size() == features;
     if (!fits) {
-        throw InputError("surrogate: its arrays do not fit together (" +
-                         std::to_string(vectors.rows()) + " features where there should be " +
-                         std::to_string(features) + ")");
+        throw InputError("surrogate.arrays",
+                         "surrogate: its arrays do not fit together ({given} features where there "
+                         "should be {expected})",
+                         {{"given", vectors.rows()}, {"expected", features}});
     }
     if (!vectors.allFinite() || !coefficients.allFinite() || !mean.allFinite() ||
         !(deviation.array() > 0.0f).all() || !deviation.allFinite() || !std::isfinite(rho) ||
         !std::isfinite(scale) || !(gamma > 0.0)) {
-        throw InputError("surrogate: it holds a number that is not finite, or not positive");
+        throw InputError("surrogate.numbers",
+                         "surrogate: it holds a number that is not finite, or not positive");
     }
 }
 

@@ -109,21 +109,21 @@ double WheelRimDesign::softest() const {
 }
 
 void WheelRimDesign::validate() const {
-    const auto positive = [](double value, const std::string& what) {
-        if (!std::isfinite(value) || value <= 0.0) {
-            throw InputError("wheel rim: " + what + " is " + std::to_string(value) +
-                             " mm; give a positive one");
-        }
+    const auto positive = [](double value, const char* code, const char* form) {
+        if (!std::isfinite(value) || value <= 0.0) throw InputError(code, form, {{"value", value}});
     };
-    positive(outer_radius, "the outer radius");
-    positive(width, "the width");
-    if (layers.empty()) throw InputError("wheel rim: it has no layer of rubber");
+    positive(outer_radius, "rim.outer_radius",
+             "wheel rim: the outer radius is {value:f} mm; give a positive one");
+    positive(width, "rim.width", "wheel rim: the width is {value:f} mm; give a positive one");
+    if (layers.empty()) throw InputError("rim.no_layer", "wheel rim: it has no layer of rubber");
     for (const RimLayer& layer : layers) {
-        positive(layer.thickness, "the thickness");
+        positive(layer.thickness, "rim.thickness",
+                 "wheel rim: the thickness is {value:f} mm; give a positive one");
         layer.elasticity.validate(kLargestRatio);
     }
     if (thickness() >= outer_radius) {
-        throw InputError("wheel rim: it is as thick as the wheel's radius; no core is left");
+        throw InputError("rim.no_core",
+                         "wheel rim: it is as thick as the wheel's radius; no core is left");
     }
 }
 
@@ -245,7 +245,8 @@ Eigen::MatrixXd RimSection::solve(const Half& half, double n) {
         n * values(half.k1) + n * n * values(half.k2);
     const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(k);
     if (factor.info() != Eigen::Success) {
-        throw InputError("wheel rim: its stiffness is not positive definite; check the layers");
+        throw InputError("rim.not_definite",
+                         "wheel rim: its stiffness is not positive definite; check the layers");
     }
     // C = X' X with X = L^-1 P loads.
     const Eigen::MatrixXd permuted = factor.permutationP() * half.loads;

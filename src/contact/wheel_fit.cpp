@@ -72,7 +72,8 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
                               const std::vector<Vec3>& point, const std::vector<Vec3>& normal,
                               const RunContext& context) {
     wheel.validate();
-    if (point.size() != normal.size()) throw InputError("wheel_fit needs a normal for every point");
+    if (point.size() != normal.size())
+        throw InputError("contact.wheel_fit", "wheel_fit needs a normal for every point");
     std::vector<double> depth(work_from_contact.size(), 0.0);
     if (point.empty()) return depth;
     const Cells cells(point);

@@ -1,8 +1,9 @@
 #include "facts.h"
 
-#include "facts_py.h"
-
 namespace beltgrinding::python {
+
+extern const char* const kFactsPy;  // facts.py, by CMakeLists.txt
+
 namespace {
 
 py::object made(const py::handle& type, const Fact& fact) {

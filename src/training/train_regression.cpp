@@ -24,11 +24,13 @@ TrainedRegression train_regression(const Eigen::MatrixXf& features, const Eigen:
                                    const RegressionSettings& settings) {
     const Eigen::Index n = features.cols(), m = features.rows();
     if (n < kLeastSamples || targets.size() != n) {
-        throw InputError("regression: there are " + std::to_string(n) + " samples; at least " +
-                         std::to_string(kLeastSamples) + " are needed, with a target each");
+        throw InputError("training.too_few",
+                         "regression: there are {count} samples; at least {least} are needed, with "
+                         "a target each",
+                         {{"count", n}, {"least", kLeastSamples}});
     }
     if (!features.allFinite() || !targets.allFinite()) {
-        throw InputError("regression: a sample is not finite");
+        throw InputError("training.not_finite", "regression: a sample is not finite");
     }
     TrainedRegression result;
     result.mean = features.rowwise().mean();
@@ -36,7 +38,8 @@ TrainedRegression train_regression(const Eigen::MatrixXf& features, const Eigen:
         (features.colwise() - result.mean).rowwise().norm() / std::sqrt(static_cast<float>(n));
     result.deviation = result.deviation.cwiseMax(1e-6f);
     result.scale = std::sqrt((targets.array() - targets.mean()).square().mean());
-    if (!(result.scale > 0.0)) throw InputError("regression: all targets are the same");
+    if (!(result.scale > 0.0))
+        throw InputError("training.same_targets", "regression: all targets are the same");
     result.gamma = settings.gamma;
 
     const Eigen::MatrixXd x =
@@ -64,7 +67,8 @@ TrainedRegression train_regression(const Eigen::MatrixXf& features, const Eigen:
     parameter.cache_size = 1000.0;  // MB
     parameter.shrinking = 0;
     if (const char* wrong = svm_check_parameter(&problem, &parameter)) {
-        throw InputError(std::string("regression: libsvm refuses: ") + wrong);
+        throw InputError("training.refused", "regression: libsvm refuses: {reason}",
+                         {{"reason", wrong}});
     }
     svm_set_print_string_function([](const char*) {});
     const std::unique_ptr<svm_model, FreeModel> model(svm_train(&problem, &parameter));

@@ -13,7 +13,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 sys.path.insert(0, str(ROOT / "tests" / "workbench"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import events, schemas  # noqa: E402
+from beltgrinding import core, events, schemas  # noqa: E402
 from beltgrinding.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
@@ -42,7 +42,11 @@ def test_events_have_the_published_form(tmp_path):
         assert event["line"] == 12 and event["pose"] == 1
         assert (event["time"] >= first_time) == (event["program"] == 1)
         assert 0 <= event["worst_time"] - event["time"] <= event["duration"]
-        assert event["message"] and event["advice"]
+        assert event["advice"] and event["facts"]
+        facts = [
+            core.Fact(fact["code"], fact["text"], **fact["arguments"]) for fact in event["facts"]
+        ]
+        assert event["message"] == "; ".join(facts)  # Python fills a form in as the core does
         if event["kind"] != "orientation_jump":
             assert event["face"] == 1
             x, y, _ = event["point"]

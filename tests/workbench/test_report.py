@@ -367,28 +367,6 @@ def test_command_line_writes_html_and_pdf(ground, tmp_path):
     assert done.returncode == 2 and "cannot be written" in done.stderr
 
 
-def core_messages():
-    """What the core writes into events: the texts of its sources, {} for each number or name."""
-    texts = set()
-    for file in ("simulation/process_monitor", "robot/reach", "collision/collision_check"):
-        source = Path(ROOT, "src", f"{file}.cpp").read_text()
-        source = re.sub(r'"\s*\n?\s*"', "", source)  # literals side by side are one
-        texts |= set(re.findall(r'"([^"\n]*)"', source))
-    return {text for text in texts if "%" in text}
-
-
-def test_every_message_of_the_core_has_a_form():
-    forms = [re.sub(r"\{\w\}", "{}", form) for form in event_messages.FORMS]
-    found = core_messages()
-    assert len(found) > 15
-    for text in found:
-        plain = re.sub(r"%[-+.\d]*[a-z]", "{}", text).replace("%%", "%").strip(" ,;")
-        for part in plain.split("; "):
-            # What is put in besides numbers, as "along the belt", is a form of its own.
-            pattern = re.escape(part).replace(re.escape("{}"), ".*")
-            assert any(re.search(pattern, form) for form in forms), text
-
-
 def test_messages_of_events_are_told_in_german():
     words = language.Language("de")
 

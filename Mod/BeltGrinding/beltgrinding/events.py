@@ -20,6 +20,7 @@ NOTHING = {
     "face": None,
     "bodies": [],
     "message": "",
+    "facts": [],
 }
 
 
@@ -44,6 +45,7 @@ def _complete(event, kind):
     defaults = {
         **NOTHING,
         "bodies": [],
+        "facts": [],
         "severity": kind.get("severity", "warning"),
         "unit": kind.get("unit", ""),
         "advice": kind.get("advice", ""),

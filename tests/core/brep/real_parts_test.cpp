@@ -77,13 +77,13 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-std::vector<std::string> warnings_of(const std::filesystem::path& path) {
+std::vector<Fact> warnings_of(const std::filesystem::path& path) {
     return Shape::read(path.string()).warnings();
 }
 
-bool any_with(const std::vector<std::string>& all, const std::string& part) {
+bool any_with(const std::vector<Fact>& all, const std::string& part) {
     return std::any_of(all.begin(), all.end(),
-                       [&](const std::string& s) { return s.find(part) != std::string::npos; });
+                       [&](const Fact& f) { return f.sentence().find(part) != std::string::npos; });
 }
 
 TEST(NastyParts, AreWarnedOfOrRefused) {

@@ -22,9 +22,9 @@ std::string message(const std::function<void()>& call) {
     return "no InputError";
 }
 
-bool contains(const std::vector<std::string>& all, const std::string& part) {
+bool contains(const std::vector<Fact>& all, const std::string& part) {
     return std::any_of(all.begin(), all.end(),
-                       [&](const std::string& s) { return s.find(part) != std::string::npos; });
+                       [&](const Fact& f) { return f.sentence().find(part) != std::string::npos; });
 }
 
 TEST(Shape, SurvivesItsOwnText) {

@@ -212,7 +212,7 @@ TEST(GroundMesh, AnOpenShellGivesAnOpenMeshAndSaysSo) {
     EXPECT_GT(g.mesh.check.border_edges, 50u);
     EXPECT_EQ(g.mesh.check.euler, 1);
     ASSERT_EQ(g.mesh.warnings.size(), 1u);
-    EXPECT_NE(g.mesh.warnings[0].find("open"), std::string::npos);
+    EXPECT_NE(g.mesh.warnings[0].sentence().find("open"), std::string::npos);
 }
 
 TEST(GroundMesh, WithoutGroundNothingIsDisplaced) {

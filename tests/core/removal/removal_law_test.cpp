@@ -94,11 +94,11 @@ TEST(LocalLaw, CurvesReplaceThePowersAndKnowTheirRange) {
 
     const LocalLaw law(p);
     EXPECT_FALSE(law.outside(0.2, state));
-    EXPECT_NE(law.outside(0.4, state)->text.find("0.05 to 0.3 MPa"), std::string::npos);
+    EXPECT_NE(law.outside(0.4, state)->fact.sentence().find("0.05 to 0.3 MPa"), std::string::npos);
     state.feed = 10.0;
-    EXPECT_NE(law.outside(0.2, state)->text.find("the feed of 10"), std::string::npos);
+    EXPECT_NE(law.outside(0.2, state)->fact.sentence().find("the feed of 10"), std::string::npos);
     state.belt_speed = 5000.0;
-    EXPECT_NE(law.outside(0.2, state)->text.find("10 to 30 m/s"), std::string::npos);
+    EXPECT_NE(law.outside(0.2, state)->fact.sentence().find("10 to 30 m/s"), std::string::npos);
 }
 
 TEST(RemovalLaw, RefusesNonsense) {

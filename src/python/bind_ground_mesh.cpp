@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "arrays.h"
+#include "brep/surface_mesh.h"
 #include "facts.h"
 #include "inspection/ground_mesh.h"
 

@@ -1,5 +1,7 @@
 #include "facts.h"
 
+#include <pybind11/eval.h>
+
 namespace beltgrinding::python {
 
 extern const char* const kFactsPy;  // facts.py, by CMakeLists.txt

@@ -15,7 +15,7 @@ constexpr double kRotationTolerance = 1e-6;    // of R^T R from the identity
 constexpr std::size_t kMaxSteps = 50'000'000;  // more is a mistake in feed or step, not a job
 
 /// Names the pose before what `error` says of it.
-InputError at(const PathPose& pose, std::size_t index, const InputError& error) {
+InputError at_pose(const PathPose& pose, std::size_t index, const InputError& error) {
     if (pose.line <= 0)
         return error.within({"path.at_pose", "pose {pose}: ", {{"pose", index + 1}}});
     return error.within({"path.at_line",
@@ -26,29 +26,30 @@ InputError at(const PathPose& pose, std::size_t index, const InputError& error) 
 void validate(const PathPose& pose, std::size_t index) {
     const auto matrix = pose.base_from_tcp.matrix();
     if (!matrix.allFinite()) {
-        throw at(
+        throw at_pose(
             pose, index,
             InputError("path.pose_not_finite", "the pose is not finite; give six real numbers"));
     }
     const Eigen::Matrix3d r = pose.base_from_tcp.linear();
     const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (error > kRotationTolerance || r.determinant() < 0.0) {
-        throw at(
+        throw at_pose(
             pose, index,
             InputError("path.no_rotation",
                        "the orientation is no rotation (off by {error:f}); give a unit quaternion",
                        {{"error", error}}));
     }
     if (!std::isfinite(pose.feed) || pose.feed <= 0.0) {
-        throw at(pose, index,
-                 InputError("path.feed", "feed is {feed:f} mm/s; give a positive one",
-                            {{"feed", pose.feed}}));
+        throw at_pose(pose, index,
+                      InputError("path.feed", "feed is {feed:f} mm/s; give a positive one",
+                                 {{"feed", pose.feed}}));
     }
     if (!std::isfinite(pose.force)) {
-        throw at(pose, index, InputError("path.force", "force is not finite; give newtons"));
+        throw at_pose(pose, index, InputError("path.force", "force is not finite; give newtons"));
     }
     if (!std::isfinite(pose.zone)) {
-        throw at(pose, index, InputError("path.zone", "the zone is not finite; give millimetres"));
+        throw at_pose(pose, index,
+                      InputError("path.zone", "the zone is not finite; give millimetres"));
     }
 }
 
@@ -158,10 +159,10 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
             const double wanted = std::max({1.0, std::ceil(travel / options.max_travel),
                                             std::ceil(angle / options.max_angle)});
             if (wanted + static_cast<double>(steps.size()) > static_cast<double>(kMaxSteps)) {
-                throw at(to, i,
-                         InputError("path.too_many_steps",
-                                    "the path needs more than {count} steps; enlarge the step",
-                                    {{"count", kMaxSteps}}));
+                throw at_pose(to, i,
+                              InputError("path.too_many_steps",
+                                         "the path needs more than {count} steps; enlarge the step",
+                                         {{"count", kMaxSteps}}));
             }
             const int parts = static_cast<int>(wanted);
             const double force = to.force >= 0.0 ? to.force : options.default_force;

@@ -21,6 +21,7 @@
 #include <numbers>
 
 #include "beltgrinding/error.h"
+#include "brep/surface_mesh.h"
 #include "shape_impl.h"
 
 namespace beltgrinding {

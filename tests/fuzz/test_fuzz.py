@@ -186,7 +186,7 @@ for text in test_fuzz.mutations(data, 3, {rounds}):
     read += status == 0
     # OpenCASCADE's healing can run for ever on nonsense; that is known, and no crash.
     whole = status == 0 or status == 3 << 8 or (status == signal.SIGALRM and {slow})
-    assert whole, path.rename("damaged")
+    assert whole, path.rename(path.with_name("damaged"))
 assert read > test_fuzz.LEAST_READ * {rounds}, f"only {{read}} of {rounds} were read"
 """
 READERS = {

@@ -1,6 +1,7 @@
 """Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
 
 import gc
+import re
 import sys
 import time
 from pathlib import Path
@@ -14,6 +15,7 @@ window = Gui.getMainWindow()
 window.setAnimated(False)  # a dock that slides in is not where a click goes
 _patched = []  # (holder, name, what it was)
 _taken = []  # names of pictures
+TIME_TAKEN = re.compile(r"(computed in )[\d.,]+ s")
 PICTURES = Path(__file__).resolve().parents[2] / "build" / "pictures"
 
 
@@ -222,8 +224,35 @@ def picture(name):
     bars, end = widgets(QtGui.QProgressBar), time.monotonic() + 3
     while any(bar.isVisible() for bar in bars) and time.monotonic() < end:
         settle()  # FreeCAD's own of loading goes a while later
+    replaced = _as_everywhere()
     screenshot(PICTURES / f"{name}.png")
+    for widget, text in replaced:
+        _set_silently(widget, text)
     _taken.append(name)
+
+
+def _as_everywhere():
+    """Shows what every computer or test run writes otherwise as one text: the time that a simulation
+    took, the folder of a file. Returns [(widget, its text)].
+    """
+    QtGui.QApplication.setCursorFlashTime(0)
+    replaced = []
+    for kind in (QtGui.QLabel, QtGui.QLineEdit):
+        for widget in visible(kind):
+            text = TIME_TAKEN.sub(r"\g<1>2.0 s", widget.text())
+            if kind is QtGui.QLineEdit and Path(text).is_absolute():
+                text = Path(text).name
+            if text != widget.text():
+                replaced.append((widget, widget.text()))
+                _set_silently(widget, text)
+    return replaced
+
+
+def _set_silently(widget, text):
+    """Sets a text of which only the screen hears."""
+    before = widget.blockSignals(True)
+    widget.setText(text)
+    widget.blockSignals(before)
 
 
 def walked():

@@ -14,12 +14,10 @@ APART = {"contact-reference": "tools/contact_picture.py"}  # CalculiX takes minu
 RELEASE = [
     0,
     20,
-]  # of FreeCAD that the kept pictures are of; others draw their own frames and icons
-COARSE = (80, 50)  # pixels to which pictures are shrunk before they are compared
-SAME = 0.02  # of 255: mean difference of coarse pictures taken twice
-ALIKE = (
-    4.0  # of 255: the same step; a toolbar may have got a button since, a panel is another picture
-)
+]  # of FreeCAD, that the kept pictures are of; others draw frames and icons their way
+WINDOW = 12  # pixels; a character of a label is as large
+SAME = 0.2  # of 255: of pictures taken twice
+ALIKE = 3.0  # of 255: another rounding of colours is below, another character above
 
 
 def referenced():
@@ -44,12 +42,17 @@ def made_by():
 
 
 def difference(one, other):
-    """Mean difference of two pictures, 0 to 255, after shrinking both to ``COARSE``."""
-    shrunk = []
-    for path in (one, other):
-        image = Image.open(path).convert("RGB")
-        shrunk.append(np.asarray(image.resize(COARSE, Image.BOX)).astype(float))
-    return float(np.abs(shrunk[0] - shrunk[1]).max(axis=2).mean())
+    """How far two pictures (paths) differ where they differ most: the mean difference of the colour
+    that differs most, 0 to 255, in a square of ``WINDOW`` pixels; inf if they are not of one size.
+    """
+    a, b = (np.asarray(Image.open(path).convert("RGB")).astype(float) for path in (one, other))
+    if a.shape != b.shape:
+        return float("inf")
+    sums = np.pad(np.abs(a - b).max(axis=2).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    rows, columns = (min(WINDOW, size) for size in a.shape[:2])
+    inside = sums[rows:] - sums[:-rows]
+    inside = inside[:, columns:] - inside[:, :-columns]
+    return float(inside.max() / (rows * columns))
 
 
 def keep(name, picture):

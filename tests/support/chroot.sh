@@ -59,5 +59,5 @@ inside() {
     shift
     chroot "$place" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         HOME=/root LANG=C.UTF-8 TERM=dumb DEBIAN_FRONTEND=noninteractive \
-        BELTGRINDING_SHARED=/work/shared "$@"
+        BELTGRINDING_SHARED=/work/shared BELTGRINDING_STRICT="${BELTGRINDING_STRICT:-}" "$@"
 }

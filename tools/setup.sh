@@ -15,9 +15,8 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libcoin-dev libgl-dev qttools5-dev-tools
-    libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
+    libnanoflann-dev libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
-packages_scan=(libpcl-dev) # aligning scans; large, and not needed for anything else
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib python3-pil xvfb xauth libgl1-mesa-dri)
 packages_docs=(mkdocs mkdocs-material doxygen)
 packages_test=("${packages_docs[@]}" weasyprint poppler-utils python3-pytest python3-h5py python3-yaml calculix-ccx cloudcompare)
@@ -118,16 +117,13 @@ build_all() {
 # build_now TARGET STAMPS: configures where that is needed, then lets Ninja decide what is stale. Each
 # build has a log of its own in build/logs; build/build.log is a link to the last one.
 build_now() {
-    local target=$1 stamps=$2 logs=$root/build/logs log late= # what was installed since it was configured
+    local target=$1 stamps=$2 logs=$root/build/logs log
     log=$logs/$(date +%Y%m%d-%H%M%S)-$$-$target.log
     mkdir -p "$logs"
     ls -t "$logs" | tail -n +20 | while read -r old; do rm -f "$logs/$old"; done
     ln -sfn "logs/${log##*/}" "$root/build/build.log"
     : >"$stamps/.$target" # as old as the build's begin: what changes meanwhile is built the next time
-    if compgen -G '/usr/lib/*/cmake/pcl/PCLConfig.cmake' >/dev/null; then
-        grep -qs '^PCL_DIR:PATH=/' "$build/CMakeCache.txt" || late=PCL
-    fi
-    if [ ! -f "$build/build.ninja" ] || [ -n "$late" ]; then
+    if [ ! -f "$build/build.ninja" ]; then
         say "Configuring the build"
         (cd "$root" && cmake --preset release) >"$log" 2>&1 || {
             grep -A 6 'CMake Error' "$log" | head -n 20 >&2

@@ -1,4 +1,4 @@
-// The binding `beltgrinding_scan`: apart from the core, which must load where there is no PCL.
+// The binding `beltgrinding_scan`: apart from the core, since it is optional when built.
 #include "arrays.h"
 #include "beltgrinding/registration.h"
 #include "facts.h"
@@ -28,7 +28,7 @@ std::vector<Vec3f> normals_from(const Doubles& array, const char* what) {
 }  // namespace
 
 PYBIND11_MODULE(beltgrinding_scan, m) {
-    m.doc() = "Alignment of scans by PCL. Millimetre, radian.";
+    m.doc() = "Alignment of scans. Millimetre, radian.";
     // The core's own exceptions: whoever catches them must not care which module threw.
     const py::module_ core = py::module_::import("beltgrinding_core");
     static PyObject* const input_error = py::object(core.attr("InputError")).release().ptr();

@@ -1,16 +1,10 @@
 #include "beltgrinding/registration.h"
 
-#include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/registration/correspondence_estimation.h>
-#include <pcl/registration/correspondence_rejection_trimmed.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <nanoflann.hpp>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
@@ -18,7 +12,6 @@
 namespace beltgrinding {
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
@@ -35,19 +28,62 @@ constexpr double kAside = 1.5;            // of the neighbours' spread: their me
 constexpr double kMeasureSettled = 1e-4;  // mm
 constexpr std::size_t kBlock = 512;
 
-/// Single precision, as PCL has it, near the origin: `centre` is taken away before.
-Cloud::Ptr cloud_of(const std::vector<Vec3>& points, const Vec3& centre) {
-    auto cloud = std::make_shared<Cloud>();
-    cloud->reserve(points.size());
-    for (const Vec3& p : points) {
-        const Vec3f q = (p - centre).cast<float>();
-        cloud->push_back(pcl::PointXYZ(q.x(), q.y(), q.z()));
-    }
-    return cloud;
-}
+/// The nearest of given points, in double precision.
+class NearestPoints {
+  public:
+    /// Keeps a reference: `points` must outlive it.
+    explicit NearestPoints(const std::vector<Vec3>& points) : points_{points}, tree_(3, points_) {}
 
-Vec3 vec(const pcl::PointXYZ& p) {
-    return {double(p.x), double(p.y), double(p.z)};
+    /// Fills `found` with the indices of the points nearest to `at`, as many as it is long, and
+    /// `squared` (as long) with their squared distances, nearest first. False: there are fewer.
+    bool operator()(const Vec3& at, std::vector<std::uint32_t>& found,
+                    std::vector<double>& squared) const {
+        return tree_.knnSearch(at.data(), found.size(), found.data(), squared.data()) ==
+               found.size();
+    }
+
+  private:
+    struct Points {
+        const std::vector<Vec3>& points;
+        std::size_t kdtree_get_point_count() const { return points.size(); }
+        double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+            return points[i][Eigen::Index(axis)];
+        }
+        template <class Bounds>
+        bool kdtree_get_bbox(Bounds&) const {
+            return false;
+        }
+    };
+    Points points_;
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3,
+                                        std::uint32_t>
+        tree_;
+};
+
+/// A point of the scan and the nearest of the datum.
+struct Pair {
+    std::uint32_t source = 0, target = 0;
+    double squared = -1;  ///< mm2, along the datum's normal: what is trimmed by; < 0: no pair
+};
+
+/// Leaves the `count` pairs of least `squared`, in their order.
+void trim(std::vector<Pair>& pairs, std::size_t count) {
+    if (count >= pairs.size()) return;
+    std::vector<double> squares;
+    squares.reserve(pairs.size());
+    for (const Pair& p : pairs) squares.push_back(p.squared);
+    const auto cut = squares.begin() + std::ptrdiff_t(count);
+    std::nth_element(squares.begin(), cut, squares.end());
+    const double limit = *cut;
+    std::size_t below = 0;
+    for (const Pair& p : pairs) below += p.squared < limit;
+    std::size_t at_limit = count - below;
+    std::erase_if(pairs, [&](const Pair& p) {
+        if (p.squared != limit) return p.squared > limit;
+        if (at_limit == 0) return true;
+        --at_limit;
+        return false;
+    });
 }
 
 /// Sums over the pairs: J^T J, J^T r, r^2 with J = [normal, point x normal / radius].
@@ -62,14 +98,12 @@ struct Normals {
 class Aligner {
   public:
     Aligner(const ScanPoints& scan, const DatumSurface& datum, const RegistrationOptions& options)
-        : datum_(datum), options_(options) {
+        : datum_(datum), options_(options), nearest_(datum.points) {
         centre_ = Vec3::Zero();
         for (const Vec3& p : datum.points) centre_ += p;
         centre_ /= double(datum.points.size());
         for (const Vec3& p : datum.points) radius_ += (p - centre_).squaredNorm();
         radius_ = std::sqrt(radius_ / double(datum.points.size()));
-        target_ = cloud_of(datum.points, centre_);
-        estimation_.setInputTarget(target_);
         const std::size_t n = scan.points.size();
         const std::size_t step = std::max<std::size_t>(
             1, (n + options.most_points - 1) / std::max<std::size_t>(1, options.most_points));
@@ -89,13 +123,15 @@ class Aligner {
         for (; result.iterations < options_.iterations; ++result.iterations) {
             context.throw_if_cancelled();
             context.report(double(result.iterations) / options_.iterations);
-            sums = pair_up(distance);
+            sums = pair_up(distance, context);
             if (sums.pairs < kFewest)
-                throw InputError(
-                    "scan: " + std::to_string(sums.pairs) + " of its points lie within " +
-                    std::to_string(options_.max_distance) +
-                    " mm of the design's datum faces, at least " + std::to_string(kFewest) +
-                    " are needed; look at its unit and at where it starts");
+                throw InputError("scan.too_few_pairs",
+                                 "scan: {pairs} of its points lie within {distance:.3g} mm of the "
+                                 "design's datum faces, at least {least} are needed; look at its "
+                                 "unit and at where it starts",
+                                 {{"pairs", sums.pairs},
+                                  {"distance", options_.max_distance},
+                                  {"least", kFewest}});
             const Vec6 step = solve(sums);
             apply(step);
             const double rms = std::sqrt(sums.residual / double(sums.pairs));
@@ -109,7 +145,7 @@ class Aligner {
                 break;
             }
         }
-        sums = pair_up(distance);
+        sums = pair_up(distance, context);
         result.distance = distance;
         result.used = sums.pairs;
         result.used_share = double(sums.pairs) / double(points_.size());
@@ -121,45 +157,46 @@ class Aligner {
     }
 
   private:
-    Normals pair_up(double distance) {
-        auto source = std::make_shared<Cloud>();
-        source->reserve(points_.size());
-        for (const Vec3& p : points_) {
-            const Vec3f q = (motion_ * p).cast<float>();
-            source->push_back(pcl::PointXYZ(q.x(), q.y(), q.z()));
-        }
-        estimation_.setInputSource(source);
-        pcl::Correspondences found, sound, kept;
-        estimation_.determineCorrespondences(found, distance);
-        for (const pcl::Correspondence& c : found) {
-            const auto s = static_cast<std::size_t>(c.index_query);
-            const auto t = static_cast<std::size_t>(c.index_match);
-            const Vec3 normal = datum_.normals[t].cast<double>();
-            const Vec3 apart = motion_ * points_[s] - (datum_.points[t] - centre_);
-            const double height = apart.dot(normal);
-            if ((apart - height * normal).norm() > kBeside * datum_.spacing) continue;
-            if (!normals_.empty() && (motion_.linear() * normals_[s]).dot(normal) < kSameSide)
-                continue;
-            sound.push_back(c);
-            sound.back().distance = static_cast<float>(height * height);  // what is trimmed by
-        }
+    /// The pairs no farther apart than `distance` that are of the datum's surface.
+    std::vector<Pair> pairs_within(double distance, const RunContext& context) const {
+        std::vector<Pair> all(points_.size());
+        parallel_blocks(points_.size(), kBlock, context, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t> index(1);
+            std::vector<double> squared(1);
+            for (std::size_t s = begin; s < end; ++s) {
+                const Vec3 moved = motion_ * points_[s];
+                if (!nearest_(moved + centre_, index, squared)) continue;
+                if (squared[0] > distance * distance) continue;
+                const std::size_t t = index[0];
+                const Vec3 normal = datum_.normals[t].cast<double>();
+                const Vec3 apart = moved - (datum_.points[t] - centre_);
+                const double height = apart.dot(normal);
+                if ((apart - height * normal).norm() > kBeside * datum_.spacing) continue;
+                if (!normals_.empty() && (motion_.linear() * normals_[s]).dot(normal) < kSameSide)
+                    continue;
+                all[s] = {std::uint32_t(s), index[0], height * height};
+            }
+        });
+        std::erase_if(all, [](const Pair& p) { return p.squared < 0; });
+        return all;
+    }
+
+    Normals pair_up(double distance, const RunContext& context) const {
+        std::vector<Pair> pairs = pairs_within(distance, context);
         Normals sums;
-        if (!sound.empty()) {
-            std::vector<float> squares;
-            for (const pcl::Correspondence& c : sound) squares.push_back(c.distance);
+        if (!pairs.empty()) {
+            std::vector<double> squares;
+            for (const Pair& p : pairs) squares.push_back(p.squared);
             const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
             std::nth_element(squares.begin(), middle, squares.end());
-            sums.scale = kMedianToSd * std::sqrt(double(*middle));
+            sums.scale = kMedianToSd * std::sqrt(*middle);
         }
-        pcl::registration::CorrespondenceRejectorTrimmed trim;
-        trim.setOverlapRatio(static_cast<float>(options_.share));
-        trim.setMinCorrespondences(static_cast<unsigned>(kFewest));
-        trim.getRemainingCorrespondences(sound, kept);
-        sums.pairs = kept.size();
-        for (const pcl::Correspondence& c : kept) {
-            const auto t = static_cast<std::size_t>(c.index_match);
+        trim(pairs, std::max(kFewest, std::size_t(options_.share * double(pairs.size()))));
+        sums.pairs = pairs.size();
+        for (const Pair& pair : pairs) {
+            const std::size_t t = pair.target;
             const Vec3 normal = datum_.normals[t].cast<double>();
-            const Vec3 p = motion_ * points_[static_cast<std::size_t>(c.index_query)];
+            const Vec3 p = motion_ * points_[pair.source];
             const double r = (p - (datum_.points[t] - centre_)).dot(normal);
             Vec6 j;
             j << normal, p.cross(normal) / radius_;
@@ -251,8 +288,7 @@ class Aligner {
     Vec3 centre_;
     double radius_ = 0;
     std::vector<Vec3> points_, normals_;  ///< of the scan as it starts, about the centre
-    Cloud::Ptr target_;
-    pcl::registration::CorrespondenceEstimation<pcl::PointXYZ, pcl::PointXYZ> estimation_;
+    NearestPoints nearest_;
     Frame motion_ = Frame::Identity();  ///< since the start
     Vec3 turned_ = Vec3::Zero(), shifted_ = Vec3::Zero();
 };
@@ -260,19 +296,21 @@ class Aligner {
 void require_finite(const std::vector<Vec3>& points, const char* what) {
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!points[i].allFinite())
-            throw InputError(std::string(what) + ": point " + std::to_string(i) + " is not finite");
+            throw InputError("scan.not_finite", "{cloud}: point {point} is not finite",
+                             {{"cloud", what}, {"point", i}});
 }
 
 }  // namespace
 
 Registration register_scan(const ScanPoints& scan, const DatumSurface& datum,
                            const RegistrationOptions& options, const RunContext& context) {
-    if (scan.points.empty()) throw InputError("scan: it has no points");
+    if (scan.points.empty()) throw InputError("scan.empty", "scan: it has no points");
     if (datum.points.empty() || datum.points.size() != datum.normals.size())
-        throw InputError("scan: the datum has no points, or not a normal for each");
+        throw InputError("scan.datum", "scan: the datum has no points, or not a normal for each");
     if (!(options.max_distance > 0) || !(options.share > 0) || options.share > 1 ||
         !(datum.spacing > 0))
-        throw InputError("scan: distance and spacing must be above 0 mm, the share in (0, 1]");
+        throw InputError("scan.options",
+                         "scan: distance and spacing must be above 0 mm, the share in (0, 1]");
     require_finite(scan.points, "scan");
     require_finite(datum.points, "datum");
     return Aligner(scan, datum, options).run(context);
@@ -283,36 +321,32 @@ std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vec
                                   const std::vector<double>& start, double reach,
                                   std::size_t neighbours, const RunContext& context) {
     if (points.size() != normals.size() || points.size() != start.size())
-        throw InputError("scan: points, normals and starts differ in length");
+        throw InputError("scan.lengths", "scan: points, normals and starts differ in length");
     if (neighbours < 3 || !(reach > 0))
-        throw InputError("scan: a plane needs three neighbours and a reach above 0 mm");
+        throw InputError("scan.reach",
+                         "scan: a plane needs three neighbours and a reach above 0 mm");
     if (cloud.size() < neighbours)
-        throw InputError("scan: " + std::to_string(cloud.size()) + " points are no surface");
+        throw InputError("scan.no_surface", "scan: {points} points are no surface",
+                         {{"points", cloud.size()}});
     require_finite(cloud, "scan");
-    Vec3 centre = Vec3::Zero();
-    for (const Vec3& p : points) centre += p / double(points.size());
-    pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-    const Cloud::Ptr local = cloud_of(cloud, centre);
-    tree.setInputCloud(local);
+    const NearestPoints nearest(cloud);
     std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
-    const auto k = static_cast<unsigned>(neighbours);
+    const auto k = double(neighbours);
     parallel_blocks(points.size(), kBlock, context, [&](std::size_t begin, std::size_t end) {
-        pcl::Indices index;
-        std::vector<float> squared;
+        std::vector<std::uint32_t> index(neighbours);
+        std::vector<double> squared(neighbours);
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 foot = points[i] - centre, normal = normals[i].cast<double>();
+            const Vec3 foot = points[i], normal = normals[i].cast<double>();
             double h = start[i];
             bool found = false;
             for (int round = 0; round < kMeasureRounds; ++round) {
-                const Vec3f at = (foot + h * normal).cast<float>();
-                found = tree.nearestKSearch(pcl::PointXYZ(at.x(), at.y(), at.z()), int(k), index,
-                                            squared) == int(k);
+                found = nearest(foot + h * normal, index, squared);
                 if (!found) break;
                 Vec3 mean = Vec3::Zero();
-                for (const auto n : index) mean += vec((*local)[std::size_t(n)]) / double(k);
+                for (const auto n : index) mean += cloud[n] / k;
                 Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
                 for (const auto n : index) {
-                    const Vec3 d = vec((*local)[std::size_t(n)]) - mean;
+                    const Vec3 d = cloud[n] - mean;
                     spread += d * d.transpose();
                 }
                 const Vec3 plane =
@@ -325,7 +359,7 @@ std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vec
                 const double met = plane.dot(mean - foot) / across;
                 // Beside the cloud all neighbours lie on one side, and their plane is a guess.
                 const Vec3 off = mean - foot - met * normal;
-                const double width = std::sqrt(spread.trace() / double(k));
+                const double width = std::sqrt(spread.trace() / k);
                 found = std::isfinite(met) && std::abs(met - start[i]) <= reach &&
                         off.norm() <= kAside * width && width <= reach;
                 if (!found || std::abs(met - h) < kMeasureSettled) {

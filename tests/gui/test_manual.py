@@ -191,7 +191,7 @@ assert (red > blue + 60).sum() > 1500 and (blue > red + 60).sum() > 200
 
 
 @pytest.mark.skipif(
-    importlib.util.find_spec("beltgrinding_scan") is None, reason="built without PCL"
+    importlib.util.find_spec("beltgrinding_scan") is None, reason="built without nanoflann"
 )
 def test_the_ground_part_and_its_scan(walk):
     walk(

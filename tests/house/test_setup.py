@@ -47,10 +47,8 @@ class Checkout:
 
     def start(self, command="build_all", **variables):
         path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
-        # CMake is told of PCL, or each call would configure again where that is installed.
-        cache = "mkdir -p build/release; echo PCL_DIR:PATH=/x >>build/release/CMakeCache.txt"
         return subprocess.Popen(
-            ["bash", "-c", f"set -euo pipefail; source tools/setup.sh; {cache}; {command}"],
+            ["bash", "-c", f"set -euo pipefail; source tools/setup.sh; {command}"],
             cwd=self.folder,
             env={**os.environ, **variables, "PATH": path},
             stderr=subprocess.PIPE,

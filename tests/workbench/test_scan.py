@@ -22,7 +22,7 @@ SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 NOISE = 0.01  # mm, standard deviation of a synthetic scan's points
 pytestmark = pytest.mark.skipif(
     not list((ROOT / "build" / "release" / "python").glob("beltgrinding_scan*")),
-    reason="beltgrinding_scan is not built (no PCL)",
+    reason="beltgrinding_scan is not built (no nanoflann)",
 )
 
 

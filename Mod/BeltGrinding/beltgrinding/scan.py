@@ -2,7 +2,7 @@
 
 The scan is a triangle mesh (STL, PLY, OBJ, OFF, 3MF) or a point cloud (PLY, OBJ, or text of x y z in
 the first three columns: XYZ, ASC, TXT, CSV, PTS). Alignment is by the extension
-``beltgrinding_scan``, which needs PCL; the core loads without it.
+``beltgrinding_scan``, which is optional when the workbench is built.
 """
 
 import json
@@ -35,8 +35,7 @@ def extension():
     except ImportError as error:
         raise InputError(
             f"scans are aligned by the module beltgrinding_scan, which cannot be loaded ({error}). It "
-            "needs the Point Cloud Library: on Debian install libpcl-registration1.13 (Debian 13: "
-            "1.15), or build the workbench where libpcl-dev is installed"
+            "is built with the workbench where nanoflann (libnanoflann-dev) is installed"
         ) from None
     return beltgrinding_scan
 

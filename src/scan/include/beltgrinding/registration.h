@@ -53,9 +53,8 @@ struct Registration {
 
 /// Lays a scan on a datum surface: iterative closest points with the point-to-plane distance (Chen
 /// and Medioni 1992), trimmed (Chetverikov et al. 2002), with pairs rejected that are farther apart
-/// than six times the residual, that lie beside the datum, or whose normals disagree. Nearest
-/// points and trimming are PCL's. Throws InputError when hardly a point of the scan is near the
-/// datum.
+/// than six times the residual, that lie beside the datum, or whose normals disagree. Throws
+/// InputError when hardly a point of the scan is near the datum.
 Registration register_scan(const ScanPoints& scan, const DatumSurface& datum,
                            const RegistrationOptions& options, const RunContext& context = {});
 

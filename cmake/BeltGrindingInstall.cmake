@@ -27,7 +27,7 @@ foreach(optional beltgrinding_coin beltgrinding_scan)
     list(APPEND modules ${optional})
   endif()
 endforeach()
-add_custom_target(beltgrinding_modules DEPENDS ${modules} translations)  # all that an installation needs built
+add_custom_target(beltgrinding_modules DEPENDS ${modules} beltgrinding_cad_reader translations)  # all that an installation needs built
 
 # Beside each core stands what it was built for, so that one that does not fit can say why before it
 # is loaded: beltgrinding/core_library.py.
@@ -48,8 +48,10 @@ endfunction()
 
 install_workbench(${BELTGRINDING_MOD_DIR})
 install(FILES LICENSE DESTINATION ${BELTGRINDING_MOD_DIR})
-install(TARGETS ${modules} LIBRARY DESTINATION ${BELTGRINDING_MOD_DIR})
+install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION ${BELTGRINDING_MOD_DIR}
+        RUNTIME DESTINATION ${BELTGRINDING_MOD_DIR})
 
 install_workbench(. COMPONENT addon EXCLUDE_FROM_ALL)
 install(FILES LICENSE DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)
-install(TARGETS ${modules} LIBRARY DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)
+install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL
+        RUNTIME DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)

@@ -31,7 +31,8 @@ endforeach()
 file(CREATE_LINK ../../freecad/Mod/BeltGrinding/docs ${package_files}/manual SYMBOLIC)
 
 install_workbench(${package_mod} ${as_deb})
-install(TARGETS ${modules} LIBRARY DESTINATION lib/beltgrinding ${as_deb})
+install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION lib/beltgrinding ${as_deb}
+        RUNTIME DESTINATION lib/beltgrinding ${as_deb})
 install(PROGRAMS ${package_files}/beltgrind DESTINATION bin ${as_deb})
 install(FILES ${package_files}/beltgrind.1.gz DESTINATION share/man/man1 ${as_deb})
 install(FILES ${package_files}/copyright ${package_files}/manual DESTINATION ${package_doc} ${as_deb})

@@ -54,6 +54,15 @@ function(beltgrinding_record_room name)
     "  \"${name}\": {\"rooms\": [${ROOMS}], \"private_rooms\": [${PRIVATE_ROOMS}]}")
 endfunction()
 
+# beltgrinding_reads_cad_files(TARGET): a program of this build, tests and benchmarks, that finds the
+# build's reader of CAD files; BELTGRINDING_CAD_READER in the environment goes before.
+function(beltgrinding_reads_cad_files target)
+  target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/core/cad_reader_here.cpp)
+  target_compile_definitions(${target} PRIVATE
+    BELTGRINDING_CAD_READER_HERE="$<TARGET_FILE:beltgrinding_cad_reader>")
+  add_dependencies(${target} beltgrinding_cad_reader)
+endfunction()
+
 # Writes what all rooms have declared, in their order.
 function(beltgrinding_write_rooms)
   get_property(rooms GLOBAL PROPERTY BELTGRINDING_ROOMS)

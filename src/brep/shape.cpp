@@ -62,7 +62,26 @@ double integrate_area(const TopoDS_Face& face) {
 
 }  // namespace
 
-Shape make_shape(const TopoDS_Shape& shape, const std::string& name) {
+void add_missing_curves(const TopoDS_Shape& shape) {
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(shape, TopAbs_FACE, faces);
+    for (int i = 1; i <= faces.Extent(); ++i) {
+        const TopoDS_Face face = TopoDS::Face(faces(i));
+        for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+            const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
+            double first = 0, last = 0;
+            try {
+                if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull() &&
+                    !BRep_Tool::Surface(face).IsNull())
+                    ShapeFix_Edge().FixAddPCurve(edge, face, false);
+            } catch (const Standard_Failure&) {
+                // The sampler names the face when it finds the curve missing.
+            }
+        }
+    }
+}
+
+Shape make_shape(const TopoDS_Shape& shape, const std::string& name, MissingCurves curves) {
     if (shape.IsNull())
         throw InputError("brep.null_shape",
                          "{shape}: the file gives no shape (null shape); export the part again",
@@ -86,22 +105,7 @@ Shape make_shape(const TopoDS_Shape& shape, const std::string& name) {
         impl->solids.push_back(solid.Current());
     }
     impl->solid_sign.assign(impl->solids.size(), 0);
-    // Sampling walks the trimming curves in the surface's parameters; on any surface but a plane
-    // they must be stored. Adding them changes the shared edge, so it is done here, once.
-    for (int i = 1; i <= impl->faces.Extent(); ++i) {
-        const TopoDS_Face face = TopoDS::Face(impl->faces(i));
-        for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
-            const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
-            double first = 0, last = 0;
-            try {
-                if (BRep_Tool::CurveOnSurface(edge, face, first, last).IsNull() &&
-                    !BRep_Tool::Surface(face).IsNull())
-                    ShapeFix_Edge().FixAddPCurve(edge, face, false);
-            } catch (const Standard_Failure&) {
-                // The sampler names the face when it finds the curve missing.
-            }
-        }
-    }
+    if (curves == MissingCurves::kAdd) add_missing_curves(shape);
     return Shape(std::move(impl));
 }
 

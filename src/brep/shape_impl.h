@@ -40,9 +40,24 @@ struct Shape::Impl {
     mutable std::unique_ptr<std::vector<Fact>> warnings;
 };
 
-/// Takes `shape` in: numbers its faces, adds missing curves on surfaces. Throws InputError naming
-/// `name` if it is null or has no faces.
-Shape make_shape(const TopoDS_Shape& shape, const std::string& name);
+/// Adds the curves on surfaces that are missing: sampling walks the trimming curves in the
+/// surface's parameters, and on any surface but a plane they must be stored. It changes edges that
+/// faces share, so it is done once, before anybody else has the shape; on a damaged one it may
+/// never end.
+void add_missing_curves(const TopoDS_Shape& shape);
+
+/// The shape that `BRepTools::Write` wrote; null if the text is no BREP.
+TopoDS_Shape read_brep_text(const std::string& text);
+
+enum class MissingCurves {
+    kAdd,     ///< a shape of FreeCAD's or of our own
+    kAreDone  ///< the reader of CAD files has added them
+};
+
+/// Takes `shape` in: numbers its faces. Throws InputError naming `name` if it is null or has no
+/// faces.
+Shape make_shape(const TopoDS_Shape& shape, const std::string& name,
+                 MissingCurves curves = MissingCurves::kAdd);
 
 /// A copy of `shape` (the original is shared with other threads) that carries a triangulation by
 /// OpenCASCADE; `angle` in rad between facets. Cancellable.

@@ -1,33 +1,24 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
-#include <IGESControl_Controller.hxx>
-#include <IGESControl_Reader.hxx>
-#include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
-#include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
+#include <mutex>
 #include <sstream>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
-#include "crash_guard.h"
+#include "cad_reader.h"
 #include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {
 
-// Value of OpenCASCADE's "read.surfacecurve.mode" that FreeCAD sets: faces must come in its order.
-constexpr int kFreecadIgesCurveMode = 3;
-
-// OpenCASCADE's readers share static parameters and print to the standard output.
-std::mutex& reader_mutex() {
+// The printers are the process's.
+std::mutex& printers_mutex() {
     static std::mutex mutex;
     return mutex;
 }
@@ -45,42 +36,18 @@ class QuietMessenger {
     Message_SequenceOfPrinters printers_;
 };
 
-template <class Reader>
-TopoDS_Shape read_exchange(const std::string& path, const std::string& format) {
-    static bool unusable = false;  // guarded by reader_mutex()
-    if (unusable) {
-        throw InputError(path + ": an earlier, damaged " + format +
-                         " file has broken OpenCASCADE's reader; start the program again");
-    }
-    auto reader = std::make_unique<Reader>();
-    bool readable = false;
-    TopoDS_Shape shape;
-    const bool survived = survives([&] {
-        readable = reader->ReadFile(path.c_str()) == IFSelect_RetDone;
-        if (!readable) return;
-        reader->TransferRoots();
-        if (reader->NbShapes() > 0) shape = reader->OneShape();
-    });
-    if (!survived) {
-        unusable = true;
-        static_cast<void>(reader.release());  // its destructor could fail as well
-    }
-    if (!survived || !readable) {
-        throw InputError(path + ": not a readable " + format + " file" +
-                         (survived ? "" : ", it is damaged") +
-                         "; export it again or use another format");
-    }
-    if (shape.IsNull()) {
-        throw InputError(path + ": the " + format +
-                         " file gives no shape (null shape): it holds no solid, shell or face that "
-                         "can be read; export the part again");
-    }
-    return shape;
+std::string lower_suffix(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return suffix;
 }
 
-/// Null if the text is no BREP. OpenCASCADE itself complains of that on the standard output.
-TopoDS_Shape read_brep(const std::string& text) {
+}  // namespace
+
+TopoDS_Shape read_brep_text(const std::string& text) {
     TopoDS_Shape shape;
+    // OpenCASCADE itself complains of that on the standard output.
     if (text.find("CASCADE Topology V") == std::string::npos) return shape;
     std::istringstream stream(text);
     // Where the text ends before its own counts do, OpenCASCADE would read on for hours or for
@@ -95,55 +62,45 @@ TopoDS_Shape read_brep(const std::string& text) {
     return shape;
 }
 
-std::string lower_suffix(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return suffix;
-}
-
-}  // namespace
-
-Shape Shape::read(const std::string& path) {
+Shape Shape::read(const std::string& path, const RunContext& context) {
     const std::string suffix = lower_suffix(path);
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(path + ": there is no such file");
-    TopoDS_Shape shape;
-    try {
-        const std::lock_guard<std::mutex> lock(reader_mutex());
-        const QuietMessenger quiet;
-        if (suffix == ".step" || suffix == ".stp") {
-            shape = read_exchange<STEPControl_Reader>(path, "STEP");
-        } else if (suffix == ".iges" || suffix == ".igs") {
-            IGESControl_Controller::Init();
-            Interface_Static::SetIVal("read.surfacecurve.mode", kFreecadIgesCurveMode);
-            shape = read_exchange<IGESControl_Reader>(path, "IGES");
-        } else if (suffix == ".brep" || suffix == ".brp") {
-            std::ifstream file(path, std::ios::binary);
-            shape = read_brep({std::istreambuf_iterator<char>(file), {}});
-            if (shape.IsNull())
-                throw InputError(path + ": not a readable BREP file; export it again");
-        } else {
-            throw InputError(path + ": unknown kind of file '" + suffix +
-                             "'; .step, .stp, .iges, .igs, .brep and .brp are read");
-        }
-    } catch (const Standard_Failure& failure) {
-        throw InputError(path + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
+        throw InputError("cad.no_such_file", "{file}: there is no such file", {{"file", path}});
+    CadFormat format = CadFormat::kBrep;
+    if (suffix == ".step" || suffix == ".stp") {
+        format = CadFormat::kStep;
+    } else if (suffix == ".iges" || suffix == ".igs") {
+        format = CadFormat::kIges;
+    } else if (suffix != ".brep" && suffix != ".brp") {
+        throw InputError("cad.unknown_suffix",
+                         "{file}: unknown kind of file '{suffix}'; .step, .stp, .iges, .igs, .brep "
+                         "and .brp are read",
+                         {{"file", path}, {"suffix", suffix}});
     }
-    return make_shape(shape, std::filesystem::path(path).filename().string());
+    return make_shape(read_in_child(format, path, nullptr, path, context),
+                      std::filesystem::path(path).filename().string(), MissingCurves::kAreDone);
+}
+
+Shape Shape::read_brep(const std::string& text, const std::string& name,
+                       const RunContext& context) {
+    return make_shape(read_in_child(CadFormat::kBrep, "", &text, name, context), name,
+                      MissingCurves::kAreDone);
 }
 
 Shape Shape::from_brep(const std::string& text, const std::string& name) {
     TopoDS_Shape shape;
     try {
-        const std::lock_guard<std::mutex> lock(reader_mutex());
+        const std::lock_guard<std::mutex> lock(printers_mutex());
         const QuietMessenger quiet;
-        shape = read_brep(text);
+        shape = read_brep_text(text);
     } catch (const Standard_Failure& failure) {
-        throw InputError(name + ": not the text of a BREP shape: " + failure.GetMessageString());
+        throw InputError("cad.brep_text", "{shape}: not the text of a BREP shape: {reason}",
+                         {{"shape", name}, {"reason", failure.GetMessageString()}});
     }
-    if (shape.IsNull()) throw InputError(name + ": not the text of a BREP shape");
+    if (shape.IsNull())
+        throw InputError("cad.not_brep_text", "not the text of a BREP shape")
+            .within({"cad.shape", "{shape}: ", {{"shape", name}}});
     return make_shape(shape, name);
 }
 

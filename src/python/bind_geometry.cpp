@@ -66,12 +66,28 @@ void bind_geometry(py::module_& m) {
         py::arg("work_from_mesh") = Eigen::Matrix4d::Identity().eval(),
         "Reads STL, PLY, OBJ, OFF, 3MF; unit_mm: millimetres per unit of the file.");
 
+    m.def("set_cad_reader", &set_cad_reader, py::arg("program"),
+          "Path of the beltgrinding-cad-reader that Shape.read runs; '': look for it.");
     py::class_<Shape>(m, "Shape", "A boundary representation; faces are numbered from 0.")
-        .def_static("read", &Shape::read, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-                    "Reads STEP, IGES or BREP.")
+        .def_static(
+            "read",
+            [](const std::string& path, const RunContext* context) {
+                const py::gil_scoped_release release;
+                return Shape::read(path, context != nullptr ? *context : RunContext());
+            },
+            py::arg("path"), py::arg("context") = nullptr,
+            "Reads STEP, IGES or BREP, in a process of its own: a damaged file is an InputError.")
+        .def_static(
+            "read_brep",
+            [](const std::string& text, const std::string& name, const RunContext* context) {
+                const py::gil_scoped_release release;
+                return Shape::read_brep(text, name, context != nullptr ? *context : RunContext());
+            },
+            py::arg("text"), py::arg("name") = "shape", py::arg("context") = nullptr,
+            "The same for the text of a BREP file that came from elsewhere.")
         .def_static("from_brep", &Shape::from_brep, py::arg("text"), py::arg("name") = "shape",
                     py::call_guard<py::gil_scoped_release>(),
-                    "Reads what FreeCAD's exportBrepToString makes.")
+                    "Reads what FreeCAD's exportBrepToString makes, in this process.")
         .def("write_brep", &Shape::write_brep)
         .def_property_readonly("face_count", &Shape::face_count)
         .def_property_readonly("valid", &Shape::valid, "By OpenCASCADE's check.")

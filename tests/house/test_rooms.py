@@ -18,7 +18,7 @@ BUILD = Path(os.environ.get("BELTGRINDING_BUILD", ROOT / "build" / "release"))
 PACKAGES = [
     (r"[a-z_]+", None),
     (r"(Eigen|unsupported/Eigen)/\w+", None),
-    (r"(unistd|fcntl|poll|signal|setjmp|spawn|sys/\w+)\.h", None),
+    (r"(dlfcn|unistd|fcntl|poll|signal|setjmp|spawn|sys/\w+)\.h", None),
     (r"tbb/\w+\.h", "oneTBB"),
     (r"hdf5\.h", "HDF5"),
     (r"embree[34]/.*", "Embree"),
@@ -29,7 +29,6 @@ PACKAGES = [
     (r"libsvm/svm\.h", "libsvm"),
     (r"pocketfft(_hdronly|)\.(hpp|h)", "pocketfft"),
     (r"\w+\.hxx", "OpenCASCADE"),
-    (r"pcl/.*", "PCL"),
     (r"nanoflann\.hpp", "nanoflann"),
     (r"Inventor/.*", "Coin"),
     (r"GL/\w+\.h", "OpenGL"),

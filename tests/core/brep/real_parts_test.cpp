@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "beltgrinding/error.h"
+#include "shape_transfer.h"
 #include "support.h"
 
 namespace beltgrinding {
@@ -21,6 +22,8 @@ TEST_P(RealPart, GivesASoundField) {
     const Part& part = GetParam();
     const Shape shape = Shape::read((data / part.file).string());
     ASSERT_EQ(shape.face_count(), part.faces);
+    const std::string bytes = pack_shape(shape.impl().shape);
+    EXPECT_TRUE(bytes == pack_shape(unpack_shape(bytes)));  // to the last bit
     SamplingOptions options;
     options.spacing = part.spacing;
     SamplingReport report;

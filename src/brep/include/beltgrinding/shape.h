@@ -20,11 +20,17 @@ class Shape {
   public:
     struct Impl;
 
-    /// Reads STEP (.step .stp), IGES (.iges .igs) or BREP (.brep .brp). Throws InputError naming
-    /// the file: missing, unreadable, null shape, no faces.
-    static Shape read(const std::string& path);
-    /// Reads the text that `BRepTools::Write` and FreeCAD's `exportBrepToString` make.
-    /// `name` stands for the shape in messages.
+    /// Reads STEP (.step .stp), IGES (.iges .igs) or BREP (.brep .brp), in a process of its own
+    /// (`set_cad_reader`): no damaged file takes this one down. Throws InputError naming the file:
+    /// missing, unreadable, damaged, null shape, no faces, longer at it than the environment's
+    /// BELTGRINDING_CAD_TIME_LIMIT_S allows (900 s if unset); Cancelled within 0.1 s.
+    static Shape read(const std::string& path, const RunContext& context = {});
+    /// The same for the text of a BREP file that came from elsewhere. `name` stands for the shape
+    /// in messages.
+    static Shape read_brep(const std::string& text, const std::string& name = "shape",
+                           const RunContext& context = {});
+    /// Reads the text that `BRepTools::Write` and FreeCAD's `exportBrepToString` make, in this
+    /// process: of a shape that is sound, for a damaged one can end it.
     static Shape from_brep(const std::string& text, const std::string& name = "shape");
     /// The text that `from_brep` reads, without triangulation.
     std::string write_brep() const;
@@ -50,6 +56,11 @@ class Shape {
   private:
     std::shared_ptr<const Impl> impl_;
 };
+
+/// The program that `Shape::read` runs: the path of `beltgrinding-cad-reader`. Empty: what the
+/// environment's BELTGRINDING_CAD_READER says, else the one beside the library or program that
+/// holds this code, else the one where the library was installed. Thread-safe.
+void set_cad_reader(const std::string& program);
 
 struct SamplingOptions {
     double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions

@@ -30,7 +30,7 @@ endforeach()
 add_custom_target(beltgrinding_modules DEPENDS ${modules} beltgrinding_cad_reader translations)  # all that an installation needs built
 
 # Beside each core stands what it was built for, so that one that does not fit can say why before it
-# is loaded: beltgrinding/core_library.py.
+# is loaded: beltgrinding/engine/library.py.
 cmake_host_system_information(RESULT system QUERY DISTRIB_PRETTY_NAME)
 file(GENERATE OUTPUT $<TARGET_FILE:beltgrinding_core>.json CONTENT
      "{\"system\": \"${system}\", \"python\": \"${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}\", \

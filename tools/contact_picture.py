@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from beltgrinding import contact, reference
+from beltgrinding.contact import single_contact as contact, finite_elements as reference
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "images" / "contact-reference.png"
 COLOURS = np.array(

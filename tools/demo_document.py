@@ -7,7 +7,7 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from beltgrinding.gui.camera import look_at
+from beltgrinding.gui.scene.camera import look_at
 from beltgrinding.objects import api
 
 out = Path(os.environ["BELTGRINDING_OUT"])

@@ -30,8 +30,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import closed_mesh, core, job as jobs  # noqa: E402
-from beltgrinding.result import Result  # noqa: E402
+from beltgrinding.inspection import closed_mesh  # noqa: E402
+from beltgrinding.engine import core  # noqa: E402
+from beltgrinding.job import workpiece, load as jobs  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
 
 BORDER = 3.0  # of the greatest deviation
 CAD_SPACING = float(os.environ.get("BELTGRINDING_CAD_SPACING", "0.2"))  # mm
@@ -75,7 +78,7 @@ def ours(result, mesh):
     """(seconds, deviation at the design's samples) by rays from the design to the ground mesh."""
     start = time.perf_counter()
     job = result.job
-    field = jobs.make_field(job, jobs.read_design(job["design"]), [], core.RunContext())
+    field = workpiece.make_field(job, workpiece.read_design(job["design"]), [], core.RunContext())
     mesh = core.TriangleMesh(mesh.vertices.astype(np.float32), mesh.triangles)
     stock = job["stock"]
     core.apply_mesh(field, mesh, stock["search_above_mm"], stock["search_below_mm"])
@@ -128,7 +131,7 @@ def inspection(points, shape):
 def cad_mesh(result, spacing, path):
     """Seconds for a fine mesh of the CAD, as a binary STL file; and its facets."""
     start = time.perf_counter()
-    shape = jobs.read_design(result.job["design"])
+    shape = workpiece.read_design(result.job["design"])
     mesh = core.ground_mesh(shape, result.field, False, spacing / 20, spacing)
     path.write_bytes(mesh.stl())
     return time.perf_counter() - start, len(mesh.triangles)
@@ -155,7 +158,7 @@ def compare(folder):
     mesh = beltgrinding.ground_mesh(result)
     mesh_seconds = time.perf_counter() - start
     shape = Part.Shape()
-    shape.importBrepFromString(jobs.read_design(result.job["design"]).write_brep())
+    shape.importBrepFromString(workpiece.read_design(result.job["design"]).write_brep())
     ground = np.flatnonzero(mesh.standing == closed_mesh.STANDING.index("ground"))
     chosen = smooth(result, mesh, mesh.vertices, ground)
     figures = {
@@ -207,7 +210,7 @@ def example(folder):
     from beltgrinding.examples import blade
 
     blade.make(str(folder))
-    jobs.run(jobs.load(folder / "job.json")).write(folder / "example_blade")
+    runs.run(jobs.load(folder / "job.json")).write(folder / "example_blade")
     return str(folder / "example_blade")
 
 

@@ -15,7 +15,7 @@ import FreeCAD
 import FreeCADGui
 import Mesh
 
-from beltgrinding import core
+from beltgrinding.engine import core
 from beltgrinding.objects import api, deviation, simulation
 
 SAMPLES = 1_000_000

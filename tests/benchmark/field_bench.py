@@ -22,8 +22,8 @@ import Part
 from pivy import coin
 from PySide import QtGui
 
-from beltgrinding import core
-from beltgrinding.gui.field_view import FieldView
+from beltgrinding.engine import core
+from beltgrinding.gui.scene.field_view import FieldView
 
 SIDE = 1000.0  # mm; at 1 mm spacing a million samples
 FRAMES = 9

@@ -16,7 +16,7 @@ import FreeCADGui
 import Part
 from PySide import QtGui
 
-from beltgrinding.gui.program_panel import ProgramPanel
+from beltgrinding.gui.panels.program_panel import ProgramPanel
 from beltgrinding.objects import api
 
 FRAMES = 50

@@ -23,9 +23,10 @@ import Part
 from PySide import QtGui
 
 import beltgrinding
-from beltgrinding import core, job as jobs
-from beltgrinding.gui import playback
-from beltgrinding.objects import api, job_object
+from beltgrinding.engine import core
+from beltgrinding.simulation import run as runs
+from beltgrinding.gui.docks import playback_dock as playback
+from beltgrinding.objects import api, job_inputs
 
 SIDE, SPACING = 500.0, 0.5  # mm; a million samples
 LANES = 20
@@ -55,10 +56,10 @@ def recorded():
         job, WheelRadius=100, WheelWidth=40, Force="60 N", Compliance="elastic_foundation"
     )
     path = beltgrinding.import_program(job, program(Path("lanes.csv")))
-    with job_object.scratch_folder() as folder:
-        data = job_object.to_data(job, folder)
-        result = jobs.run(data, None, core.Recording())
-    api.store_result(job, result, job_object.fingerprint(job))
+    with job_inputs.scratch_folder() as folder:
+        data = job_inputs.to_data(job, folder)
+        result = runs.run(data, None, core.Recording())
+    api.store_result(job, result, job_inputs.fingerprint(job))
     path.ViewObject.Visibility = False
     return job
 

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from beltgrinding import core
+from beltgrinding.engine import core
 
 SIDE, SPACING = 500.0, 0.5  # mm
 LANES, TRAVEL = 20, 1.0  # passes over the plate; mm a step

@@ -33,7 +33,8 @@ for folder in (HERE, HERE.parents[1] / "Mod" / "BeltGrinding"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from beltgrinding.programs import READERS, ProgramError, read_program  # noqa: E402
+from beltgrinding.programs.registry import READERS, read_program  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.table import poses_csv, summary  # noqa: E402
 from program_mutations import cut, damaged, excerpt  # noqa: E402
 

@@ -14,9 +14,11 @@ import pytest
 from support.freecad import SHARED
 
 import beltgrinding
-from beltgrinding import InputError, core
-from beltgrinding import job as jobs
-from beltgrinding.programs import ProgramError, read_program
+from beltgrinding.engine import InputError, core
+from beltgrinding.simulation import run as runs
+from beltgrinding.job import load as jobs
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.registry import read_program
 
 ROUNDS = 300
 LEAST_READ = 0.03  # of the damaged files: fewer, and nothing would be learnt of what is read
@@ -153,7 +155,7 @@ def test_job_files(tmp_path):
     for text in mutations(data, 2):
         path.write_bytes(text)
         with pytest.raises(InputError, match="job.json|absent") as refused:
-            jobs.run(jobs.load(path))
+            runs.run(jobs.load(path))
         understood += "absent" in str(refused.value)
     assert understood > LEAST_READ * ROUNDS
 

@@ -11,7 +11,8 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
 
 import fuzz_programs as fuzzing  # noqa: E402
-from beltgrinding.programs import READERS, ProgramError  # noqa: E402
+from beltgrinding.programs.registry import READERS  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.program import Motion, Problem, Program  # noqa: E402
 
 INPUTS = 30  # of each seed: damaged files

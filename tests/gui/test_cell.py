@@ -55,7 +55,7 @@ def test_the_cell_is_set_up_with_the_wheel_in_view(freecad):
     freecad.run(
         PREPARE
         + """
-from beltgrinding.gui import pose_walk
+from beltgrinding.gui.widgets import pose_walk
 walks, init = [], pose_walk.PoseWalk.__init__
 def watched(self, *arguments):
     init(self, *arguments)
@@ -132,7 +132,7 @@ def test_the_robot_is_chosen_drawn_and_followed(freecad):
     freecad.run(
         PREPARE
         + """
-from beltgrinding.gui import pose_walk
+from beltgrinding.gui.widgets import pose_walk
 walks, init = [], pose_walk.PoseWalk.__init__
 def watched(self, *arguments):
     init(self, *arguments)

@@ -106,7 +106,7 @@ def test_the_colours_end_where_the_panel_says(freecad):
         """
 import numpy as np
 from support.hands import *
-from beltgrinding.gui.legend import label_values
+from beltgrinding.gui.scene.legend import label_values
 
 job = prepare()
 doc = job.Document

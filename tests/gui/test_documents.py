@@ -156,17 +156,19 @@ assert len(doc.Deviation.VertexColors) == simulation.Samples
 
 
 def test_a_job_file_runs_and_a_result_is_read(old):
-    from beltgrinding import job as jobs, section
-    from beltgrinding.result import Result
+    from beltgrinding.job import load as jobs
+    from beltgrinding.simulation import run as runs
+    from beltgrinding.inspection import section
+    from beltgrinding.simulation.result import Result
 
     told = json.loads((old / "job.json").read_text())
     job = jobs.load(old / "job.json")
     assert job["belt_machine"]["force_N"] == told["belt_machine"]["force_N"] == 20
     kept = Result.read(old / "result")
-    again = jobs.run(job)
+    again = runs.run(job)
     assert len(kept.field.height) == len(again.field.height)
     volume = [r.summary["removed_volume_mm3"] for r in (kept, again)]
     assert abs(volume[1] / volume[0] - 1) < 0.25, volume
     assert np.allclose(kept.field.points, again.field.points, atol=1e-9)
-    cut = section.section(str(old / "result"), (0, 6, 0), (0, 1, 0))
+    cut = section.section(Result.read(old / "result"), (0, 6, 0), (0, 1, 0))
     assert abs(section.summary(cut)["length_mm"] - 18) < 2.1

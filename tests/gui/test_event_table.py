@@ -62,7 +62,7 @@ assert abs(x - (10 + 30 * gouge["worst_time"])) < 0.05, x
 node, scenes = panel.moment.mark
 assert scene_graph.findChild(node) >= 0
 assert np.linalg.norm(np.subtract(camera.position.getValue().getValue(), before)) > 1
-from beltgrinding.gui.cell_view import project
+from beltgrinding.gui.scene.cell_view import project
 (pixel,), _ = project(view, np.array([[*gouge["point"], 1.0]]))
 width, height = view.getSize()
 assert 0.2 < pixel[0] / width < 0.8 and 0.1 < pixel[1] / height < 0.9, pixel
@@ -110,7 +110,7 @@ def test_playback_goes_to_the_moment_of_a_chosen_event(freecad):
         + CLAMP
         + """
 dock = record()
-from beltgrinding.gui import simulation_panel
+from beltgrinding.gui.panels import simulation_panel
 simulation_panel.show_result(doc.Simulation)
 settle()
 panel = field("events").parent().chosen.__self__

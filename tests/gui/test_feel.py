@@ -360,7 +360,7 @@ def test_the_faces_of_the_job_are_tinted_while_its_panel_is_open(freecad):
     freecad.run(
         PREPARE
         + """
-from beltgrinding.gui import face_tint
+from beltgrinding.gui.scene import face_tint
 view = Gui.ActiveDocument.ActiveView
 view.setAnimationEnabled(False)
 view.viewTop()

@@ -11,7 +11,7 @@ import Part
 from PySide import QtCore
 from pivy import coin
 from beltgrinding import core, InputError
-from beltgrinding.gui.field_view import FieldView
+from beltgrinding.gui.scene.field_view import FieldView
 from support.hands import settle, widgets
 
 kind = os.environ["KIND"]

@@ -6,13 +6,13 @@ import json
 import numpy as np
 import pytest
 
-from beltgrinding import calibration, calibration_plot
+from beltgrinding.calibration import calibrate as calibration, plot as calibration_plot
 from support import pictures
 
 EXAMPLE = """
 import json
 from support.hands import *
-from beltgrinding.gui.camera import look_at
+from beltgrinding.gui.scene.camera import look_at
 
 Gui.activateWorkbench("BeltGrindingWorkbench")
 window.showMaximized()

@@ -5,7 +5,7 @@ import os
 import FreeCAD, FreeCADGui, Mesh, Part
 from support.hands import *
 import beltgrinding
-from beltgrinding.gui.compat import QtGui
+from beltgrinding.gui.common.compat import QtGui
 
 doc = FreeCAD.newDocument("measure")
 part = doc.addObject("Part::Feature", "Block")

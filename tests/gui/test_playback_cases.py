@@ -21,7 +21,7 @@ dock = record()
 events = doc.Simulation.Proxy.events(doc.Simulation)
 assert any(e["kind"] == "burn_risk" for e in events), events
 chart = field("stripChart")
-from beltgrinding.gui import strip_chart
+from beltgrinding.gui.charts import strip_chart
 mark = QtGui.QColor(strip_chart.MARK)
 
 def marks():

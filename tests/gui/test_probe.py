@@ -29,7 +29,7 @@ def test_a_click_tells_the_sample_under_it(freecad, kind):
     freecad.run(
         GROUND
         + """
-from beltgrinding.objects.reading import Reader
+from beltgrinding.objects.readout import Reader
 reader = Reader(doc.Deviation)
 text = click(2, 2)  # beside the pass: all the stock is left
 assert "+0.2000 mm: too much left" in text and "removed 0.0000 mm of 0.2000 mm" in text, text

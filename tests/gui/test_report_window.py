@@ -139,13 +139,13 @@ menu("Check settings...")
 assert field("state").text().startswith("No")
 press("Close")
 
-from beltgrinding.gui import simulation_panel
-from beltgrinding.objects import job_object, telling
+from beltgrinding.gui.panels import simulation_panel
+from beltgrinding.objects import job_inputs, reports
 simulation_panel.show_result(doc.Simulation)
 assert field("state").text().startswith("The limits have changed")
 press("Close")
-with job_object.scratch_folder() as folder:
-    (note,) = telling.report_data(job, folder)[2]
+with job_inputs.scratch_folder() as folder:
+    (note,) = reports.result_to_report(job, folder)[2]
 assert note.startswith("The limits have changed")
 doc.BeltMachine.Force = "20 N"
 doc.recompute()

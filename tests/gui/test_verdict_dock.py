@@ -55,7 +55,7 @@ assert abs(at[0] - width / 2) < 3 and abs(at[1] - height / 2) < 3, (at, width, h
 assert view.getViewDirection().z < -0.999
 if hasattr(camera, "height"):
     assert abs(camera.height.getValue() - 1.5 * found["clusters"][deep]["extent_mm"]) < 1e-3
-from beltgrinding.gui import verdict_dock
+from beltgrinding.gui.docks import verdict_dock
 scene = verdict_dock.VerdictDock.current().scene
 assert scene.switch.whichChild.getValue() == -3 and scene.points.point.getNum() > 20
 screenshot("verdict2.png")

@@ -161,7 +161,7 @@ def test_a_job_or_document_removed_while_it_runs_ends_the_run(freecad):
     freecad.run(
         PREPARE
         + """
-from beltgrinding import job as jobs
+from beltgrinding.simulation import run as jobs
 runs = []
 whole = jobs.run
 def watched(*arguments):

@@ -10,7 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding.programs import ProgramError, read_program  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
 
 LIN = "LIN {X 1,Y 2,Z 3,A 4,B 5,C 6}\n"
 POINT = "[[1,2,3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"

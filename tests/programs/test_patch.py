@@ -14,8 +14,10 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import cli  # noqa: E402
-from beltgrinding.programs import ProgramError, patch_program, read_program  # noqa: E402
-from beltgrinding.programs.patch_text import plan  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
+from beltgrinding.programs.patch.patch import patch  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+from beltgrinding.programs.patch.text import plan  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -41,14 +43,14 @@ def patched(tmp_path, name, text, changes):
     file = write(tmp_path, name, text)
     out = tmp_path / "out" / name
     out.parent.mkdir(exist_ok=True)
-    patch_program(file, changes, out)
+    patch(file, changes, out)
     return out.read_bytes().decode("latin-1"), read_program(out)
 
 
 def refused(tmp_path, name, text, changes, culprit):
     file, out = write(tmp_path, name, text), tmp_path / ("new" + Path(name).suffix)
     with pytest.raises(ProgramError, match=culprit):
-        patch_program(file, changes, out)
+        patch(file, changes, out)
     assert not out.exists()
 
 
@@ -86,7 +88,7 @@ def test_random_speeds_read_back_and_nothing_else_changes(tmp_path, name):
         wanted = {i: float(rng.integers(5, 400)) for i in chosen}
         if count == len(path):
             wanted = dict.fromkeys(path, 42.0)
-        report = patch_program(
+        report = patch(
             file, [{"index": i, "speed_mm_s": v} for i, v in wanted.items()], tmp_path / name
         )
         assert {row["index"] for row in report} >= wanted.keys()
@@ -136,7 +138,7 @@ def test_offsets_move_the_named_poses_only(tmp_path, name):
     chosen = [i for i, m in enumerate(before.motions) if m.kind in ("LIN", "SPL")][30:36]
     fine = 6e-4 if name.endswith(("ls", "JBI")) else 7e-5
     for change in ({"tool_dz_mm": 0.05}, {"dx_mm": 0.5, "dz_mm": -0.25}):
-        patch_program(file, [{"index": i, **change} for i in chosen], tmp_path / name)
+        patch(file, [{"index": i, **change} for i in chosen], tmp_path / name)
         after = read_program(tmp_path / name)
         for i, (a, b) in enumerate(zip(before.motions, after.motions)):
             if a.pose is None:
@@ -160,12 +162,12 @@ def test_a_position_of_a_relative_retract_is_not_moved_unseen(tmp_path):
     )
     change = [{"index": retract - 1, "tool_dz_mm": 0.05}]
     with pytest.raises(ProgramError, match=f"motion {retract} otherwise.*relative"):
-        patch_program(file, change, tmp_path / "new.src")
-    patch_program(file, change + [{"index": retract, "tool_dz_mm": 0.05}], tmp_path / "new.src")
+        patch(file, change, tmp_path / "new.src")
+    patch(file, change + [{"index": retract, "tool_dz_mm": 0.05}], tmp_path / "new.src")
     old, new = (p.read_bytes().decode("latin-1") for p in (file, tmp_path / "new.src"))
     assert different(old, new) == [motions[retract - 1].line]
     with pytest.raises(ProgramError, match="LIN_REL is relative"):
-        patch_program(file, [{"index": retract, "tool_dz_mm": 0.05}], tmp_path / "no.src")
+        patch(file, [{"index": retract, "tool_dz_mm": 0.05}], tmp_path / "no.src")
 
 
 @needs_shared
@@ -173,7 +175,7 @@ def test_an_inline_form_is_changed_with_its_text(tmp_path):
     file = PROGRAMS / "real" / "kuka_inline_forms_excerpt.src"
     motions = read_program(file).motions
     i = next(k for k, m in enumerate(motions) if m.kind == "LIN")
-    patch_program(file, [{"index": i, "speed_mm_s": 250}], tmp_path / file.name)
+    patch(file, [{"index": i, "speed_mm_s": 250}], tmp_path / file.name)
     old, new = (p.read_bytes().decode("latin-1") for p in (file, tmp_path / file.name))
     line = motions[i].line
     assert different(old, new) == [line - 5, line - 1]
@@ -216,7 +218,7 @@ def test_what_is_so_already_changes_no_byte(tmp_path):
     changes = [{"index": k, "speed_mm_s": 100, "dx_mm": 0} for k in (1, 2, 3)]
     assert patched(tmp_path, "p.src", KRL, changes)[0] == KRL
     file = tmp_path / "p.src"
-    patch_program(file, [{"index": 4, "speed_mm_s": 150}], file)  # in place
+    patch(file, [{"index": 4, "speed_mm_s": 150}], file)  # in place
     assert file.read_bytes().decode() == KRL.replace("=0.2", "=0.15")
 
 
@@ -590,7 +592,7 @@ def test_tables_of_changes_that_cannot_be(tmp_path, text, culprit):
     (tmp_path / "changes.csv").write_text(text)
     write(tmp_path, "p.dat", DATA)
     with pytest.raises(ProgramError, match=culprit):
-        patch_program(write(tmp_path, "p.src", KRL), tmp_path / "changes.csv", tmp_path / "q.src")
+        patch(write(tmp_path, "p.src", KRL), tmp_path / "changes.csv", tmp_path / "q.src")
 
 
 def test_the_data_of_another_program_is_not_overwritten(tmp_path):
@@ -598,14 +600,14 @@ def test_the_data_of_another_program_is_not_overwritten(tmp_path):
     write(tmp_path, "q.dat", "DEFDAT q\n")
     file = write(tmp_path, "p.src", KRL)
     with pytest.raises(ProgramError, match="q.dat: is there already"):
-        patch_program(file, [{"index": 2, "speed_mm_s": 1}], tmp_path / "q.src")
+        patch(file, [{"index": 2, "speed_mm_s": 1}], tmp_path / "q.src")
     assert not (tmp_path / "q.src").exists()
     with pytest.raises(ProgramError, match="must end in .src"):
-        patch_program(file, [{"index": 2, "speed_mm_s": 1}], tmp_path / "q.txt")
+        patch(file, [{"index": 2, "speed_mm_s": 1}], tmp_path / "q.txt")
 
 
 def test_languages_that_cannot_be_written_back(tmp_path, monkeypatch):
-    from beltgrinding.programs import READERS
+    from beltgrinding.programs.registry import READERS
 
     monkeypatch.setitem(READERS, ".urp", READERS[".script"])
     changes = [{"index": 1, "speed_mm_s": 9}]

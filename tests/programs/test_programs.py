@@ -10,8 +10,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import ProgramError, read_program, write_program  # noqa: E402
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+from beltgrinding.programs.writers.writer import write_program  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")

@@ -12,15 +12,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import (
-    Motion,
-    ProgramError,
-    read_program,
-    urp,
-    urp_position,
-    xml_tree,
-)  # noqa: E402
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.programs.program import Motion, ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+from beltgrinding.programs.readers.urp import reader as urp, position as urp_position  # noqa: E402
+from beltgrinding.programs.readers import xml_tree  # noqa: E402
 
 # Universal Robots' published Denavit-Hartenberg parameters of the UR5e, m and rad.
 UR5E = {

@@ -13,13 +13,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import frames  # noqa: E402
-from beltgrinding.programs import (
-    ProgramError,
-    read_program,
-    val3,
-    val3_data,
-    val3_state,
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+from beltgrinding.programs.readers.val3 import (
+    reader as val3,
+    data as val3_data,
+    state as val3_state,
 )  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"

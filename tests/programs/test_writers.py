@@ -11,9 +11,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import cli, frames  # noqa: E402
-from beltgrinding.programs import Motion, ProgramError, read_program, write_program  # noqa: E402
-from beltgrinding.programs.writer import frame_in_words, identifier  # noqa: E402
+from beltgrinding import cli  # noqa: E402
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.programs.program import Motion, ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+from beltgrinding.programs.writers.writer import write_program  # noqa: E402
+from beltgrinding.programs.writers.writer import frame_in_words  # noqa: E402
+from beltgrinding.programs.writers.text import identifier  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")

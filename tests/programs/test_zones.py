@@ -10,7 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding.programs import ProgramError, read_program  # noqa: E402
+from beltgrinding.programs.program import ProgramError  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
 from beltgrinding.programs.program import CHORD_ERROR, PASSING_ERROR  # noqa: E402
 
 INF = float("inf")

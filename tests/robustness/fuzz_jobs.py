@@ -39,7 +39,7 @@ def check(job, again):
     it in one word or a few: an InputError's text, or "ground", "untouched". Raises Finding.
     """
     import beltgrinding
-    from beltgrinding import InputError
+    from beltgrinding.engine import InputError
 
     before = json.dumps(job, sort_keys=True)
     try:
@@ -109,7 +109,7 @@ def _numbers(value, where=""):
 
 def run_one(number):
     """One line for the job; raises Finding."""
-    from beltgrinding import InputError
+    from beltgrinding.engine import InputError
     from random_jobs import random_job
 
     try:

@@ -31,7 +31,6 @@ START = 240.0  # s for FreeCAD to begin, on a busy machine
 GRIND = """
 import json, sys
 import beltgrinding
-from beltgrinding import job as jobs
 job, out, spacings = json.load(open(sys.argv[1])), sys.argv[2], json.loads(sys.argv[3])
 print("ready", flush=True)
 while True:
@@ -45,7 +44,7 @@ DOCUMENT = """
 import os
 import FreeCAD
 import beltgrinding
-from beltgrinding.objects import job_object
+from beltgrinding.objects import job_inputs
 path = os.environ["KILL_DOCUMENT"]
 document = FreeCAD.openDocument(path)
 job = next(o for o in document.Objects if hasattr(o, "DesignFaces"))
@@ -115,8 +114,8 @@ def kill_after_start(command, delay, environment, stream):
 
 def kill_runs(kills, seed, longest, tell=lambda text: None):
     """Kills command-line runs. Returns {what was left: how often}; raises AssertionError."""
-    from beltgrinding import InputError
-    from beltgrinding.result import Result
+    from beltgrinding.engine import InputError
+    from beltgrinding.simulation.result import Result
 
     dice, counts = random.Random(seed), {}
     with tempfile.TemporaryDirectory(prefix="beltgrinding-kill-") as folder:

@@ -13,7 +13,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
 import beltgrinding  # noqa: E402
-from beltgrinding import core  # noqa: E402
+from beltgrinding.engine import core  # noqa: E402
 
 LENGTH, WIDTH = 400.0, 250.0  # mm
 DOWN = {"qw": 0.0, "qx": 1.0, "qy": 0.0, "qz": 0.0, "z_mm": 0.2, "feed_mm_s": 100}

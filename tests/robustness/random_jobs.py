@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from beltgrinding import core, frames, job as jobs
+from beltgrinding.engine import core
+from beltgrinding.base import frames
+from beltgrinding.job import workpiece, load as jobs
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", "/nowhere")) / "data"
 SAMPLES = 1500  # of a job, more or less
@@ -40,7 +42,9 @@ def random_job(number, places=None):
     dice = random.Random(number)
     part = dice.choice(places or parts())
     design = {"brep": box().write_brep()} if part == BOX else {"file": str(part)}
-    shape = jobs.read_design(jobs.validate({"design": design, "programs": NO_PROGRAM})["design"])
+    shape = workpiece.read_design(
+        jobs.validate({"design": design, "programs": NO_PROGRAM})["design"]
+    )
     count = shape.face_count
     faces = sorted(dice.sample(range(1, count + 1), min(count, dice.choice((1, 1, 2, 5)))))
     area = sum(shape.face_area(face - 1) for face in faces)
@@ -57,7 +61,7 @@ def random_job(number, places=None):
     }
     if dice.random() < 0.3:
         job["simulation"].update(timing="trapezoidal")
-    field = jobs.make_field(jobs.validate(job), shape, [], core.RunContext())
+    field = workpiece.make_field(jobs.validate(job), shape, [], core.RunContext())
     count = dice.choice((1, 1, 2))
     job["programs"] = [{"poses": _poses(dice, field, size)} for _ in range(count)]
     if dice.random() < 0.15:

@@ -8,7 +8,8 @@ import sys
 import pytest
 from support.freecad import MOD
 
-from beltgrinding import InputError, contact, reference
+from beltgrinding.engine import InputError
+from beltgrinding.contact import single_contact as contact, finite_elements as reference
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="calculix-ccx is not installed")
 CONTACT = {

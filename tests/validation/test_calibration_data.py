@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.freecad import SHARED
 
-from beltgrinding import calibration
+from beltgrinding.calibration import calibrate as calibration
 
 TABLE = SHARED / "data" / "removal" / "belt_grinder_recovered.csv"
 REPEATS = 100

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from support.freecad import SHARED
 
-from beltgrinding import contact, rubber
+from beltgrinding.contact import single_contact as contact
+from beltgrinding.presets import rubber
 
 REFERENCE = SHARED / "reference"
 WIDTH = 50  # mm

@@ -13,7 +13,7 @@ sys.path.insert(0, str(ROOT / "tests" / "benchmark"))
 
 import beltgrinding  # noqa: E402
 import deviation_bench  # noqa: E402
-from beltgrinding import closed_mesh  # noqa: E402
+from beltgrinding.inspection import closed_mesh  # noqa: E402
 from test_ground_mesh import block_job  # noqa: E402
 
 AGREEMENT = 0.002  # mm, root mean square, on smooth areas

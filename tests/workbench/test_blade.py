@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import picture  # noqa: E402
-from beltgrinding.programs import read_program  # noqa: E402
+from beltgrinding.inspection import picture  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
 from support import pictures  # noqa: E402
 
 SCRIPT = """

@@ -9,14 +9,15 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from beltgrinding import (
-    InputError,
-    calibration,
-    calibration_plot,
-    calibration_table,
-    cli,
+from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.calibration import (
+    calibrate as calibration,
+    plot as calibration_plot,
+    table as calibration_table,
 )  # noqa: E402
-from beltgrinding import job as jobs  # noqa: E402
+from beltgrinding import cli  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 K, ALPHA, BETA, GAMMA = 2e-5, 1.3, 1.2, 0.1  # at 0.1 MPa, 20 m/s, 50 mm/s
@@ -346,7 +347,7 @@ def test_the_scan_of_a_simulated_part():
     ground = {}
     for coefficient in (4e-5, 5e-5):
         job["law"] = {"coefficient_mm2_per_N": coefficient}
-        ground[coefficient] = jobs.run(jobs.validate(job)).field.height
+        ground[coefficient] = runs.run(jobs.validate(job)).field.height
     fresh = np.full(len(ground[4e-5]), 0.2)
     scan = calibration.calibrate_from_scan(ground[5e-5], ground[4e-5], fresh - ground[4e-5], 4e-5)
     assert scan["coefficient"] == pytest.approx(5e-5, rel=0.03)

@@ -13,15 +13,10 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 sys.path.insert(0, str(ROOT / "tests" / "workbench"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import (
-    InputError,
-    collision,
-    core,
-    events,
-    job as jobs,
-    poses,
-    schemas,
-)  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.cell import collision, events  # noqa: E402
+from beltgrinding.job import load as jobs, workpiece, poses  # noqa: E402
+from beltgrinding.base import schemas  # noqa: E402
 from test_document import BLOCK  # noqa: E402
 from test_job import DOWN, plate_job  # noqa: E402
 
@@ -261,7 +256,7 @@ def test_an_invalid_part_is_ground_but_not_checked():
         valid = False
 
     job, warnings = jobs.validate(plate_job()), []
-    assert jobs.read_design(job["design"]).valid
+    assert workpiece.read_design(job["design"]).valid
     assert collision.check(job, Invalid(), [], warnings) == []
     assert "not checked" in warnings[0]
     path = SHARED / "data" / "cad_nasty" / "spring_invalid.igs"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltgrinding import InputError, core
+from beltgrinding.engine import InputError, core
 
 SCALE = (-0.05, 0.05, 0.5)
 HEIGHTS = np.array([-0.6, -0.2, -0.05, 0.0, 0.05, 0.2, 0.6])

@@ -14,8 +14,12 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import jsonschema  # noqa: E402
 import beltgrinding  # noqa: E402
-from beltgrinding import Cancelled, InputError, convergence, core, job as jobs  # noqa: E402
-from beltgrinding import picture, result as results, schemas  # noqa: E402
+from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
+from beltgrinding.simulation import convergence, convergence_record, run as runs  # noqa: E402
+from beltgrinding.job import tolerances, load as jobs  # noqa: E402
+from beltgrinding.inspection import picture  # noqa: E402
+from beltgrinding.simulation import result as results  # noqa: E402
+from beltgrinding.base import schemas  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 
@@ -94,7 +98,7 @@ def test_the_answer_covers_the_truth(converged):
     assert by_name["mean", None]["limit"] == pytest.approx(0.08)  # a tenth of the band
     deepest = by_name["face_min", 1]
     assert deepest["values"] == by_name["min", None]["values"]
-    finer = jobs.run(convergence.scaled(convergence.scaled(converged.job, "fine"), "fine"))
+    finer = runs.run(convergence.scaled(convergence.scaled(converged.job, "fine"), "fine"))
     assert abs(deepest["values"][1] - finer.summary["deviation_mm"]["min"]) <= deepest["error"]
     assert answer["levels"]["given"]["samples"] == converged.summary["samples"]
     assert answer["levels"]["fine"]["steps"] > 1.9 * converged.summary["steps"]
@@ -111,19 +115,19 @@ def test_settings_that_are_too_coarse_are_told_with_the_one_to_refine():
     assert not answer["fine_enough"]
     assert set(answer["settings"]) == set(convergence.SETTINGS)
     assert answer["settings"]["step"] == max(answer["settings"].values()) > 0
-    bad = convergence.worst(answer)
+    bad = convergence_record.worst(answer)
     assert not bad["ok"] and bad["error"] > bad["limit"]
 
 
 def test_a_level_that_cannot_be_run_is_said(monkeypatch):
-    run = jobs.run
+    run = runs.run
 
     def refuse(job, context=None, recording=None):
         if job["sampling"]["spacing_mm"] < 0.5:
             raise InputError("sampling.spacing_mm: too many samples")
         return run(job, context, recording)
 
-    monkeypatch.setattr(jobs, "run", refuse)
+    monkeypatch.setattr(runs, "run", refuse)
     answer = convergence.converge(jobs.validate(plate_job())).convergence
     assert answer["levels"]["fine"] is None
     assert any("too many samples" in note for note in answer["notes"])
@@ -140,21 +144,21 @@ def test_it_can_be_cancelled():
 
 def test_the_narrowest_band_counts():
     inspection = {"tolerance_mm": [-0.1, 0.1]}
-    assert convergence.narrowest_band(inspection) == [-0.1, 0.1]
+    assert tolerances.narrowest_band(inspection) == [-0.1, 0.1]
     inspection["zones"] = [{"tolerance_mm": [0, 0.05]}, {"thickness_mm": [0, 0.01]}]
-    assert convergence.narrowest_band(inspection) == [0, 0.05]
+    assert tolerances.narrowest_band(inspection) == [0, 0.05]
 
 
 def test_another_tolerance_is_judged_without_another_run(converged):
-    narrow = convergence.judged(converged.convergence, {"tolerance_mm": [-1e-6, 1e-6]})
+    narrow = convergence_record.assessed(converged.convergence, {"tolerance_mm": [-1e-6, 1e-6]})
     assert converged.convergence["fine_enough"] and not narrow["fine_enough"]
     names = {one["name"] for one in narrow["quantities"]}
     assert "mean" in names and "in_tolerance" not in names
     assert narrow["quantities"][1]["limit"] == pytest.approx(2e-7)
-    wide = convergence.judged(narrow, converged.job["inspection"])
+    wide = convergence_record.assessed(narrow, converged.job["inspection"])
     assert all(one["ok"] for one in wide["quantities"])
     job = dict(converged.job, inspection={"tolerance_mm": [0, 1]})
-    assert convergence.digest(job) == convergence.digest(converged.job)
+    assert convergence_record.digest(job) == convergence_record.digest(converged.job)
 
 
 def test_the_report_shows_it_where_it_belongs(converged, tmp_path):
@@ -170,7 +174,7 @@ def test_the_report_shows_it_where_it_belongs(converged, tmp_path):
     (tmp_path / "out" / "convergence.json").write_text("{}")
     with pytest.raises(InputError, match="convergence.json"):
         results.Result.read(tmp_path / "out")
-    jobs.run(converged.job).write(tmp_path / "out")  # a run leaves none of an older one
+    runs.run(converged.job).write(tmp_path / "out")  # a run leaves none of an older one
     assert not (tmp_path / "out" / "convergence.json").exists()
 
 

@@ -151,7 +151,7 @@ beltgrinding.export_job(beltgrinding.open_job(other, "job.json"), "copy.json")
 assert json.loads(Path("copy.json").read_text())["robot"] == data
 
 # A model of one's own.
-from beltgrinding import presets, robot
+from beltgrinding.presets import robot
 whole = json.loads(Path("job.json").read_text())
 whole["robot"].update(preset="", model=robot.load_preset("ur5e"))
 Path("own.json").write_text(json.dumps(whole))

@@ -13,8 +13,10 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 sys.path.insert(0, str(ROOT / "tests" / "workbench"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import core, events, schemas  # noqa: E402
-from beltgrinding.result import Result  # noqa: E402
+from beltgrinding.cell import events  # noqa: E402
+from beltgrinding.base import schemas  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
+from beltgrinding.engine import core  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 

@@ -11,7 +11,8 @@ from support.freecad import ROOT
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, closed_mesh, core  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.inspection import closed_mesh  # noqa: E402
 from test_job import cli, plate_job  # noqa: E402
 
 SIZE = (60.0, 40.0, 12.0)

@@ -14,8 +14,9 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, core, poses  # noqa: E402
-from beltgrinding import job as jobs  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.job import poses  # noqa: E402
+
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 DOWN = {"qw": 0.0, "qx": 1.0, "qy": 0.0, "qz": 0.0}  # half a turn about x: the wheel presses down

@@ -12,8 +12,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrindi
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, cli, core  # noqa: E402
-from beltgrinding import law as laws  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding import cli  # noqa: E402
+from beltgrinding.job import law as laws  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 
@@ -111,7 +113,7 @@ def test_a_calibrated_law_gives_every_deviation_its_standard_deviation(tmp_path)
     share = result.summary["expected_in_tolerance_area_share"]
     assert 0 < share < 1
     result.write(tmp_path)
-    again = beltgrinding.job.Result.read(tmp_path)
+    again = Result.read(tmp_path)
     assert np.array_equal(again.field.height_sd, field.height_sd)
     colours = core.uncertainty_colours(again.field, 0.01)
     assert len(set(colours.tolist())) > 5

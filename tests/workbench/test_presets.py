@@ -9,8 +9,11 @@ from support.freecad import MOD, ROOT
 
 sys.path.insert(0, str(MOD))
 
-from beltgrinding import InputError, contact, presets, rubber, schemas  # noqa: E402
-from beltgrinding import job as jobs  # noqa: E402
+from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.contact import single_contact as contact  # noqa: E402
+from beltgrinding.presets import library as presets, rubber  # noqa: E402
+from beltgrinding.base import schemas  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
 
 FILES = sorted((ROOT / "Resources" / "presets").glob("*.json"))
 # A robot has one source for all its numbers: tests/workbench/test_robot.py

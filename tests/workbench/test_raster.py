@@ -12,9 +12,13 @@ from support.freecad import ROOT, SHARED
 
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import InputError, core, frames  # noqa: E402
-from beltgrinding import job as jobs, poses, raster  # noqa: E402
-from beltgrinding.programs import read_program  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.job import load as jobs, workpiece, poses  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.cell import tool_path as tool_paths  # noqa: E402
+from beltgrinding.raster import raster_path as raster  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
 from beltgrinding.programs.program import power, through_with  # noqa: E402
 
 LENGTH, WIDTH = 100.0, 60.0  # mm
@@ -145,7 +149,7 @@ def test_both_holdings_bring_the_contact_to_the_same_places():
             work = np.linalg.inv(found["frames"] @ a) @ b
         assert work == pytest.approx(found["contacts"], abs=1e-9)
         job["programs"] = [{"poses": poses.list_poses(found)}]
-        path = jobs.tool_path(job, 0, [])
+        path = tool_paths.tool_path(job, 0, [])
         assert path.work_from_contact() == pytest.approx(found["contacts"], abs=1e-9)
         # The contact keeps its feed over the work, whatever the tool centre point does for it.
         grinding = np.flatnonzero(found["contact"][1:] & found["contact"][:-1]) + 1
@@ -202,7 +206,7 @@ def test_an_even_raster_grinds_evenly():
     job["law"]["coefficient_mm2_per_N"] = coefficient
     job["programs"] = [{"poses": poses.list_poses(found)}]
     job["inspection"]["tolerance_mm"] = [-0.03, 0.03]
-    result = jobs.run(jobs.validate(job))
+    result = runs.run(jobs.validate(job))
     assert result.summary["in_tolerance_area_share"] > 0.75
     points = result.field.points
     middle = (abs(points[:, 0] - LENGTH / 2) < 30) & (abs(points[:, 1] - WIDTH / 2) < 20)
@@ -303,7 +307,7 @@ def test_a_real_blade_is_covered(along):
     settings = {"along": along, "direction": [0, 0, 1], "step_over_mm": 6}
     found = raster.raster(job, settings)
     assert not found["warnings"]
-    field = core.sample_faces(jobs.read_design(job["design"]), [0], 2.0)[0]
+    field = core.sample_faces(workpiece.read_design(job["design"]), [0], 2.0)[0]
     ways = []
     for k in range(len(found["passes"])):
         places = found["contacts"][on_pass(found, k), :3, 3]
@@ -314,7 +318,7 @@ def test_a_real_blade_is_covered(along):
     assert np.percentile(nearest, 99) < 3.3 and nearest.max() < 6
     # Poses lie on the surface and look into it.
     at = found["contacts"][found["contact"]]
-    samples = core.sample_faces(jobs.read_design(job["design"]), [0], 0.15)[0]
+    samples = core.sample_faces(workpiece.read_design(job["design"]), [0], 0.15)[0]
     angles = []
     for pose in at[:: max(len(at) // 100, 1)]:
         k = np.argmin(np.linalg.norm(samples.points - pose[:3, 3], axis=1))
@@ -374,7 +378,8 @@ assert path.Inputs != digest and abs(path.Poses[0].Base.z - 160) < 1e-9
 simulation = beltgrinding.simulate(job)
 assert simulation.RemovedVolume.Value > 10 and not simulation.OutOfDate
 beltgrinding.export_job(job, "job.json")
-from beltgrinding import contact, job as jobs
+from beltgrinding import contact
+from beltgrinding.job import load as jobs
 pressed = contact.at_pose(jobs.load("job.json"), 5)
 assert abs(pressed["force"] - 30) < 1
 again = beltgrinding.open_job(FreeCAD.newDocument("again"), "job.json")

@@ -21,10 +21,13 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, core, inputs, picture, result as results  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.job import inputs  # noqa: E402
+from beltgrinding.inspection import picture  # noqa: E402
+from beltgrinding.simulation import result as results  # noqa: E402
 from beltgrinding.reporting import (
     charts,
-    converged,
+    convergence_section as converged,
     event_messages,
     facts,
     findings,
@@ -282,7 +285,7 @@ def test_png_is_what_others_read():
 
 
 def test_markup_cannot_be_broken_by_a_text():
-    html = markup.e("p", "<b>&\ud800\x00", None, ["x", 2], title='"><', hidden=True, id=None)
+    html = markup.element("p", "<b>&\ud800\x00", None, ["x", 2], title='"><', hidden=True, id=None)
     assert html == '<p title="&quot;&gt;&lt;" hidden>&lt;b&gt;&amp;\ufffd\ufffdx2</p>'
     assert str(html).encode()
 

@@ -16,8 +16,13 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, core, frames, poses, presets, robot  # noqa: E402
-from beltgrinding import job as jobs  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.job import poses  # noqa: E402
+from beltgrinding.presets import library as presets, robot_model, robot as robots  # noqa: E402
+from beltgrinding.cell import reach  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
+from beltgrinding.cell import tool_path as tool_paths  # noqa: E402
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 FILE = ROOT / "Resources" / "presets" / "robots.json"
@@ -120,7 +125,7 @@ def test_the_users_own_robots_are_read_and_wrong_ones_named(tmp_path, monkeypatc
     }
     (folder / "ours.json").write_text(json.dumps(data))
     assert presets.robots()[-1]["id"] == "ours"
-    assert robot.arm(robot.load_preset("ours")).structure == "spherical_wrist"
+    assert robot_model.arm(robots.load_preset("ours")).structure == "spherical_wrist"
     told = [str(problem) for problem in presets.problems()]
     assert len(told) == 4
     for text, where in zip(told, ("6 joints, not 5", "'rumour' is not", "'joints'", "six joints")):
@@ -147,7 +152,7 @@ def test_a_preset_has_the_dimensions_of_the_data_sheet(preset):
 
 @pytest.mark.parametrize("preset", ROBOTS, ids=IDS)
 def test_forward_agrees_with_the_links_one_by_one(preset):
-    arm = robot.arm(robot.load_preset(preset["id"]))
+    arm = robot_model.arm(robots.load_preset(preset["id"]))
     random = np.random.default_rng(1)
     for q in random.uniform(*limits(preset), (50, 6)):
         assert arm.forward(q) == pytest.approx(links(preset, q)[6], abs=1e-9)
@@ -155,7 +160,7 @@ def test_forward_agrees_with_the_links_one_by_one(preset):
 
 @pytest.mark.parametrize("preset", ROBOTS, ids=IDS)
 def test_inverse_gives_all_that_forward_takes_back(preset):
-    arm = robot.arm(robot.load_preset(preset["id"]))
+    arm = robot_model.arm(robots.load_preset(preset["id"]))
     assert arm.structure == (
         "parallel_elbow" if "dh" in str(preset["model"]) else "spherical_wrist"
     )
@@ -173,7 +178,7 @@ def test_inverse_gives_all_that_forward_takes_back(preset):
 
 
 def test_a_fanuc_measures_its_third_joint_from_the_ground():
-    arm = robot.arm(robot.load_preset("fanuc_m20ia"))
+    arm = robot_model.arm(robots.load_preset("fanuc_m20ia"))
     for q2 in (-0.5, 0.0, 1.0):
         forward = arm.forward(np.array([0, q2, 0, 0, 0, 0]))[:3, :3] @ [0, 0, 1]
         assert forward == pytest.approx([1, 0, 0])
@@ -219,7 +224,7 @@ def cell(**keys):
 
 def test_a_job_within_reach_has_no_events_of_the_robot():
     result = beltgrinding.run(cell())
-    assert not set(result.summary["events"]) & set(robot.EVENTS)
+    assert not set(result.summary["events"]) & set(reach.EVENTS)
     figures = result.summary["robot"]
     assert figures["name"] == "kuka_kr16_2" and figures["poses"] == figures["reached_poses"] == 2
     assert figures["inverse_kinematics"] == "spherical_wrist"
@@ -229,10 +234,10 @@ def test_a_job_within_reach_has_no_events_of_the_robot():
 
 def test_joints_lead_back_to_the_poses():
     job = jobs.validate(cell())
-    path = jobs.tool_path(job, 0, [])
-    (found,) = robot.job_reach(job, [path])
+    path = tool_paths.tool_path(job, 0, [])
+    (found,) = reach.job_reach(job, [path])
     assert found["joints"].shape == (2, 6)
-    back = np.array([robot.pose_function(job["robot"])(q) for q in found["joints"]])
+    back = np.array([robots.pose_function(job["robot"])(q) for q in found["joints"]])
     wanted = poses.program_arrays(job["programs"][0], "", [])["frames"]
     assert back == pytest.approx(wanted, abs=1e-9)
 
@@ -261,30 +266,30 @@ def test_a_job_out_of_reach_says_so_and_grinds_all_the_same():
 def test_an_own_model_is_taken_like_a_preset():
     model = copy.deepcopy(next(one for one in ROBOTS if one["id"] == "kuka_kr16_2")["model"])
     own = jobs.validate(cell(preset="", model=model))
-    (a,) = robot.job_reach(own, [jobs.tool_path(own, 0, [])])
+    (a,) = reach.job_reach(own, [tool_paths.tool_path(own, 0, [])])
     known = jobs.validate(cell())
-    (b,) = robot.job_reach(known, [jobs.tool_path(known, 0, [])])
+    (b,) = reach.job_reach(known, [tool_paths.tool_path(known, 0, [])])
     assert (a["joints"] == b["joints"]).all()
     model["joints"][5]["upper_deg"] = 100
     model["joints"][5]["lower_deg"] = 90
     narrow = jobs.validate(cell(preset="", model=model))
-    (c,) = robot.job_reach(narrow, [jobs.tool_path(narrow, 0, [])])
+    (c,) = reach.job_reach(narrow, [tool_paths.tool_path(narrow, 0, [])])
     (event,) = c["events"]
     assert event["kind"] == "joint_limit" and "joint 6" in event["message"]
 
 
 def test_the_start_chooses_the_configuration():
     job = jobs.validate(cell())
-    path = jobs.tool_path(job, 0, [])
-    arm = robot.arm_of(job["robot"])
-    first = np.radians(robot.job_reach(job, [path])[0]["joints"][0])
+    path = tool_paths.tool_path(job, 0, [])
+    arm = robots.arm_of(job["robot"])
+    first = np.radians(reach.job_reach(job, [path])[0]["joints"][0])
     other = next(
         q
         for q in arm.inverse(arm.forward(first), np.zeros(6))
         if np.abs(q - first).max() > 1 and (q > arm.lower).all() and (q < arm.upper).all()
     )
     job["robot"]["start_joints_deg"] = np.degrees(other + 0.01).tolist()
-    found = robot.job_reach(job, [path])[0]
+    found = reach.job_reach(job, [path])[0]
     assert np.radians(found["joints"][0]) == pytest.approx(other, abs=1e-9)
 
 
@@ -331,7 +336,7 @@ def test_a_wrong_robot_is_named(keys, message):
 def test_a_wrong_frame_of_the_robot_is_named():
     job = jobs.validate(cell(flange_from_tcp={"quaternion_wxyz": [1, 1, 0, 0]}))
     with pytest.raises(InputError, match="robot.flange_from_tcp: the quaternion"):
-        robot.job_reach(job, [jobs.tool_path(job, 0, [])])
+        reach.job_reach(job, [tool_paths.tool_path(job, 0, [])])
 
 
 PROGRAMS = {
@@ -364,7 +369,7 @@ def test_joint_targets_are_poses_once_the_robot_is_known(file, tmp_path):
     (tmp_path / file).write_text(PROGRAMS[file])
     home = [10, -80, 90, 20, 60, 30]
     # The robot stands where its home is near the program's first pose.
-    arm = robot.arm(robot.load_preset("kuka_kr16_2"))
+    arm = robot_model.arm(robots.load_preset("kuka_kr16_2"))
     wanted = frames.from_abc([0, 0, 50], [0, 0, 180]) @ np.linalg.inv(arm.forward(np.radians(home)))
     turn = frames.to_quaternions(wanted[None, :3, :3])[0].tolist()
     base = {"position_mm": wanted[:3, 3].tolist(), "quaternion_wxyz": turn}
@@ -373,14 +378,14 @@ def test_joint_targets_are_poses_once_the_robot_is_known(file, tmp_path):
     job["programs"] = [{"file": str(tmp_path / file)}]
     job = jobs.validate(job)
     warnings = []
-    path = jobs.tool_path(job, 0, warnings)
+    path = tool_paths.tool_path(job, 0, warnings)
     assert len(path) == 3 and warnings == []
     assert path.work_from_contact()[0][:3, 3] == pytest.approx([0, 0, 50], abs=1e-9)
-    (found,) = robot.job_reach(job, [path])
+    (found,) = reach.job_reach(job, [path])
     assert found["joints"][0] == pytest.approx(home, abs=1e-6)  # as programmed, not the best
     assert np.abs(found["joints"][1] - home).max() < 30
     job["robot"] = jobs.validate({**cell(), "robot": {}})["robot"]
-    assert len(jobs.tool_path(job, 0, warnings)) == 2
+    assert len(tool_paths.tool_path(job, 0, warnings)) == 2
 
 
 def run(folder, *arguments):
@@ -406,7 +411,7 @@ def test_the_command_line_writes_the_joints(tmp_path):
     ]
     job = jobs.validate(cell())
     angles = [[float(row[f"j{k}_deg"]) for k in range(1, 7)] for row in rows]
-    found = robot.pose_function(job["robot"])(angles[0])
+    found = robots.pose_function(job["robot"])(angles[0])
     assert found[:3, 3] == pytest.approx([10, 30, 0.2], abs=1e-3)
     bare = cell()
     del bare["robot"]
@@ -437,7 +442,7 @@ def test_a_real_program_of_423_targets_beside_a_large_robot():
     path = core.ToolPath(**arrays)
 
     def found(height):
-        return robot.reach(
+        return reach.reach(
             path,
             {
                 "preset": "kuka_kr210_r2700_extra",
@@ -450,14 +455,14 @@ def test_a_real_program_of_423_targets_beside_a_large_robot():
     assert good["events"] == []
     assert len(good["joints"]) >= 423 and np.isfinite(good["joints"]).all()
     job = {"base_from_robot": {"position_mm": [-830, -1385, -470], "abc_deg": [63, 0, 0]}}
-    job = robot.checked(
+    job = robots.checked(
         {
             "preset": "kuka_kr210_r2700_extra",
             "flange_from_tcp": {"position_mm": [12.5, 0, 287.35]},
             **job,
         }
     )
-    back = np.array([robot.pose_function(job)(q) for q in good["joints"]])
+    back = np.array([robots.pose_function(job)(q) for q in good["joints"]])
     assert back == pytest.approx(arrays["frames"], abs=1e-6)
     high = found(50)
     kinds = {event["kind"] for event in high["events"]}

@@ -13,8 +13,13 @@ from support.freecad import ROOT
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import InputError, core, scan, scan_file, scan_start  # noqa: E402
-from beltgrinding.result import Result  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.scan import (
+    comparison as scan,
+    file as scan_file,
+    start as scan_start,
+)  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
 from test_ground_mesh import block_job  # noqa: E402
 from test_job import cli  # noqa: E402
 

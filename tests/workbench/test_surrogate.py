@@ -10,8 +10,12 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from beltgrinding import InputError, cli, contact, surrogate  # noqa: E402
-from beltgrinding import job as jobs  # noqa: E402
+from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding import cli  # noqa: E402
+from beltgrinding.contact import single_contact as contact, surrogate  # noqa: E402
+from beltgrinding.job import surrogate_file  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 WHEEL = {"outer_radius_mm": 60, "width_mm": 15, "rim_thickness_mm": 10}
@@ -27,9 +31,9 @@ def trained(tmp_path_factory):
     folder = tmp_path_factory.mktemp("surrogate")
     given = contact.validate(of({"shape": "plane"}))
     database = surrogate.make_database(given, 500)
-    surrogate.save_database(database, folder / "database.npz")
-    model, report = surrogate.train(surrogate.load_database(folder / "database.npz"))
-    surrogate.save(model, folder / "wheel.npz")
+    surrogate_file.save_database(database, folder / "database.npz")
+    model, report = surrogate.train(surrogate_file.load_database(folder / "database.npz"))
+    surrogate_file.save(model, folder / "wheel.npz")
     return folder, report
 
 
@@ -57,9 +61,9 @@ def test_job_runs_with_it_and_names_it(trained):
     job = plate_job()
     compliance = {"rim_thickness_mm": 10, "model": "surrogate", "surrogate_file": "wheel.npz"}
     job["belt_machine"]["compliance"] = compliance
-    result = jobs.run(jobs.validate(job, folder))
+    result = runs.run(jobs.validate(job, folder))
     compliance["model"] = "wheel_rim"
-    exact = jobs.run(jobs.validate(job, folder))
+    exact = runs.run(jobs.validate(job, folder))
     assert "held-out error" in result.summary["models"]["compliance"]
     volume = exact.summary["removed_volume_mm3"]
     assert result.summary["removed_volume_mm3"] == pytest.approx(volume, rel=0.02)
@@ -70,7 +74,7 @@ def test_another_wheel_is_refused(trained):
     job = plate_job()
     job["belt_machine"]["compliance"] = {"model": "surrogate", "surrogate_file": "wheel.npz"}
     with pytest.raises(InputError, match="rim_thickness_mm = 10, not 15"):
-        jobs.run(jobs.validate(job, folder))
+        runs.run(jobs.validate(job, folder))
     del job["belt_machine"]["compliance"]["surrogate_file"]
     with pytest.raises(InputError, match="needs the key 'surrogate_file'"):
         jobs.validate(job)
@@ -79,7 +83,7 @@ def test_another_wheel_is_refused(trained):
 def test_damaged_files_are_refused(trained, tmp_path):
     folder, _ = trained
     whole = (folder / "wheel.npz").read_bytes()
-    wheel = surrogate.load(folder / "wheel.npz")[0]["wheel"]
+    wheel = surrogate_file.load(folder / "wheel.npz")[0]["wheel"]
     random = np.random.default_rng(2)
     damaged = tmp_path / "damaged.npz"
     for _ in range(60):
@@ -89,26 +93,26 @@ def test_damaged_files_are_refused(trained, tmp_path):
                 content[place] = random.integers(0, 256)
         damaged.write_bytes(content)
         with pytest.raises(InputError, match="damaged.npz"):
-            surrogate.arguments(damaged, wheel)
+            surrogate_file.arguments(damaged, wheel)
     with pytest.raises(InputError, match="gap is not"):
-        surrogate.load_database(folder / "wheel.npz")
+        surrogate_file.load_database(folder / "wheel.npz")
     with pytest.raises(InputError, match="cannot be read"):
-        surrogate.load(tmp_path / "absent.npz")
+        surrogate_file.load(tmp_path / "absent.npz")
 
 
 def test_arrays_that_do_not_fit_are_refused(trained, tmp_path):
     folder, _ = trained
-    database = surrogate.load_database(folder / "database.npz")
+    database = surrogate_file.load_database(folder / "database.npz")
     for key, value in (
         ("force", database["force"][:-1]),
         ("coverage", database["coverage"][:, :-1]),
         ("pressure", np.full_like(database["pressure"], np.nan)),
     ):
-        surrogate.save_database({**database, key: value}, tmp_path / "bad.npz")
+        surrogate_file.save_database({**database, key: value}, tmp_path / "bad.npz")
         with pytest.raises(InputError, match=key):
-            surrogate.load_database(tmp_path / "bad.npz")
-    model, _ = surrogate.load(folder / "wheel.npz")
-    surrogate.save({**model, "mean": model["mean"][:-1]}, tmp_path / "bad.npz")
+            surrogate_file.load_database(tmp_path / "bad.npz")
+    model, _ = surrogate_file.load(folder / "wheel.npz")
+    surrogate_file.save({**model, "mean": model["mean"][:-1]}, tmp_path / "bad.npz")
     given = of({"shape": "plane"}, model="surrogate", surrogate_file="bad.npz")
     with pytest.raises(InputError, match="do not fit together"):
         contact.run(contact.validate(given, tmp_path))

@@ -1,7 +1,7 @@
 """The estimate of the time that a run still takes."""
 
 import pytest
-from beltgrinding.gui.time_left import TimeLeft, duration
+from beltgrinding.gui.common.time_left import TimeLeft, duration
 
 
 def test_an_even_pace_is_told_exactly():

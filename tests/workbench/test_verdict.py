@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 
 import beltgrinding
-from beltgrinding import InputError, core, motions, schemas, verdict
-from beltgrinding import job as jobs
-from beltgrinding.result import Result
+from beltgrinding.engine import InputError, core
+from beltgrinding.cell import motions
+from beltgrinding.base import schemas
+from beltgrinding.inspection import verdict
+from beltgrinding.job import workpiece, load as jobs
+from beltgrinding.simulation.result import Result
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
@@ -238,7 +241,9 @@ def test_an_older_result_without_trace_and_motions_is_judged_as_far_as_it_goes(j
     # What an older version wrote: no trace, no motions.csv, no verdict.json, no zones in the job.
     old = json.loads(json.dumps(result.job))
     del old["inspection"]["zones"], old["programs"][0]["unresolved"]
-    bare = jobs.make_field(result.job, jobs.read_design(job["design"]), [], core.RunContext())
+    bare = workpiece.make_field(
+        result.job, workpiece.read_design(job["design"]), [], core.RunContext()
+    )
     bare.set_height(result.field.height)
     bare.write_hdf5(str(tmp_path / "out" / "heightfield.h5"), json.dumps(old))
     (tmp_path / "out" / motions.FILE).unlink()

@@ -4,46 +4,29 @@
 with document objects inside FreeCAD. Units: millimetre, newton, second, megapascal.
 """
 
-from pathlib import Path
-
+from .base.resources import documentation, resources
+from .gui.common import command_registry
+from .objects import view_providers
 
 # Taken from the core when first asked for: without a core that fits, the workbench must still be able
 # to say so.
-CORE_NAMES = {name: name for name in ("InputError", "Cancelled", "RunContext")}
-CORE_NAMES["__version__"] = "VERSION"
-
-
-def resources() -> Path:
-    """The folder Resources, installed or of a checkout."""
-    return _folder("Resources")
-
-
-def documentation() -> Path:
-    """The folder docs, installed or of a checkout."""
-    return _folder("docs")
-
-
-def _folder(name):
-    here = Path(__file__).resolve()
-    for folder in (here.parents[1] / name, here.parents[3] / name):
-        if folder.is_dir():
-            return folder
-    raise FileNotFoundError(f"The folder {name} is missing; install the workbench again.")
+ENGINE_NAMES = ("core", "InputError", "Cancelled", "RunContext", "__version__")
 
 
 def run(job, context=None, recording=None):
     """Runs a job (a dict, or the path of a job.json); returns a ``job.Result``. ``recording``: as in
     ``job.run``.
     """
-    from . import job as jobs
+    from .job import load as jobs
+    from .simulation import run as runs
 
     job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
-    return jobs.run(job, context, recording)
+    return runs.run(job, context, recording)
 
 
 def report(result, output=None, pdf=None, language="en", title=None, context=None):
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
-    from . import reporting
+    from .reporting import report as reporting
 
     return reporting.report(result, output, pdf, language, title, context)
 
@@ -52,7 +35,8 @@ def converge(job, context=None):
     """Runs a job (a dict, or the path of a job.json) coarser, as given and finer; returns its
     ``job.Result`` with ``convergence``; see ``convergence.converge``.
     """
-    from . import convergence, job as jobs
+    from .job import load as jobs
+    from .simulation import convergence
 
     job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
     return convergence.converge(job, context)
@@ -62,8 +46,9 @@ def ground_mesh(result, path=None, ground=True, deflection_mm=None, context=None
     """The whole part as ground, as one closed mesh (``closed_mesh.ground_mesh``); written to
     ``path`` (.stl, .ply, .3mf) if there is one. result: a ``job.Result`` or its folder.
     """
-    from . import closed_mesh
-    from .result import Result, colour_scale
+    from .inspection import closed_mesh
+    from .job.tolerances import colour_scale
+    from .simulation.result import Result
 
     result = result if isinstance(result, Result) else Result.read(result)
     deflection = closed_mesh.DEFLECTION if deflection_mm is None else deflection_mm
@@ -101,12 +86,11 @@ DOCUMENT_FUNCTIONS = (
 
 
 def __getattr__(name):
-    if name == "core" or name in CORE_NAMES:
-        from . import core_library
+    if name in ENGINE_NAMES:
+        from . import engine
 
-        core = globals()["core"] = core_library.load()
-        globals().update({ours: getattr(core, theirs) for ours, theirs in CORE_NAMES.items()})
-        return globals()[name]
+        value = globals()[name] = getattr(engine, name)
+        return value
     if name not in DOCUMENT_FUNCTIONS:
         raise AttributeError(f"module 'beltgrinding' has no attribute '{name}'")
     try:
@@ -120,4 +104,24 @@ def __getattr__(name):
 
 
 def __dir__():
-    return sorted({*globals(), "core", *CORE_NAMES, *DOCUMENT_FUNCTIONS})
+    return sorted({*globals(), *ENGINE_NAMES, *DOCUMENT_FUNCTIONS})
+
+
+# What objects and views need of the layers above them, which they must not import: handed down here,
+# for no module of the package is imported before this one.
+
+
+def _attach_view(view_object, name):
+    from .gui.views import providers
+
+    getattr(providers, name)(view_object)
+
+
+def _register_commands():
+    from .gui import commands
+
+    commands.register()
+
+
+view_providers.factory = _attach_view
+command_registry.register = _register_commands

@@ -8,7 +8,7 @@ from pathlib import Path
 import FreeCAD
 import FreeCADGui as Gui
 import Part
-from beltgrinding import job as jobs
+from beltgrinding.simulation import run as runs
 from beltgrinding.objects import api
 
 out = Path(os.environ["OUT"])
@@ -43,13 +43,13 @@ if hasattr(api, "make_section"):
 doc.recompute()
 recording = {}
 simulation = api.simulate(job, write_to=out / "result")
-if "recording" in jobs.run.__code__.co_varnames:
-    from beltgrinding import core
-    from beltgrinding.objects import job_object
+if "recording" in runs.run.__code__.co_varnames:
+    from beltgrinding.engine import core
+    from beltgrinding.objects import job_inputs
 
-    with job_object.scratch_folder() as folder:
-        result = jobs.run(job_object.to_data(job, folder), None, core.Recording())
-    simulation = api.store_result(job, result, job_object.fingerprint(job))
+    with job_inputs.scratch_folder() as folder:
+        result = runs.run(job_inputs.to_data(job, folder), None, core.Recording())
+    simulation = api.store_result(job, result, job_inputs.fingerprint(job))
 deviation = api.make_deviation(job)
 if hasattr(api, "make_section"):
     deviation.Bounds, deviation.Bands = "by tolerance", 3

@@ -30,7 +30,7 @@ def main(argv=None):
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
-        from .. import Cancelled, InputError, core
+        from ..engine import Cancelled, InputError, core
     except ImportError as error:
         print(f"beltgrind: {error}", file=sys.stderr)
         return 1

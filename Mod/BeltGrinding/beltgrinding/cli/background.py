@@ -10,7 +10,7 @@ def run(work, quiet=False):
     """``work(context)``'s result. It runs in a thread of its own, so that Ctrl-C reaches the main
     thread while C++ computes; then the context is cancelled. Raises what the work raises.
     """
-    from .. import core
+    from ..engine import core
 
     context, outcome, done = core.RunContext(), {}, threading.Event()
 

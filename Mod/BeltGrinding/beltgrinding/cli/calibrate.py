@@ -39,7 +39,11 @@ def add(commands):
 
 
 def _calibrate(arguments):
-    from .. import calibration, calibration_plot, calibration_report
+    from ..calibration import (
+        calibrate as calibration,
+        plot as calibration_plot,
+        report as calibration_report,
+    )
 
     result = calibration.fit(arguments.table, arguments.wheel_diameter, arguments.wear_unit)
     report = result["report"]
@@ -54,7 +58,7 @@ def _calibrate(arguments):
 
 
 def _calibrate_scan(arguments):
-    from .. import calibration, calibration_scan
+    from ..calibration import calibrate as calibration, part_scan as calibration_scan
 
     law, figures = calibration_scan.from_files(
         arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
@@ -64,7 +68,8 @@ def _calibrate_scan(arguments):
 
 
 def _predict(arguments):
-    from .. import calibration_law, schemas
+    from ..base import schemas
+    from ..calibration import law as calibration_law
 
     law = schemas.checked(
         schemas.read_json(Path(arguments.law)), schemas.schema("job")["properties"]["law"], "law"

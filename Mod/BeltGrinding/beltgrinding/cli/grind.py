@@ -17,12 +17,13 @@ def add(commands):
 
 
 def _run(arguments):
-    from .. import job, law
+    from ..job import law, load as jobs
+    from ..simulation import run as runs
 
-    given = job.load(arguments.job)
+    given = jobs.load(arguments.job)
     if arguments.belt and Path(arguments.belt).exists():
         given["belt_machine"]["belt"] = law.read_belt(arguments.belt)
-    result = background.run(lambda context: job.run(given, context), arguments.quiet)
+    result = background.run(lambda context: runs.run(given, context), arguments.quiet)
     result.write(arguments.output)
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
@@ -31,7 +32,7 @@ def _run(arguments):
 
 
 def _report(result, output):
-    from .. import verdict
+    from ..inspection import verdict
 
     summary = result.summary
     for warning in summary["warnings"]:

@@ -36,8 +36,10 @@ def add(commands):
 
 
 def _verdict(arguments):
-    from .. import InputError, job, verdict
-    from ..result import Result
+    from ..engine import InputError
+    from ..inspection import verdict
+    from ..job import load as job
+    from ..simulation.result import Result
 
     result = Result.read(arguments.result)
     given = job.load(arguments.job) if arguments.job else job.validate(result.job)
@@ -51,7 +53,9 @@ def _verdict(arguments):
 
 
 def _section(arguments):
-    from .. import InputError, section
+    from ..engine import InputError
+    from ..inspection import section
+    from ..simulation.result import Result
 
     by_plane = (arguments.point, arguments.normal)
     by_line = (arguments.start, arguments.end)
@@ -59,9 +63,9 @@ def _section(arguments):
         if Path(path).suffix.lower() not in (".csv", ".svg"):
             raise InputError(f"{path}: a section is written as .csv or .svg")
     if all(by_plane) and not any(by_line):
-        found = section.section(arguments.result, *by_plane)
+        found = section.section(Result.read(arguments.result), *by_plane)
     elif all(by_line) and not any(by_plane):
-        found = section.between(arguments.result, *by_line)
+        found = section.between(Result.read(arguments.result), *by_line)
     else:
         raise InputError("section: give --point and --normal, or --from and --to")
     for path in arguments.output:

@@ -20,12 +20,12 @@ def add(commands):
 
 
 def _presets(arguments):
-    from .. import presets
+    from ..presets import library as presets
 
     presets.print_list(arguments.kind, arguments.json)
 
 
 def _schema(arguments):
-    from .. import schemas
+    from ..base import schemas
 
     print(json.dumps(schemas.schema(arguments.name), indent=2))

@@ -40,10 +40,12 @@ def add(commands):
 
 
 def _mesh(arguments):
-    from .. import closed_mesh
+    from ..inspection import closed_mesh
+    from ..simulation.result import Result
 
+    result = Result.read(arguments.result)
     found = closed_mesh.export(
-        arguments.result, arguments.output, not arguments.design, arguments.deflection_mm
+        result, arguments.output, not arguments.design, arguments.deflection_mm
     )
     for warning in found.pop("warnings"):
         print(f"warning: {warning}", file=sys.stderr)
@@ -51,8 +53,8 @@ def _mesh(arguments):
 
 
 def _scan(arguments):
-    from .. import scan, scan_start
-    from ..result import Result
+    from ..scan import comparison as scan, start as scan_start
+    from ..simulation.result import Result
 
     result = Result.read(arguments.result)
     faces = None

@@ -28,7 +28,8 @@ def add(commands):
 
 
 def _contact(arguments):
-    from .. import contact, job
+    from ..contact import single_contact as contact
+    from ..job import load as job
 
     if arguments.pose is None:
         given = contact.load(arguments.contact)
@@ -38,7 +39,7 @@ def _contact(arguments):
         result = contact.at_pose(given, arguments.pose, arguments.program)
     figures, truth = contact.summary(result), None
     if arguments.reference:
-        from .. import reference
+        from ..contact import finite_elements as reference
 
         truth = reference.solve(result, contact.rim(given), arguments.keep)
         figures.update(reference.compare(result, truth))
@@ -48,7 +49,9 @@ def _contact(arguments):
 
 
 def _surrogate(arguments):
-    from .. import InputError, contact, surrogate
+    from ..contact import single_contact as contact, surrogate
+    from ..engine import InputError
+    from ..job import surrogate_file
 
     if (arguments.contact is None) == (arguments.train_on is None):
         raise InputError("give either a contact.json or --train-on with a database")
@@ -57,7 +60,7 @@ def _surrogate(arguments):
         print(f"\r{done} of {count} contacts", end="", file=sys.stderr, flush=True)
 
     if arguments.train_on:
-        database = surrogate.load_database(arguments.train_on)
+        database = surrogate_file.load_database(arguments.train_on)
     else:
         database = surrogate.make_database(
             contact.load(arguments.contact),
@@ -67,7 +70,7 @@ def _surrogate(arguments):
             tell if sys.stderr.isatty() else None,
         )
         if arguments.database:
-            surrogate.save_database(database, arguments.database)
+            surrogate_file.save_database(database, arguments.database)
     trained, report = surrogate.train(database, arguments.seed)
-    surrogate.save(trained, arguments.output)
+    surrogate_file.save(trained, arguments.output)
     print(json.dumps(report))

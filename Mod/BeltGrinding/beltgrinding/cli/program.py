@@ -36,9 +36,13 @@ def add(commands):
 
 
 def _program(arguments):
-    from .. import InputError
-    from ..programs import ProgramError, patch_program, read_program, table, write_program
-    from ..result import write_whole
+    from ..base.files import write_whole
+    from ..engine import InputError
+    from ..programs import table
+    from ..programs.patch.patch import patch
+    from ..programs.program import ProgramError
+    from ..programs.registry import read_program
+    from ..programs.writers.writer import write_program
 
     action, *files = arguments.program
     counts = {"write": 2, "convert": 1}
@@ -50,7 +54,7 @@ def _program(arguments):
         raise InputError(f"program {action}: say by -o what file to write")
     try:
         if action == "write":
-            changed = patch_program(*files, arguments.output)
+            changed = patch(*files, arguments.output)
             print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
             return
         program = read_program(files[0])
@@ -66,8 +70,11 @@ def _program(arguments):
 
 
 def _raster(arguments):
-    from .. import InputError, raster, schemas
-    from ..programs import ProgramError, write_program
+    from ..base import schemas
+    from ..engine import InputError
+    from ..programs.program import ProgramError
+    from ..programs.writers.writer import write_program
+    from ..raster import raster_path as raster
 
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
     if not isinstance(settings, dict):
@@ -93,17 +100,20 @@ def _raster(arguments):
 
 
 def _reach(arguments):
-    from .. import InputError, events as event_lists, job, robot
-    from ..result import write_whole
+    from ..base.files import write_whole
+    from ..cell import events as event_lists, reach, tool_path as tool_paths
+    from ..engine import InputError
+    from ..job import load as jobs
+    from ..presets import robot as robots
 
-    given = job.load(arguments.job)
-    if not robot.given(given["robot"]):
+    given = jobs.load(arguments.job)
+    if not robots.given(given["robot"]):
         raise InputError(f"{arguments.job}: the job names no robot; give it the key 'robot'")
     warnings = []
-    paths = [job.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
-    found = robot.job_reach(given, paths)
+    paths = [tool_paths.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
+    found = reach.job_reach(given, paths)
     if arguments.output:
-        text = robot.joints_csv(found, [path.lines() for path in paths])
+        text = reach.joints_csv(found, [path.lines() for path in paths])
         try:
             write_whole(Path(arguments.output), text.encode())
         except OSError as error:
@@ -112,4 +122,4 @@ def _reach(arguments):
         print(f"warning: {warning}", file=sys.stderr)
     begins = [sum(path.duration() for path in paths[:i]) for i in range(len(paths))]
     events = event_lists.merge([(i, begins[i], one["events"]) for i, one in enumerate(found)])
-    print(json.dumps({**robot.summary(given["robot"], found), "events": events}, indent=2))
+    print(json.dumps({**reach.summary(given["robot"], found), "events": events}, indent=2))

@@ -34,8 +34,9 @@ def add(commands):
 
 
 def _converge(arguments):
-    from .. import convergence, job
-    from ..reporting import converged, language
+    from ..job import load as job
+    from ..reporting import convergence_section, language
+    from ..simulation import convergence
 
     given = job.load(arguments.job)
     result = background.run(lambda context: convergence.converge(given, context), arguments.quiet)
@@ -43,11 +44,11 @@ def _converge(arguments):
     if not arguments.quiet:
         for note in result.convergence["notes"]:
             print(f"warning: {note}", file=sys.stderr)
-        print(" ".join(converged.sentences(result.convergence, language.Language())))
+        print(" ".join(convergence_section.sentences(result.convergence, language.Language())))
 
 
 def _report(arguments):
-    from .. import reporting
+    from ..reporting import report as reporting
 
     def work(context):
         return reporting.report(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..programs import write_program
+from ..programs.writers.writer import write_program
 from .aerofoil import blade_sides
 
 ROOT_BLOCK = (90.0, 50.0, 25.0)  # mm: length, depth, height of the root

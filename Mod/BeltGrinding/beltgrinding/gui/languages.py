@@ -5,7 +5,7 @@ from pathlib import Path
 
 import FreeCADGui as Gui
 
-from .. import resources
+from ..base.resources import resources
 
 
 def folders():

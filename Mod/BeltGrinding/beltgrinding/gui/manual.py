@@ -8,9 +8,9 @@ from pathlib import Path
 import FreeCAD
 import FreeCADGui as Gui
 
-from .. import documentation
-from .compat import QtCore, QtGui, translate
-from .icons import icon
+from ..base.resources import documentation
+from .common.compat import QtCore, QtGui, translate
+from .common.icons import icon
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 SIZE = 960, 800  # of the window at first, pixels

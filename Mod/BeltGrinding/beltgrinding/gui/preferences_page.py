@@ -4,12 +4,12 @@ import FreeCAD
 import FreeCADGui as Gui
 from FreeCAD import Units
 
-from .. import InputError
+from ..engine import InputError
 from ..objects import preferences
 from ..objects.deviation import Deviation
 from ..objects.proxy import type_of
-from .compat import QtGui, translate
-from .form import quantity_field, show_quantity
+from .common.compat import QtGui, translate
+from .widgets.form import quantity_field, show_quantity
 
 MOST_THREADS = 1024
 

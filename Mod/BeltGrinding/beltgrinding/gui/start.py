@@ -2,11 +2,11 @@
 
 import importlib
 
-import FreeCAD
 import FreeCADGui as Gui
 
-from .. import core_library
-from .compat import QtGui, translate
+from ..engine import library as core_library
+from .common.compat import translate
+from .common.messages import tell
 from .manual import Manual
 
 PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
@@ -40,15 +40,3 @@ def reason(error):
         "it ({error}). On Debian: apt install python3-{name}. Elsewhere FreeCAD's Addon Manager can "
         "install it: Tools, Addon manager, Python packages.",
     ).format(name=(error.name or "?").split(".")[0], error=error)
-
-
-def tell(text):
-    """An error in the report view and in a message that does not hold FreeCAD up."""
-    FreeCAD.Console.PrintError(f"{text}\n")
-    box = QtGui.QMessageBox(Gui.getMainWindow())
-    box.setObjectName("BeltGrinding_Error")
-    box.setIcon(QtGui.QMessageBox.Warning)
-    box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
-    box.setText(text)
-    box.setModal(False)
-    box.show()

@@ -7,10 +7,10 @@ starts all the same, and ``start`` says so.
 import FreeCAD
 import FreeCADGui as Gui
 
-from .. import resources
+from ..base.resources import resources
 from . import languages
-from .compat import QtGui
-from .icons import icon
+from .common.compat import QtGui
+from .common.icons import icon
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 NAME = QT_TRANSLATE_NOOP("Workbench", "Belt grinding")

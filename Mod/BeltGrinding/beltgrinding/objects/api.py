@@ -7,7 +7,7 @@ mend, and leaves the document as it was.
 
 from . import job_object
 from .exchange import export_job, open_example, open_job
-from .inspecting import (
+from .inspection import (
     compare_scan,
     make_deviation,
     make_ground_mesh,
@@ -17,7 +17,8 @@ from .inspecting import (
 )
 from .preferences import apply_threads
 from .proxy import type_of
-from .running import check_settings, import_result, simulate, store_result
+from .reports import make_figures, write_report
+from .runs import check_settings, import_result, simulate, store_result
 from .set_up import (
     export_program,
     follow_path,
@@ -29,7 +30,6 @@ from .set_up import (
     make_stock,
     wear_belt,
 )
-from .telling import make_figures, write_report
 
 __all__ = [
     "check_settings",

@@ -2,7 +2,8 @@
 
 import json
 
-from .. import InputError, job as jobs, law
+from ..engine import InputError
+from ..job import law, law as laws
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 
@@ -50,5 +51,5 @@ class Belt(Proxy):
         use = json.loads(simulation.BeltUse)
         state = {key: value + use["during"][key] for key, value in self.state(obj).items()}
         from_job(obj, KEYS, {"belt_machine": {"belt": state}})
-        obj.RemainingCut = 100.0 * jobs.remaining_cut(use["job"], law.engine_belt(state))
+        obj.RemainingCut = 100.0 * laws.remaining_cut(use["job"], law.engine_belt(state))
         obj.Counted = [*obj.Counted, run]

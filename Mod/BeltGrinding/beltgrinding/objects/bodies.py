@@ -5,8 +5,9 @@ from pathlib import Path
 import Mesh
 import Part
 
-from .. import collision
-from ..job import MESH_SUFFIXES, read_design
+from ..cell import collision
+from ..job import bodies as job_bodies
+from ..job.workpiece import MESH_SUFFIXES, read_design
 from .belt_machine import BODIES
 from .geometry import export_solid, geometry_digest, placement_from_job
 
@@ -15,7 +16,7 @@ JOB_FRAMES = {"base": "base", "tool": "tool", "contact": "wheel", "part": "part"
 
 def listed(machine):
     """(name in a job, frame in a job, object) of every body; the name is the label, made unique."""
-    found, names = [], list(collision.RESERVED)
+    found, names = [], list(job_bodies.RESERVED)
     for prop, (frame, _) in BODIES.items():
         for obj in getattr(machine, prop):
             name, number = obj.Label, 2

@@ -7,8 +7,8 @@ import math
 import Mesh
 import numpy as np
 
-from .. import InputError, core
-from ..result import colour_scale
+from ..engine import InputError, core
+from ..job.tolerances import colour_scale
 from . import preferences
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -112,7 +112,7 @@ class Deviation(Proxy):
             return
         if obj.OutOfDate != simulation.OutOfDate:
             obj.OutOfDate = simulation.OutOfDate
-        from .job_object import inspection
+        from .job_data import inspection
 
         scale = colour_scale({"inspection": inspection(job)})
         scanned = getattr(simulation, "ScanFigures", "")

@@ -6,11 +6,12 @@ from pathlib import Path
 import FreeCAD
 import Part
 
-from .. import InputError, job as jobs
+from ..base.files import write_whole
+from ..engine import InputError
 from ..examples import blade
-from ..poses import listed_poses
-from ..result import write_whole
-from . import belt as belts, belt_machine, bodies, job_object, robot_path, stock as stocks
+from ..job import load as jobs, workpiece
+from ..job.poses import listed_poses
+from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
 from .geometry import placement_from_job
 from .properties import from_job
 from .set_up import import_program, make_belt, make_belt_machine, make_job, make_stock
@@ -22,7 +23,7 @@ def export_job(job, path):
     """
     path = Path(path)
     try:
-        data = job_object.to_data(job, path.resolve().parent)
+        data = job_inputs.to_data(job, path.resolve().parent)
         for holder in (data["stock"], *data["cell"]["bodies"]):
             if "file" in holder:
                 holder["file"] = _relative(holder["file"], path.resolve().parent)
@@ -55,7 +56,7 @@ def open_example(folder):
 
 
 def _open_job(doc, data, path, made):
-    shape = jobs.read_design(data["design"])
+    shape = workpiece.read_design(data["design"])
     part = doc.addObject("Part::Feature", "Design")
     made.append(part)
     part.Label = Path(data["design"].get("file", path)).stem
@@ -65,7 +66,7 @@ def _open_job(doc, data, path, made):
     faces = data["design"]["faces"]
     job = make_job(part, faces)
     made.append(job)
-    from_job(job, job_object.KEYS, data)
+    from_job(job, job_data.KEYS, data)
     stock = make_stock(job)
     made.append(stock)
     _open_stock(doc, stock, data["stock"], made)
@@ -106,6 +107,6 @@ def _open_stock(doc, stock, data, made):
         solid = doc.addObject("Part::Feature", "StockSolid")
         made.append(solid)
         brep = Part.Shape()
-        brep.importBrepFromString(jobs.read_design(data).write_brep())
+        brep.importBrepFromString(workpiece.read_design(data).write_brep())
         solid.Shape = brep
         stock.Source = solid

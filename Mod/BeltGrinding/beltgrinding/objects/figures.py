@@ -8,8 +8,9 @@ import FreeCAD
 
 from .belt_machine import BeltMachine
 from .deviation import Deviation
-from .job_object import BeltGrindingJob, child, simulated
-from .simulation import Simulation
+from .job_data import child
+from .job_object import BeltGrindingJob
+from .simulation import Simulation, simulated
 from .stock import Stock
 from .verdict import Verdict
 

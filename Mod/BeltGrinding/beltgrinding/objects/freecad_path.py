@@ -5,9 +5,9 @@ import math
 import FreeCAD
 import numpy as np
 
-from .. import InputError
+from ..engine import InputError
 from ..programs.program import CHORD_ERROR, Motion, Problem, Program
-from ..programs.tool_axis import Tracer, arc_through
+from ..programs.readers.tool_axis import Tracer, arc_through
 from .geometry import matrix
 
 LARGEST_TURN = 2.0  # degrees between two poses while a rotary axis turns

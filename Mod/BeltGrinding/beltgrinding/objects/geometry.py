@@ -6,7 +6,8 @@ from pathlib import Path
 import FreeCAD
 import numpy as np
 
-from .. import InputError, core, frames
+from ..base import frames
+from ..engine import InputError, core
 
 GRID = 5  # points per direction and face, and per edge, that tell shapes apart
 RESOLUTION = 1e-6  # mm; below it, two shapes are the same

@@ -5,8 +5,10 @@ import json
 
 import Mesh
 
-from .. import InputError, closed_mesh, core, job as jobs
-from ..result import colour_scale
+from ..engine import InputError, core
+from ..inspection import closed_mesh
+from ..job import workpiece
+from ..job.tolerances import colour_scale
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -62,21 +64,21 @@ def _shown(obj):
 
 def make(obj):
     """Makes the mesh from the object's simulation. Raises InputError where that is out of date."""
-    from . import job_object
+    from . import job_data, job_inputs
 
     simulation, job = obj.Simulation, obj.getParentGroup()
     if simulation is None or job is None:
         raise InputError(f"{obj.Label}: belongs to no simulation; make a new one")
-    if simulation.OutOfDate or job_object.fingerprint(job) != simulation.Fingerprint:
+    if simulation.OutOfDate or job_inputs.fingerprint(job) != simulation.Fingerprint:
         raise InputError(f"{simulation.Label} is out of date; simulate again")
     field = simulation.Proxy.field(simulation)
     if field is None:
         raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
-    with job_object.scratch_folder() as folder:
-        data = job_object.to_data(job, folder)
-        shape, flip = jobs.read_design(data["design"]), data["design"]["flip_normals"]
+    with job_inputs.scratch_folder() as folder:
+        data = job_inputs.to_data(job, folder)
+        shape, flip = workpiece.read_design(data["design"]), data["design"]["flip_normals"]
     mesh = core.ground_mesh(shape, field, True, obj.Deflection.Value, flip_normals=flip)
-    scale = colour_scale({"inspection": job_object.inspection(job)})
+    scale = colour_scale({"inspection": job_data.inspection(job)})
     figures = closed_mesh.summary(mesh)
     made = Mesh.Mesh()
     made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")

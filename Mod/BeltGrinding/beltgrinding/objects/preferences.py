@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import FreeCAD
 
-from .. import InputError, core
+from ..engine import InputError, core
 from .properties import rule
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/BeltGrinding"

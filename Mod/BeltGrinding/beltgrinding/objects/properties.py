@@ -6,8 +6,9 @@ import json
 from functools import lru_cache
 from typing import NamedTuple
 
-from .. import InputError, schemas
-from ..job import schema
+from ..base import schemas
+from ..engine import InputError
+from ..job.load import schema
 from .proxy import type_of
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a

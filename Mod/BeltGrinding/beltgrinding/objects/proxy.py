@@ -4,7 +4,8 @@ from contextlib import contextmanager
 
 import FreeCAD
 
-from .. import InputError
+from ..engine import InputError
+from . import view_providers
 
 
 class Stateless:
@@ -27,7 +28,7 @@ class Stateless:
 
 class Proxy(Stateless):
     """Base of the objects' proxies. ``TYPE`` tells objects apart; ``VIEW`` names the view provider
-    in gui/views.py; ``add_properties`` also gives a file of an older version what it lacks.
+    in gui/views/providers.py; ``add_properties`` also gives a file of an older version what it lacks.
     """
 
     TYPE = ""
@@ -38,9 +39,7 @@ class Proxy(Stateless):
         obj.Proxy = self
         self.onDocumentRestored(obj)
         if FreeCAD.GuiUp:
-            from ..gui import views
-
-            getattr(views, self.VIEW)(obj.ViewObject)
+            view_providers.attach(obj.ViewObject, self.VIEW)
 
     def onDocumentRestored(self, obj):
         if "Schema" not in obj.PropertiesList:

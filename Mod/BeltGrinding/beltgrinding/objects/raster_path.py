@@ -3,8 +3,10 @@
 import hashlib
 import json
 
-from .. import InputError, job as jobs, raster
-from . import job_object
+from ..engine import InputError
+from ..job import load as jobs
+from ..raster import raster_path as raster
+from . import job_data, job_object
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
 from .properties import Key, Output, add_keys, add_outputs, to_job
@@ -95,12 +97,12 @@ def _inputs(obj):
         raise InputError(f"{obj.Label} has no belt machine; add one to the job")
     group, data = obj.getParentGroup(), {"schema": 1}
     if type_of(group) == job_object.BeltGrindingJob.TYPE:
-        to_job(group, job_object.KEYS, data)
+        to_job(group, job_data.KEYS, data)
         data = {key: data[key] for key in ("schema", "design", "law")}
     data.setdefault("design", {})
     data.update(obj.Machine.Proxy.to_job(obj.Machine))
     data["belt_machine"].pop("belt", None)  # its wear moves no pass
-    shape, numbers = job_object.shape_of(obj.Faces, obj.Label)
+    shape, numbers = job_data.shape_of(obj.Faces, obj.Label)
     data["design"]["faces"] = numbers
     data["programs"] = [{"poses": []}]
     settings = {}

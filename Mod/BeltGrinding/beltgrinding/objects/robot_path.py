@@ -7,9 +7,12 @@ import FreeCAD
 import numpy as np
 import Path
 
-from .. import InputError, core, frames
-from ..poses import DEFAULT_FEED
-from ..programs import Motion, ProgramError, read_program, write_program
+from ..base import frames
+from ..engine import InputError, core
+from ..job.poses import DEFAULT_FEED
+from ..programs.program import Motion, ProgramError
+from ..programs.registry import read_program
+from ..programs.writers.writer import write_program
 from . import freecad_path
 from .geometry import matrix
 from .properties import Output, add_outputs, set_by_name

@@ -5,7 +5,8 @@ import os
 
 import numpy as np
 
-from .. import InputError, section as sections
+from ..engine import InputError
+from ..inspection import section as sections
 from .properties import Output, add_outputs
 from .proxy import Proxy
 

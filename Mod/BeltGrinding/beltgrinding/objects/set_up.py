@@ -4,12 +4,21 @@ from pathlib import Path
 
 import FreeCAD
 
-from .. import InputError
-from ..programs import ProgramError
-from . import belt as belts, belt_machine, job_object, raster_path, robot_path, stock as stocks
-from .job_object import child, children, simulated
-from .making import make_child, removed_on_error
+from ..engine import InputError
+from ..programs.program import ProgramError
+from . import (
+    belt as belts,
+    belt_machine,
+    job_data,
+    job_object,
+    raster_path,
+    robot_path,
+    stock as stocks,
+)
+from .creation import make_child, removed_on_error
+from .job_data import child, children
 from .properties import set_by_name
+from .simulation import simulated
 
 
 def make_job(design, faces=(), **properties):
@@ -28,7 +37,7 @@ def make_job(design, faces=(), **properties):
         job.Label = "Belt grinding"
         job_object.BeltGrindingJob(job)
         job.DesignFaces = links
-        job_object.design(job)
+        job_data.design(job)
         set_by_name(job, properties)
     return job
 
@@ -58,7 +67,7 @@ def make_belt(job, **properties):
     """Puts a belt, which carries its wear from run to run, on the job's machine, or changes the one
     it has. Another job shares it by its machine's ``Belt``.
     """
-    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    machine = job_data.required(job, belt_machine.BeltMachine, "belt machine")
     if machine.Belt is None:
         made = job.Document.addObject("App::FeaturePython", "Belt")
         with removed_on_error(made):
@@ -119,7 +128,7 @@ def make_raster(job, faces=(), compute=True, **properties):
     design faces. It is laid anew when an input changes. ``compute=False`` leaves it empty until
     the document is recomputed.
     """
-    machine = job_object.required(job, belt_machine.BeltMachine, "belt machine")
+    machine = job_data.required(job, belt_machine.BeltMachine, "belt machine")
     links = list(faces) or job.DesignFaces
     if isinstance(links[0], (str, int)):
         names = tuple(f"Face{s}" if isinstance(s, int) else s for s in links)

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import core, events as event_lists
-from ..poses import program_name
-from . import told
+from ..cell import events as event_lists
+from ..engine import InputError, core
+from ..job.poses import program_name
+from . import part_scan, report_data
+from .job_data import child
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -63,7 +65,7 @@ class Simulation(Proxy):
             )
             obj.setEditorMode("HeightField", 1)
         add_outputs(obj, OUTPUTS)
-        told.add(obj)
+        report_data.add(obj)
 
     def field(self, obj):
         """core.HeightField of the result; None if there is none."""
@@ -99,9 +101,7 @@ class Simulation(Proxy):
 
 def store(obj, result, fingerprint):
     """Puts a ``job.Result`` into a Simulation object."""
-    from . import scanned  # which reads jobs, and a job holds simulations
-
-    scanned.forget(obj)  # it was compared with the older result
+    part_scan.forget(obj)  # it was compared with the older result
     with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
         path = Path(folder, "heightfield.h5")
         result.field.write_hdf5(str(path), json.dumps(_without_bulk(result.job)))
@@ -123,7 +123,7 @@ def store(obj, result, fingerprint):
     kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
     obj.BeltUse = json.dumps({"during": during, "job": kept})
     obj.EventData = json.dumps(result.events)
-    told.store(obj, result)
+    report_data.store(obj, result)
     _store_verdict(obj, result)
     obj.Fingerprint = fingerprint
     obj.OutOfDate = False
@@ -180,3 +180,11 @@ def describe(event, job):
         f"{event['kind']}: {where}, pose {event['pose'] + 1}{line}, "
         f"{event['time']:.2f} s: {event['message']}"
     )
+
+
+def simulated(job):
+    """The job's Simulation, which has a result. Raises InputError."""
+    found = child(job, Simulation)
+    if found is None or not found.Fingerprint:
+        raise InputError(f"{job.Label} has no result yet; simulate first")
+    return found

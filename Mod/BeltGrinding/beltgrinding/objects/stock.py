@@ -4,14 +4,8 @@ import hashlib
 import os
 from functools import lru_cache
 
-from .. import InputError
-from .geometry import (
-    export_solid,
-    faces_digest,
-    geometry_digest,
-    placed_shape,
-    placement_to_job,
-)
+from ..engine import InputError
+from .geometry import export_solid, faces_digest, geometry_digest, placed_shape, placement_to_job
 from .properties import Key, add_keys, check_limits, get_value
 from .proxy import Proxy, checking
 

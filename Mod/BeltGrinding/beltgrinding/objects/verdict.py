@@ -2,7 +2,8 @@
 
 import json
 
-from .. import InputError, verdict as verdicts
+from ..engine import InputError
+from ..inspection import verdict as verdicts
 from .geometry import core_shape
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -85,7 +86,7 @@ class Verdict(Proxy):
 
 
 def _judged_by(job):
-    from .job_object import inspection
+    from .job_data import inspection
 
     return _limits(inspection(job))
 
@@ -121,7 +122,7 @@ def judge(job, simulation, inspection):
     }
     shape = None
     if any("thickness_mm" in zone for zone in inspection["zones"]):
-        from .job_object import design
+        from .job_data import design
 
         shape = core_shape(design(job)[0])
     return verdicts.verdict(

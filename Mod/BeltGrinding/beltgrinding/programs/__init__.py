@@ -1,147 +1,15 @@
 """Robot languages in and out. No FreeCAD and no simulator in here.
 
-A language is one module with ``read(path) -> Program``, registered in ``READERS`` by its suffix.
+What a macro calls; the modules of the package import each other, not this.
 """
 
-import contextlib
-import gc
-from pathlib import Path
-
+from .patch.patch import patch as patch_program
 from .program import Motion, Problem, Program, ProgramError
-
-
-def _krl(path):
-    from . import krl
-
-    return krl.read(path)
-
-
-def _csv(path):
-    from . import csv_program
-
-    return csv_program.read(path)
-
-
-def _rapid(path):
-    from . import rapid
-
-    return rapid.read(path)
-
-
-def _urscript(path):
-    from . import urscript
-
-    return urscript.read(path)
-
-
-def _apt(path):
-    from . import apt
-
-    return apt.read(path)
-
-
-def _gcode(path):
-    from . import gcode
-
-    return gcode.read(path)
-
-
-def _fanuc(path):
-    from . import fanuc
-
-    return fanuc.read(path)
-
-
-def _inform(path):
-    from . import inform
-
-    return inform.read(path)
-
-
-def _val3(path):
-    from . import val3
-
-    return val3.read(path)
-
-
-def _urp(path):
-    from . import urp
-
-    return urp.read(path)
-
-
-READERS = {
-    ".src": _krl,
-    ".csv": _csv,
-    ".mod": _rapid,
-    ".modx": _rapid,
-    ".prg": _rapid,
-    ".sys": _rapid,
-    ".script": _urscript,
-    ".ls": _fanuc,
-    ".jbi": _inform,
-    ".apt": _apt,
-    ".cls": _apt,
-    ".cl": _apt,
-    ".pgx": _val3,
-    ".dtx": _val3,
-    ".urp": _urp,
-    ".nc": _gcode,
-    ".ngc": _gcode,
-    ".gcode": _gcode,
-    ".mpf": _gcode,
-    ".tap": _gcode,
-}
-
-
-def file_pattern():
-    """What a file dialog shows: "*.src *.csv ..."; suffixes in upper case as well."""
-    return " ".join(f"*{s} *{s.upper()}" for s in sorted(READERS))
-
-
-@contextlib.contextmanager
-def _no_collection():
-    """Reading makes many objects that stay and hardly a cycle: looking for garbage all the while
-    takes a third of the time."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
-
-
-def read_program(path):
-    """The Program in the file ``path``, its language told by the suffix. Raises ProgramError."""
-    path = Path(path)
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        known = ", ".join(sorted(READERS))
-        raise ProgramError(f"{path}: no robot language is known by '{path.suffix}'; known: {known}")
-    with _no_collection():
-        program = reader(path)
-    if not program.motions and not program.problems:
-        text = "no instruction of the program moves the robot; there is no pose to read"
-        program.problems.append(Problem(program.file, 1, text))
-    return program
-
-
-def write_program(path, language, program, **options):
-    """Writes a new program; see ``writer.write_program``. Raises ProgramError."""
-    from . import writer
-
-    writer.write_program(path, language, program, **options)
-
-
-def patch_program(path, changes, output):
-    """Writes changed speeds, forces and offsets back into a program; see ``patch.patch``."""
-    from . import patch
-
-    return patch.patch(path, changes, output)
-
+from .registry import READERS, file_pattern, read_program
+from .writers.writer import write_program
 
 __all__ = [
+    "READERS",
     "Motion",
     "Problem",
     "Program",

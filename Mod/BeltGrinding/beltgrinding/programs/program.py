@@ -7,7 +7,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from ..frames import to_quaternions
+from ..base.frames import to_quaternions
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points

@@ -5,7 +5,7 @@ import io
 
 import numpy as np
 
-from ..frames import to_quaternions
+from ..base.frames import to_quaternions
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
 SHOWN = 20  # problems in a summary

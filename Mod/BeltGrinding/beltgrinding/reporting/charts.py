@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .. import core
-from ..section_plot import ticks
-from .markup import e
+from ..engine import core
+from ..inspection.section_plot import ticks
+from .markup import element
 
 WIDTH = 720  # user units; the page scales the drawing
 INK, GRID, FRAME = "#40454d", "#e3e5e8", "#9aa0a8"
@@ -23,7 +23,7 @@ def rgb(packed):
 
 
 def _svg(width, height, *children, **attributes):
-    return e(
+    return element(
         "svg",
         *children,
         xmlns="http://www.w3.org/2000/svg",
@@ -37,7 +37,7 @@ def _svg(width, height, *children, **attributes):
 
 
 def _text(x, y, text, anchor="start", **attributes):
-    return e("text", text, x=float(x), y=float(y), text_anchor=anchor, **attributes)
+    return element("text", text, x=float(x), y=float(y), text_anchor=anchor, **attributes)
 
 
 def histogram(field, scale, words):
@@ -69,10 +69,12 @@ def histogram(field, scale, words):
         return above + tall * (1.0 - np.sqrt(share / top))
 
     drawn = [
-        e("rect", x=x(lower), y=above, width=x(upper) - x(lower), height=tall, fill="#e9f0e9"),
+        element(
+            "rect", x=x(lower), y=above, width=x(upper) - x(lower), height=tall, fill="#e9f0e9"
+        ),
     ]
     for value in (v for v in (0.1, 1.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0) if v < 1.05 * top):
-        drawn.append(e("path", d=f"M{left} {y(value):.1f}h{wide}", stroke=GRID))
+        drawn.append(element("path", d=f"M{left} {y(value):.1f}h{wide}", stroke=GRID))
         drawn.append(_text(left - 6, y(value) + 4, words.number(value, int(value < 1)), "end"))
     values, decimals = ticks(edges[0], edges[-1], 9)
     for value in values:
@@ -84,7 +86,7 @@ def histogram(field, scale, words):
             bar = max(above + tall - y(share), 0.8)
             good = lower <= middle <= upper
             drawn.append(
-                e(
+                element(
                     "rect",
                     x=x(a) + 0.3,
                     y=float(above + tall - bar),
@@ -99,17 +101,19 @@ def histogram(field, scale, words):
         side = outside if (end - x(value)) * outside > room else -outside
         anchor, shift = ("start", 5) if side > 0 else ("end", -5)
         drawn.append(
-            e("path", d=f"M{x(value):.1f} {above - 8}v{tall + 8}", stroke=INK, stroke_width=1.4)
+            element(
+                "path", d=f"M{x(value):.1f} {above - 8}v{tall + 8}", stroke=INK, stroke_width=1.4
+            )
         )
         label = f"{words.number(value, 3, True)} mm"
         drawn.append(_text(x(value) + shift, above - 10, label, anchor))
-    drawn.append(e("path", d=f"M{left} {above + tall}h{wide}", stroke=FRAME))
+    drawn.append(element("path", d=f"M{left} {above + tall}h{wide}", stroke=FRAME))
     drawn.append(
         _text(left + wide / 2, above + tall + 36, words("deviation from the design, mm"), "middle")
     )
     middle = above + tall / 2
     drawn.append(
-        e(
+        element(
             "text",
             words("% of the area"),
             transform=f"translate(12 {middle:.0f}) rotate(-90)",
@@ -132,13 +136,13 @@ def legend(scale, words):
 
     step = wide / len(values)
     drawn = [
-        e("rect", x=left + k * step, y=top, width=step + 0.4, height=bar, fill=rgb(colour))
+        element("rect", x=left + k * step, y=top, width=step + 0.4, height=bar, fill=rgb(colour))
         for k, colour in enumerate(colours)
     ]
-    drawn.append(e("rect", x=left, y=top, width=wide, height=bar, fill="none", stroke=FRAME))
+    drawn.append(element("rect", x=left, y=top, width=wide, height=bar, fill="none", stroke=FRAME))
     places = {-limit: "≤ ", limit: "≥ "}
     for value in (-limit, lower, upper, limit):
-        drawn.append(e("path", d=f"M{x(value):.1f} {top}v{bar + 5}", stroke=INK))
+        drawn.append(element("path", d=f"M{x(value):.1f} {top}v{bar + 5}", stroke=INK))
     close = x(upper) - x(lower) < 64  # the limits' labels would run into each other
     for value in (-limit, lower, upper, limit):
         anchor = "middle"
@@ -158,7 +162,7 @@ def legend(scale, words):
         )
     )
     missed = rgb(0x707070FF)
-    drawn.append(e("rect", x=left + wide + 68, y=top, width=bar, height=bar, fill=missed))
+    drawn.append(element("rect", x=left + wide + 68, y=top, width=bar, height=bar, fill=missed))
     drawn.append(_text(left + wide + 94, top + 15, words("no stock")))
     label = words("Colours of the deviation")
     return _svg(WIDTH, top + bar + 44, drawn, class_="legend", aria_label=label)
@@ -199,23 +203,23 @@ def series(bins, words):
         drawn.append(_text(left, top - 6, f"{words(text)}, {unit}", font_weight="bold"))
         for value, decimals in ((v, ticks(0.0, most, 2)[1]) for v in ticks(0.0, most, 2)[0]):
             y = top + tall * (1.0 - value / (1.05 * most))
-            drawn.append(e("path", d=f"M{left} {y:.1f}h{wide}", stroke=GRID))
+            drawn.append(element("path", d=f"M{left} {y:.1f}h{wide}", stroke=GRID))
             drawn.append(_text(left - 6, y + 4, words.number(value, decimals), "end"))
         x = left + wide * time / end
         y = top + tall * (1.0 - values / (1.05 * most))
         line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y))
         base = top + tall
         drawn.append(
-            e("polygon", points=f"{x[0]:.1f},{base} {line} {x[-1]:.1f},{base}", fill=colour,
+            element("polygon", points=f"{x[0]:.1f},{base} {line} {x[-1]:.1f},{base}", fill=colour,
               fill_opacity=0.2)
         )  # fmt: skip
-        drawn.append(e("polyline", points=line, fill="none", stroke=colour, stroke_width=1.2))
-        drawn.append(e("path", d=f"M{left} {base}h{wide}", stroke=FRAME))
+        drawn.append(element("polyline", points=line, fill="none", stroke=colour, stroke_width=1.2))
+        drawn.append(element("path", d=f"M{left} {base}h{wide}", stroke=FRAME))
         top += tall + gap
     base = top - gap
     for value, decimals in ((v, ticks(0.0, end, 9)[1]) for v in ticks(0.0, end, 9)[0]):
         x = left + wide * value / end
-        drawn.append(e("path", d=f"M{x:.1f} {base}v4", stroke=FRAME))
+        drawn.append(element("path", d=f"M{x:.1f} {base}v4", stroke=FRAME))
         drawn.append(_text(x, base + 16, words.number(value, decimals), "middle"))
     drawn.append(_text(left + wide / 2, base + 33, words("time, s"), "middle"))
     label = words("Force, pressure and removal rate over time")
@@ -228,21 +232,21 @@ def marked(view, uri, marks, alt):
     """
     rows, columns = view.depth.shape
     size = columns / 45.0
-    drawn = [e("image", href=uri, x=0, y=0, width=columns, height=rows)]
+    drawn = [element("image", href=uri, x=0, y=0, width=columns, height=rows)]
     labels = _placed(marks, columns, rows, size)
     for (_, x, y), (at, up) in zip(marks, labels):  # lines below all rings and labels
         pen = {"fill": "none", "stroke_linecap": "round"}
         line = f"M{x:.1f} {y:.1f}L{at:.1f} {up:.1f}"
-        drawn.append(e("path", d=line, stroke="white", stroke_width=size / 4, **pen))
-        drawn.append(e("path", d=line, stroke=INK, stroke_width=size / 10, **pen))
+        drawn.append(element("path", d=line, stroke="white", stroke_width=size / 4, **pen))
+        drawn.append(element("path", d=line, stroke=INK, stroke_width=size / 10, **pen))
     for number, x, y in marks:
-        drawn.append(e("circle", cx=x, cy=y, r=size / 4.2, fill=INK, stroke="white"))
+        drawn.append(element("circle", cx=x, cy=y, r=size / 4.2, fill=INK, stroke="white"))
     for (number, *_), (at, up) in zip(marks, labels):
         drawn.append(
-            e("circle", cx=at, cy=up, r=0.85 * size, fill=INK, stroke="white", stroke_width=2)
+            element("circle", cx=at, cy=up, r=0.85 * size, fill=INK, stroke="white", stroke_width=2)
         )
         drawn.append(
-            e(
+            element(
                 "text",
                 number,
                 x=at,
@@ -261,10 +265,10 @@ def ringed(view, uri, x, y, alt):
     rows, columns = view.depth.shape
     size = columns / 20.0
     rings = [
-        e("circle", cx=x, cy=y, r=size, fill="none", stroke=colour, stroke_width=size / thin)
+        element("circle", cx=x, cy=y, r=size, fill="none", stroke=colour, stroke_width=size / thin)
         for colour, thin in (("white", 3.2), (INK, 8.0))
     ]
-    image = e("image", href=uri, x=0, y=0, width=columns, height=rows)
+    image = element("image", href=uri, x=0, y=0, width=columns, height=rows)
     return _svg(columns, rows, image, rings, class_="picture", aria_label=alt)
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..poses import program_name
+from ..job.poses import program_name
 
 MOST_FACES = 12  # named one by one
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import core
-from ..poses import program_name
-from . import charts, facts, judged
-from .converged import convergence_part
+from ..engine import core
+from ..job.poses import program_name
+from . import charts, facts, verdict_section
+from .convergence_section import convergence_part
 from .event_messages import body, kind_text, message
 from .layout import section, table
-from .markup import e
+from .markup import element
 
 MOST_EVENTS = 500  # rows of the full table
 MOST_PAIRS = 20  # of bodies, the nearest ones
@@ -79,15 +79,20 @@ def head(content, words, scale):
         (words.seconds(summary.get("process_time_s")), words("of robot time")),
         (words.whole(len(content.result.events)), words("events on the way")),
     ]
-    return e(
+    return element(
         "header",
-        e("p", words("Belt grinding report"), class_="kind"),
-        e("h1", content.title),
-        e("div", e("strong", text), e("p", " ".join(said)), class_=f"verdict {state}"),
-        [e("p", note, class_="note") for note in content.notes],
-        e(
+        element("p", words("Belt grinding report"), class_="kind"),
+        element("h1", content.title),
+        element(
+            "div", element("strong", text), element("p", " ".join(said)), class_=f"verdict {state}"
+        ),
+        [element("p", note, class_="note") for note in content.notes],
+        element(
             "div",
-            [e("div", e("b", value), e("span", label), class_="tile") for value, label in tiles],
+            [
+                element("div", element("b", value), element("span", label), class_="tile")
+                for value, label in tiles
+            ],
             class_="tiles",
         ),
     )
@@ -109,7 +114,7 @@ def spot(found, verdict, words):
         text = words("{mm} mm, {beyond} too high", mm=value, beyond=beyond)
     else:
         text = words("{mm} mm, {beyond} too deep", mm=value, beyond=beyond)
-    text += f"; Face{found['face']}, ({judged.place(found['point'], words)}) mm"
+    text += f"; Face{found['face']}, ({verdict_section.place(found['point'], words)}) mm"
     if "cluster" in found:
         text += f"; {words.number(found['cluster']['area_mm2'], 1)} mm²"
         motions = found["cluster"]["motions"][:1]
@@ -128,13 +133,13 @@ def tolerance(content, words, scale):
     verdict = content.verdict
     tables = _by_face(content, words, scale)
     if verdict is not None:
-        zones, faces = judged.zones(verdict, words), judged.faces(verdict, words)
-        tables = [zones, e("h3", words("By face")) if zones else None, faces]
+        zones, faces = verdict_section.zones(verdict, words), verdict_section.faces(verdict, words)
+        tables = [zones, element("h3", words("By face")) if zones else None, faces]
     return section(
         words("Tolerance"),
         *tables,
-        e("figure", chart, e("figcaption", caption), class_="wide") if chart else None,
-        judged.clusters(verdict, words) if verdict is not None else None,
+        element("figure", chart, element("figcaption", caption), class_="wide") if chart else None,
+        verdict_section.clusters(verdict, words) if verdict is not None else None,
     )
 
 
@@ -152,7 +157,9 @@ def _by_face(content, words, scale):
             words.percent(one["below"]),
             words.number(one["max"], 3, True),
             words.number(one["min"], 3, True),
-            judged.mark("pass" if one["in"] == 1.0 and not one["missed"] else "fail", words),
+            verdict_section.mark(
+                "pass" if one["in"] == 1.0 and not one["missed"] else "fail", words
+            ),
         )
         for one in found
     ]
@@ -205,7 +212,7 @@ def events(content, words):
     found = content.result.events
     if not found:
         text = words("Nothing out of the ordinary happens on the way.")
-        return section(words("Events"), e("p", text), _clearances(content, words))
+        return section(words("Events"), element("p", text), _clearances(content, words))
     counts = Counter(event["kind"] for event in found)
     first = {}
     for event in found:
@@ -213,7 +220,7 @@ def events(content, words):
     order = sorted(counts, key=lambda kind: (_rank(first[kind]), -counts[kind], kind))
     rows = [
         (
-            [_severity(first[kind], words), e("b", words(kind_text(kind)))],
+            [_severity(first[kind], words), element("b", words(kind_text(kind)))],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
             [_begun(message(first[kind], words)), _advice(first[kind], words)],
@@ -247,7 +254,7 @@ def _clearances(content, words):
         (words("Least distance, mm"), "number"),
         (words("Where"), ""),
     ]
-    return [e("h3", words("Clearances")), table(heads, rows)]
+    return [element("h3", words("Clearances")), table(heads, rows)]
 
 
 def _begun(text):
@@ -265,11 +272,11 @@ def _severity(event, words):
     if severity not in SEVERITIES:
         return None
     text = {"error": words("error"), "warning": words("warning"), "info": words("note")}[severity]
-    return [e("span", text, class_=f"severity {severity}"), " "]
+    return [element("span", text, class_=f"severity {severity}"), " "]
 
 
 def _advice(event, words):
-    return e("p", words(event["advice"]), class_="advice") if event.get("advice") else None
+    return element("p", words(event["advice"]), class_="advice") if event.get("advice") else None
 
 
 def where(event, job, words):
@@ -313,7 +320,7 @@ def all_events(content, words):
     return section(
         words("All events"),
         table(heads, rows, "list events"),
-        e("p", note) if note else None,
+        element("p", note) if note else None,
         class_="all",
     )
 
@@ -328,7 +335,7 @@ def trust(content, words):
     result = content.result
     rows = [
         (
-            e("b", words.whole(count), class_="bad" if count else "good"),
+            element("b", words.whole(count), class_="bad" if count else "good"),
             what,
             meaning if count or count is None else "",
         )
@@ -341,9 +348,13 @@ def trust(content, words):
     warnings += content.verdict["notes"] if content.verdict is not None else []
     return section(
         words("How sure is that?"),
-        e("p", words("Everything that weakens the result is counted here, also where it is zero.")),
+        element(
+            "p", words("Everything that weakens the result is counted here, also where it is zero.")
+        ),
         table(heads, rows, "list doubts"),
-        e("ul", [e("li", text) for text in warnings], class_="warnings") if warnings else None,
+        element("ul", [element("li", text) for text in warnings], class_="warnings")
+        if warnings
+        else None,
         _uncertainty(result.summary, words),
         _convergence(content.convergence, words),
     )
@@ -354,7 +365,7 @@ def _uncertainty(summary, words):
         text = words(
             "How far the true deviation may differ is not known: the law was not calibrated."
         )
-        return e("p", text, class_="unknown")
+        return element("p", text, class_="unknown")
     sd = summary["deviation_sd_mm"]
     text = words(
         "By the calibration's scatter the deviation has a standard deviation of {mean} mm on average; "
@@ -364,12 +375,12 @@ def _uncertainty(summary, words):
         p95=words.number(sd["p95"]),
         share=words.percent(summary["expected_in_tolerance_area_share"]),
     )
-    return e("p", text)
+    return element("p", text)
 
 
 def _convergence(convergence, words):
-    head = e("h3", words("Are the settings fine enough?"))
+    head = element("h3", words("Are the settings fine enough?"))
     if convergence is None:
         text = words("This was not checked.")
-        return [head, e("p", text, class_="unknown")]
+        return [head, element("p", text, class_="unknown")]
     return [head, convergence_part(convergence, words)]

@@ -4,7 +4,8 @@ import json
 import math
 from functools import lru_cache
 
-from .. import InputError, resources
+from ..base.resources import resources
+from ..engine import InputError
 
 LANGUAGES = ("en", "de")
 POINTS = {"en": ".", "de": ","}

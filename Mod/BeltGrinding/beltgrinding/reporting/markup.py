@@ -10,7 +10,7 @@ class Markup(str):
     """Text that is markup already."""
 
 
-def e(tag, *children, **attributes):
+def element(tag, *children, **attributes):
     """An element. Children: text (escaped), ``Markup``, None (left out), or lists of them.
 
     An underscore at an attribute's end is dropped (``class_``), others become hyphens; one that is

@@ -1,9 +1,9 @@
 """A report's page, put together from its sections."""
 
-from .. import resources
-from . import charts, facts, findings, repeat
+from ..base.resources import resources
+from . import charts, facts, findings, reproduction
 from .layout import facts as rows, section
-from .markup import Markup, e
+from .markup import Markup, element
 
 
 def document(content, words, scale, spots, drawn):
@@ -18,19 +18,19 @@ def document(content, words, scale, spots, drawn):
         _process(content, words),
         findings.trust(content, words),
         _what(content, words),
-        repeat.repeat(content, words),
+        reproduction.repeat(content, words),
         findings.all_events(content, words),
     ]
-    html = e(
+    html = element(
         "html",
-        e(
+        element(
             "head",
-            e("meta", charset="utf-8"),
-            e("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            e("title", title),
-            e("style", Markup(style)),
+            element("meta", charset="utf-8"),
+            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            element("title", title),
+            element("style", Markup(style)),
         ),
-        e("body", e("main", body)),
+        element("body", element("main", body)),
         lang=words.code,
     )
     return "<!DOCTYPE html>\n" + html + "\n"
@@ -42,10 +42,10 @@ def _pictures(content, words, scale, spots, drawn):
     for key, name in names.items():
         shot = drawn[key]
         shots.append(
-            e(
+            element(
                 "figure",
                 charts.marked(shot.view, shot.uri, shot.marks, name),
-                e("figcaption", e("b", name)),
+                element("figcaption", element("b", name)),
                 class_="whole",
             )
         )
@@ -53,8 +53,10 @@ def _pictures(content, words, scale, spots, drawn):
     for spot, shot in zip(spots, drawn["close"]):
         name = words("Spot {number}", number=spot["number"])
         picture = charts.ringed(shot.view, shot.uri, *shot.marks[0][1:], name)
-        text = e("figcaption", e("b", name), ": ", findings.spot(spot, content.verdict, words))
-        close.append(e("figure", picture, text))
+        text = element(
+            "figcaption", element("b", name), ": ", findings.spot(spot, content.verdict, words)
+        )
+        close.append(element("figure", picture, text))
     intro = words(
         "Grey is the part as it is. On the ground faces the colour says how far the surface will lie "
         "from the design after grinding."
@@ -65,18 +67,18 @@ def _pictures(content, words, scale, spots, drawn):
     )
     return section(
         words("Pictures"),
-        e("p", intro, " " + own if content.result.job["inspection"].get("zones") else None),
+        element("p", intro, " " + own if content.result.job["inspection"].get("zones") else None),
         charts.legend(scale, words),
-        e("div", shots, class_="views"),
-        e("h3", words("The worst spots, from near")) if close else None,
-        e("div", close, class_="spots") if close else None,
+        element("div", shots, class_="views"),
+        element("h3", words("The worst spots, from near")) if close else None,
+        element("div", close, class_="spots") if close else None,
     )
 
 
 def _process(content, words):
     chart = charts.series(content.bins, words)
     if chart is None:
-        chart = e("p", words("The result holds no time series."), class_="unknown")
+        chart = element("p", words("The result holds no time series."), class_="unknown")
     return section(words("Process over time"), chart, class_="process")
 
 
@@ -85,20 +87,20 @@ def _what(content, words):
     formula, law = facts.law(job, words)
     return section(
         words("What was simulated"),
-        e(
+        element(
             "div",
-            e(
+            element(
                 "div",
-                e("h3", words("Part and stock")),
+                element("h3", words("Part and stock")),
                 rows(facts.part(content, words)),
             ),
-            e("div", e("h3", words("Process")), rows(facts.process(job, summary, words))),
-            e(
+            element("div", element("h3", words("Process")), rows(facts.process(job, summary, words))),
+            element(
                 "div",
-                e("h3", words("Law of removal")),
-                e("p", e("code", formula), class_="formula"),
+                element("h3", words("Law of removal")),
+                element("p", element("code", formula), class_="formula"),
                 rows(law),
-                e("p", words(
+                element("p", words(
                     "h: height, K: coefficient, k_t: cut left in the belt, V_b: belt speed, "
                     "p: pressure of the wheel on the part, V_w: feed."
                 ), class_="small"),

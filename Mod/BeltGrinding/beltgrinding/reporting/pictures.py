@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import core, picture
+from ..engine import core
+from ..inspection import picture
 from .markup import data_uri
 
 REACH = 2.5  # samples that a spot may lie behind what a picture shows, and still be marked

@@ -2,7 +2,7 @@
 
 import FreeCADGui as Gui
 
-from . import files, measure, paths, results, set_up, tell, verification
+from . import files, measure, paths, report, results, set_up, verification
 
 WORK = (  # in the order of work: toolbar and menu
     set_up.NewJob,
@@ -16,7 +16,7 @@ WORK = (  # in the order of work: toolbar and menu
     verification.Verdict,
     results.Section,
     results.Playback,
-    tell.Report,
+    report.Report,
 )
 MORE = (  # menu only
     paths.FollowPath,
@@ -26,8 +26,8 @@ MORE = (  # menu only
     results.Contact,
     measure.GroundMesh,
     measure.Scan,
-    tell.CheckSettings,
-    tell.Figures,
+    report.CheckSettings,
+    report.Figures,
     paths.ReadAgain,
     files.OpenJob,
     paths.ExportProgram,

@@ -6,8 +6,9 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects import api
-from ..compat import QtGui, translate
-from .base import Command, active_job, expand, transaction
+from ..common.compat import QtGui, translate
+from ..common.transaction import transaction
+from .base import Command, active_job, expand
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -88,6 +89,6 @@ class Calibrate(Command):
     )
 
     def run(self):
-        from ..calibration_panel import CalibrationPanel
+        from ..panels.calibration_panel import CalibrationPanel
 
         Gui.Control.showDialog(CalibrationPanel(active_job()))

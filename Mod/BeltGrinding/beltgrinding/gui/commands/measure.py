@@ -4,9 +4,10 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects import api, deviation, simulation
-from ...objects.job_object import child, children
-from ..compat import translate
-from .base import Command, active_job, transaction
+from ...objects.job_data import child, children
+from ..common.compat import translate
+from ..common.transaction import transaction
+from .base import Command, active_job
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -47,7 +48,7 @@ class Scan(Measured):
     )
 
     def run(self):
-        from ..scan_panel import ScanPanel
+        from ..panels.scan_panel import ScanPanel
 
         job = active_job()
         job.Document.openTransaction(translate("BeltGrinding", "Compare a scan"))

@@ -5,20 +5,16 @@ from pathlib import Path
 import FreeCAD
 import FreeCADGui as Gui
 
-from ... import InputError
+from ...engine import InputError
 from ...objects import api, freecad_path, robot_path
 from ...objects.proxy import type_of
-from ...programs import file_pattern
-from ..compat import QtGui, translate
-from ..panel import edit
-from .base import Command, active_job, transaction
+from ..common.compat import QtGui, translate
+from ..common.file_filters import programs_filter
+from ..common.transaction import transaction
+from ..panels.panel import edit
+from .base import Command, active_job
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
-
-
-def programs_filter():
-    """What a file dialog for robot programs offers."""
-    return translate("BeltGrinding", "Robot programs") + f" ({file_pattern()})"
 
 
 class ImportProgram(Command):

@@ -4,10 +4,11 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects import api, deviation, simulation
-from ...objects.job_object import child
-from ..compat import translate
-from ..panel import edit
-from .base import Command, active_job, transaction
+from ...objects.job_data import child
+from ..common.compat import translate
+from ..common.transaction import transaction
+from ..panels.panel import edit
+from .base import Command, active_job
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -18,7 +19,7 @@ class Simulate(Command):
     TIP = QT_TRANSLATE_NOOP("BeltGrinding_Simulate", "Grinds the job; FreeCAD stays usable")
 
     def run(self):
-        from ..simulation_panel import SimulationPanel
+        from ..panels.simulation_panel import SimulationPanel
 
         Gui.Control.showDialog(SimulationPanel(active_job(), True))
 
@@ -60,7 +61,7 @@ class Section(Command):
         return super().IsActive() and child(active_job(), simulation.Simulation) is not None
 
     def run(self):
-        from ..section_dock import SectionDock
+        from ..docks.section_dock import SectionDock
 
         job = active_job()
         with transaction(job.Document, "Cross-section") as step:
@@ -77,7 +78,7 @@ class Playback(Command):
     )
 
     def run(self):
-        from ..playback import show
+        from ..docks.playback_dock import show
 
         show(active_job())
 
@@ -90,6 +91,6 @@ class Contact(Command):
     )
 
     def run(self):
-        from ..contact_panel import ContactPanel
+        from ..panels.contact_panel import ContactPanel
 
         Gui.Control.showDialog(ContactPanel(active_job()))

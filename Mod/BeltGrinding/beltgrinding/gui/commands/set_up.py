@@ -3,12 +3,13 @@
 import FreeCAD
 import FreeCADGui as Gui
 
-from ... import InputError
+from ...engine import InputError
 from ...objects import api, belt_machine, preferences, stock
-from ...objects.job_object import child
-from ..compat import translate
-from ..panel import edit
-from .base import Command, active_job, expand, transaction
+from ...objects.job_data import child
+from ..common.compat import translate
+from ..common.transaction import transaction
+from ..panels.panel import edit
+from .base import Command, active_job, expand
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -92,7 +93,7 @@ class Cell(Command):
     )
 
     def run(self):
-        from ..cell_panel import CellPanel
+        from ..panels.cell_panel import CellPanel
 
         job = active_job()
         with transaction(job.Document, translate("BeltGrinding", "Cell"), panel=True) as step:

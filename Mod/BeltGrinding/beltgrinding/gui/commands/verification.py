@@ -4,9 +4,10 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects import api, simulation
-from ...objects.job_object import child
-from ..compat import translate
-from .base import Command, active_job, transaction
+from ...objects.job_data import child
+from ..common.compat import translate
+from ..common.transaction import transaction
+from .base import Command, active_job
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -20,7 +21,7 @@ class Zones(Command):
     )
 
     def run(self):
-        from ..zones_panel import ZonesPanel
+        from ..panels.zones_panel import ZonesPanel
 
         job = active_job()
         if not job.Document.HasPendingTransaction:
@@ -40,7 +41,7 @@ class Verdict(Command):
         return super().IsActive() and child(active_job(), simulation.Simulation) is not None
 
     def run(self):
-        from ..verdict_dock import VerdictDock
+        from ..docks.verdict_dock import VerdictDock
 
         job = active_job()
         with transaction(job.Document, translate("BeltGrinding", "Verdict")) as step:

@@ -1,0 +1,21 @@
+"""Where the folders of a release lie, installed or in a checkout."""
+
+from pathlib import Path
+
+
+def resources() -> Path:
+    """The folder Resources, installed or of a checkout."""
+    return _folder("Resources")
+
+
+def documentation() -> Path:
+    """The folder docs, installed or of a checkout."""
+    return _folder("docs")
+
+
+def _folder(name):
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package.parent / name, package.parents[2] / name):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"The folder {name} is missing; install the workbench again.")

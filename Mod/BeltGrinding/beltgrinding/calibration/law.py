@@ -1,0 +1,206 @@
+"""A calibrated law: a job's 'law' from a fit, and what it predicts of further grinds."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..base.files import write_whole
+from ..engine import InputError
+from .model import DEFAULTS, INDEX, NAMES, Model
+from .table import Table, from_columns, read, with_areas
+
+# What a law's 'calibration' carries: ln K and the exponents.
+LAW_NAMES = {
+    "ln_coefficient": "coefficient",
+    "pressure_exponent": "pressure_exponent",
+    "speed_exponent": "speed_exponent",
+    "feed_exponent": "feed_exponent",
+}
+
+CURVES = ("pressure_curve", "speed_curve", "feed_curve")
+WINSOR = 2.5  # scatters from the median, beyond which a residual counts no more
+
+
+def worn(found):
+    return math.isfinite(found["parameters"][INDEX["ln_wear_scale"]])
+
+
+def scatter_of(found, count):
+    """Rms of ln(measured/predicted) of a fit with ``count`` parameters, winsorised."""
+    limit = WINSOR * found["scatter"]
+    residual = np.clip(found["residual"], -limit, limit)
+    return math.sqrt(float(np.square(residual).sum()) / max(len(residual) - count, 1))
+
+
+def law_of(model, found, free, wear_unit):
+    """The 'law' of a job."""
+    x = {name: float(found["parameters"][k]) for name, k in INDEX.items()}
+    wear, kind = {"model": "none"}, model.table.wear_kind
+    unit = wear_unit if kind == "number" else 1.0
+    if worn(found):
+        wear = {
+            "model": "exponential",
+            "variable": "volume" if kind == "volume" else "work",
+            "scale": math.exp(x["ln_wear_scale"]) * unit,
+            "rest": x["wear_rest"],
+        }
+    own = [name for name in free if name in LAW_NAMES]
+    at = [INDEX[name] for name in own]
+    everything = [INDEX[name] for name in free]
+    saturation = x["ln_saturation"]
+    return {
+        "model": "local",
+        "coefficient_mm2_per_N": math.exp(x["ln_coefficient"]),
+        "pressure_threshold_MPa": x["pressure_threshold"],
+        "pressure_exponent": x["pressure_exponent"],
+        "reference_pressure_MPa": model.references["pressure"],
+        "saturation_pressure_MPa": math.exp(saturation) if math.isfinite(saturation) else 0.0,
+        "speed_exponent": x["speed_exponent"],
+        "reference_speed_m_s": model.references["speed"] / 1000.0,
+        "feed_exponent": x["feed_exponent"],
+        "reference_feed_mm_s": model.references["feed"],
+        **{key: [] for key in CURVES},  # a curve would replace what is found here
+        "wear": wear,
+        "calibration": {
+            "parameters": [LAW_NAMES[name] for name in own],
+            "covariance": found["covariance"][np.ix_(at, at)].tolist(),
+            "scatter": scatter_of(found, len(free)),
+            "fit": {
+                "parameters": list(free),
+                "covariance": found["covariance"][np.ix_(everything, everything)].tolist(),
+                "grinds": len(model.table.measured),
+                "time_exponent": x["time_exponent"],
+                "reference_time_s": model.references["time"],
+                "area_exponent": x["area_exponent"],
+                "reference_area_mm2": model.references["area"],
+                "areas_mm2": model.areas.tolist(),
+                "area_shares": [float(share) for share in found["shares"]],
+                "wear_kind": model.table.wear_kind,
+                "wear_unit_J": unit,
+                "mean_wear": unit * float(model.table.wear.mean()),
+            },
+        },
+    }
+
+
+def predict(law, rows, wheel_diameter_mm=None):
+    """What a law says of grinds. ``rows``: Table, path, dict of columns or list of dicts, with the
+    columns of a calibration (the removal is not needed; without wear, the calibration's mean;
+    without areas, those of the calibration). Returns dict(predicted (n,) mm3, or mm
+    where the table gives depths; deviation (n,): standard deviation of a new measurement in the
+    same unit; ln_deviation (n,): of its logarithm). Raises InputError.
+    """
+    if isinstance(rows, list):
+        keys = {key: None for row in rows for key in row}
+        rows = {key: [row.get(key, "") for row in rows] for key in keys}
+    if isinstance(rows, dict):
+        rows = from_columns(rows, wheel_diameter_mm, False)
+    elif not isinstance(rows, Table):
+        rows = read(rows, wheel_diameter_mm, False)
+    rows = rows._replace(measured=np.ones(len(rows.force)))
+    fitted = law.get("calibration", {}).get("fit", {})
+    parameters, references, unit = _of_law(law, fitted)
+    rows = _with_wear(rows, law, fitted, unit)
+    if not fitted:
+        rows = with_areas(rows)
+    model = Model(rows, references, fitted.get("areas_mm2"))
+    shares = fitted.get("area_shares") or [1.0 / len(model.areas)] * len(model.areas)
+    mean, gradient, variance = model.predict(parameters, shares)
+    if fitted:
+        at = [INDEX[name] for name in fitted["parameters"]]
+        slopes = np.nan_to_num(gradient[:, at])
+        variance = variance + np.einsum(
+            "ni,ij,nj->n", slopes, np.asarray(fitted["covariance"]), slopes
+        )
+    deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
+    value = np.exp(mean)
+    return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
+
+
+def compare(law, path, wheel_diameter_mm=None):
+    """Predicts the grinds of a CSV, and lays them beside the removal where the file has it. Returns
+    dict(lines, predicted, deviation, measured: (n,), nan where not known; figures: dict; notes).
+    Raises InputError.
+    """
+    table = read(path, wheel_diameter_mm, False)
+    told = predict(law, table)
+    try:
+        measured = read(path, wheel_diameter_mm).measured
+    except InputError:  # a file of grinds to come
+        measured = np.full(len(table.force), math.nan)
+    figures = {
+        "grinds": len(table.force),
+        "deviation_median": float(np.median(told["ln_deviation"])),
+    }
+    if np.isfinite(measured).all():
+        errors = np.abs(told["predicted"] / measured - 1.0)
+        outside = np.abs(np.log(measured / told["predicted"])) > 1.96 * told["ln_deviation"]
+        figures["error_median"] = float(np.median(errors))
+        figures["error_p90"] = float(np.quantile(errors, 0.9))
+        figures["inside_95_interval"] = float(1.0 - outside.mean())
+    return {
+        "lines": table.lines,
+        "predicted": told["predicted"],
+        "deviation": told["deviation"],
+        "measured": measured,
+        "figures": figures,
+        "notes": table.notes,
+    }
+
+
+def write_predictions(found, path):
+    """Writes what ``compare`` gave as a CSV. Raises InputError."""
+    lines = ["line,predicted,standard_deviation,measured"]
+    for row in zip(*(found[key] for key in ("lines", "predicted", "deviation", "measured"))):
+        known = "" if math.isnan(row[3]) else f"{row[3]:.6g}"
+        lines.append(f"{row[0]},{row[1]:.6g},{row[2]:.6g},{known}")
+    try:
+        write_whole(Path(path), ("\n".join(lines) + "\n").encode())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def _with_wear(rows, law, fitted, unit):
+    """The rows with the belt's wear as the law counts it; the calibration's mean if not known."""
+    if law.get("wear", {}).get("model", "none") == "none":
+        return rows
+    kind = fitted.get("wear_kind", "")
+    if not rows.wear_kind:
+        return rows._replace(wear=np.full(len(rows.force), fitted.get("mean_wear", 0.0)))
+    counted = "volume" if law["wear"].get("variable") == "volume" else "work"
+    if rows.wear_kind != (kind or counted):
+        raise InputError(
+            f"{rows.path}: the law counts the belt's wear as {kind or counted}, the table as "
+            f"{rows.wear_kind}"
+        )
+    return rows._replace(wear=rows.wear * unit)
+
+
+def _of_law(law, fitted):
+    """(parameters, references, joules of the wear's unit) of a law."""
+    local = law.get("model", "local") == "local"
+    curves = [key for key in CURVES if law.get(key)]
+    wear = law.get("wear", {})
+    if (local and curves) or wear.get("model", "none") not in ("none", "exponential"):
+        raise InputError("law: curves and other wear than 'exponential' are not predicted here")
+    x = dict(DEFAULTS)
+    x["ln_coefficient"] = math.log(law["coefficient_mm2_per_N"])
+    for name in ("pressure_exponent", "speed_exponent", "feed_exponent"):
+        x[name] = law.get(name, x[name]) if local else x[name]
+    if local:
+        x["pressure_threshold"] = law.get("pressure_threshold_MPa", 0.0)
+        if law.get("saturation_pressure_MPa", 0.0) > 0:
+            x["ln_saturation"] = math.log(law["saturation_pressure_MPa"])
+    if wear.get("model") == "exponential":
+        x["ln_wear_scale"], x["wear_rest"] = math.log(wear["scale"]), wear.get("rest", 0.0)
+    x["time_exponent"] = fitted.get("time_exponent", 1.0)
+    x["area_exponent"] = fitted.get("area_exponent", 0.0)
+    references = {
+        "pressure": law.get("reference_pressure_MPa", 0.1),
+        "speed": 1000.0 * law.get("reference_speed_m_s", 20.0),
+        "feed": law.get("reference_feed_mm_s", 50.0),
+        "time": fitted.get("reference_time_s", 1.0),
+        "area": fitted.get("reference_area_mm2", 1.0),
+    }
+    return np.array([x[name] for name in NAMES]), references, fitted.get("wear_unit_J", 1.0)

@@ -1,0 +1,359 @@
+"""The table of measured grinds that a calibration reads: columns by name, units in the names."""
+
+import csv
+import difflib
+import math
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..contact import single_contact as contacts
+from ..engine import InputError
+
+NOMINAL_DIAMETER = 200.0  # mm, of a drive wheel whose diameter is not known
+NOMINAL_PRESSURE = 0.1  # MPa, mean of the grinds whose contact area nobody knows
+MOST_BYTES = 50_000_000
+UNKNOWN = ("", "nan", "na", "n/a", "none", "null", "-", "?")
+# Canonical column: other names that it goes by, in small letters.
+COLUMNS = {
+    "force_N": ("avg_force_n", "mean_force_n", "normal_force_n", "force"),
+    "belt_speed_m_s": ("avg_belt_speed_m_s", "speed_m_s", "belt_speed", "vb_m_s"),
+    "rpm": ("avg_rpm", "wheel_rpm", "drive_rpm", "speed_rpm"),
+    "time_s": ("grind_time_s", "duration_s", "contact_time_s"),
+    "feed_mm_s": ("feed_rate_mm_s", "feed_speed_mm_s", "feed"),
+    "length_mm": ("pass_length_mm", "ground_length_mm"),
+    "passes": ("number_of_passes", "n_passes"),
+    "contact_width_mm": ("pass_width_mm", "width_mm"),
+    "area_mm2": ("grind_area_mm2", "contact_area_mm2", "area"),
+    "work_J": ("belt_work_j", "initial_work_j"),
+    "removed_so_far_mm3": ("belt_removed_mm3", "initial_removed_mm3"),
+    "wear": ("initial_wear", "wear_number", "belt_wear"),
+    "removed_volume_mm3": ("removed_mm3", "volume_mm3", "removed_volume"),
+    "depth_mm": ("removed_depth_mm", "depth"),
+    "wheel_radius_mm": (),
+    "wheel_width_mm": (),
+    "rim_thickness_mm": (),
+    "youngs_modulus_MPa": ("modulus_mpa",),
+    "part_radius_mm": ("workpiece_radius_mm",),
+}
+CONVERTED = {  # other units: canonical column, factor
+    "depth_um": ("depth_mm", 1e-3),
+    "removed_depth_um": ("depth_mm", 1e-3),
+    "feed_mm_min": ("feed_mm_s", 1 / 60),
+    "feed_m_min": ("feed_mm_s", 1000 / 60),
+    "feed_m_s": ("feed_mm_s", 1000.0),
+    "belt_speed_m_min": ("belt_speed_m_s", 1 / 60),
+    "belt_speed_mm_s": ("belt_speed_m_s", 1e-3),
+    "time_min": ("time_s", 60.0),
+    "area_cm2": ("area_mm2", 100.0),
+    "removed_volume_cm3": ("removed_volume_mm3", 1000.0),
+    "work_kj": ("work_J", 1000.0),
+}
+MAY_BE_ZERO = ("work_J", "removed_so_far_mm3", "wear", "feed_mm_s")
+MAY_BE_UNKNOWN = (
+    "area_mm2",
+    "time_s",
+    "feed_mm_s",
+    "length_mm",
+    "contact_width_mm",
+    "wheel_radius_mm",
+    "wheel_width_mm",
+    "rim_thickness_mm",
+    "youngs_modulus_MPa",
+    "part_radius_mm",
+)
+WEAR = {"work_J": "work", "removed_so_far_mm3": "volume", "wear": "number"}
+WHEEL = ("wheel_radius_mm", "wheel_width_mm", "rim_thickness_mm", "youngs_modulus_MPa")
+
+
+class Table(NamedTuple):
+    """Measured grinds, all (n,) float. Unknown areas are nan; what is not in the file is None."""
+
+    path: str
+    lines: np.ndarray  # of the file, from 1
+    force: np.ndarray  # N
+    speed: np.ndarray  # m/s
+    time: np.ndarray  # s of contact: of the grind, or ground length over feed
+    feed: np.ndarray  # mm/s, 0 where the grind is stationary
+    area: np.ndarray  # mm2
+    wear: np.ndarray  # zeros if not in the file
+    wear_kind: str  # "", "work", "volume" or "number"
+    spread: np.ndarray  # mm2: 1 for volumes, nan for depths over the contact area
+    measured: np.ndarray  # mm3 or mm; nan where only a prediction is asked for
+    notes: list  # texts for the user
+
+    def take(self, index):
+        """The rows of ``index``, a mask or an array of places."""
+        arrays = {
+            key: value[index] for key, value in self._asdict().items() if hasattr(value, "dtype")
+        }
+        return self._replace(**arrays)
+
+
+def read(path, wheel_diameter_mm=None, measured=True):
+    """Table of a CSV file. ``measured``: whether the measured removal must be there. Raises
+    InputError with file, line, column and what to do.
+    """
+    header, rows, lines = _split(Path(path))
+    return from_columns(
+        {name: [row[i] for row in rows] for i, name in enumerate(header)},
+        wheel_diameter_mm,
+        measured,
+        str(path),
+        lines,
+    )
+
+
+def _split(path):
+    """(names, rows of texts, their line numbers)."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"{path}: this is too large for a table of measured grinds")
+        content = path.read_bytes()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    text = content.decode(encoding, errors="replace").replace("\0", "\ufffd")
+    numbered = [
+        (i, line.strip()) for i, line in enumerate(re.split("\r\n|\r|\n", text), 1) if line.strip()
+    ]
+    header = None
+    rows, lines = [], []
+    for number, line in numbered:
+        if header is None:
+            candidate = line.lstrip("#").strip()
+            separator = max(";\t,", key=candidate.count)
+            names = [name.strip().strip('"') for name in candidate.split(separator)]
+            if sum(_canonical(name) is not None for name in names) >= 2:
+                header = names
+            elif not line.startswith("#"):
+                raise InputError(
+                    f"{path}: line {number}: this is no header; name the columns in the first "
+                    "line, such as force_N, belt_speed_m_s, time_s, area_mm2, removed_volume_mm3"
+                )
+            continue
+        if line.startswith("#"):
+            continue
+        try:
+            cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+        except (csv.Error, StopIteration) as error:
+            raise InputError(f"{path}: line {number}: {error}") from None
+        while len(cells) > len(header) and not cells[-1]:
+            cells.pop()
+        if len(cells) != len(header):
+            hint = ""
+            if separator == "," and len(cells) > len(header):
+                hint = "; with a decimal comma, separate the columns by ';'"
+            raise InputError(
+                f"{path}: line {number}: {len(cells)} columns where the header has "
+                f"{len(header)}{hint}"
+            )
+        rows.append(cells)
+        lines.append(number)
+    if header is None or not rows:
+        what = "a header" if header is None else "a row of measured grinds"
+        raise InputError(f"{path}: there is not even {what} in it")
+    return header, rows, lines
+
+
+def _canonical(name):
+    """(canonical name of a column, factor to its unit), or None."""
+    small = re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower().replace("\u00b5", "u")).strip("_")
+    for canonical, aliases in COLUMNS.items():
+        if small == canonical.lower() or small in aliases:
+            return canonical, 1.0
+    return CONVERTED.get(small)
+
+
+def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", lines=None):
+    """Table of columns by name (lists of numbers or texts). Raises InputError."""
+    notes, raw, given, factor = [], {}, {}, {}
+    for name, values in columns.items():
+        known = _canonical(name)
+        canonical = known[0] if known else None
+        if canonical is None:
+            near = difflib.get_close_matches(name.lower(), [c.lower() for c in COLUMNS], 1)
+            hint = f" (did you mean '{near[0]}'?)" if near else ""
+            notes.append(f"the column '{name[:40]}' is not known and left out{hint}")
+        elif canonical in raw:
+            raise InputError(f"{path}: '{given[canonical]}' and '{name}' are the same column")
+        else:
+            raw[canonical], given[canonical], factor[canonical] = list(values), name, known[1]
+    count = len(next(iter(raw.values()), ()))
+    if count == 0:
+        raise InputError(f"{path}: there is no grind in it")
+    for name, values in raw.items():
+        if len(values) != count:
+            raise InputError(f"{path}: '{given[name]}' has {len(values)} values, others {count}")
+    lines = np.arange(1, count + 1) if lines is None else np.asarray(lines)
+    places = [f"{path}: line {line}" for line in lines]
+    if not measured:
+        for name in ("removed_volume_mm3", "depth_mm"):
+            raw[name] = [1.0 if _unknown(cell) else cell for cell in raw.get(name, [])] or None
+        raw = {name: cells for name, cells in raw.items() if cells is not None}
+    c = {
+        name: np.array([_number(cell, at, given[name], name) for cell, at in zip(cells, places)])
+        * factor[name]
+        for name, cells in raw.items()
+    }
+    _require(c, path, ("force_N",), "the normal force")
+    speed = _speed(c, path, wheel_diameter_mm, notes)
+    time, feed, spread, figure = _exposure(c, path, lines, measured)
+    area = _area(c, notes)
+    kinds = [name for name in WEAR if name in c]
+    if len(kinds) > 1:
+        notes.append(f"the belt's wear is taken from '{kinds[0]}', not from {', '.join(kinds[1:])}")
+    if measured and "removed_volume_mm3" in c and "depth_mm" in c:
+        notes.append("the removal is taken from 'removed_volume_mm3', not from 'depth_mm'")
+    table = Table(
+        path=path,
+        lines=lines,
+        force=c["force_N"],
+        speed=speed,
+        time=time,
+        feed=feed,
+        area=area,
+        wear=c[kinds[0]] if kinds else np.zeros(count),
+        wear_kind=WEAR[kinds[0]] if kinds else "",
+        spread=spread,
+        measured=figure,
+        notes=notes,
+    )
+    return with_areas(table) if measured else table
+
+
+def _unknown(cell):
+    return str(cell).strip().lower() in UNKNOWN
+
+
+def _number(cell, place, shown, name):
+    """A cell as a number; nan where it may be unknown."""
+    if _unknown(cell):
+        if name in MAY_BE_UNKNOWN:
+            return math.nan
+        raise InputError(f"{place}: column '{shown}' is empty; fill it in, or take the line out")
+    text = str(cell).strip()
+    if isinstance(cell, str) and "," in text:
+        # A decimal comma; with points as well, the last of the two divides the decimals.
+        swapped = text.rfind(",") > text.rfind(".")
+        text = text.replace(".", "").replace(",", ".") if swapped else text.replace(",", "")
+    try:
+        value = float(text)
+    except ValueError:
+        raise InputError(
+            f"{place}: column '{shown}': '{text[:40]}' is no number; write it without a unit"
+        ) from None
+    if not math.isfinite(value) or value < 0 or (value == 0 and name not in MAY_BE_ZERO):
+        least = "zero or positive" if name in MAY_BE_ZERO else "positive"
+        raise InputError(f"{place}: column '{shown}' is {text[:40]}; it must be {least}")
+    if not 1e-12 < max(value, 1e-11) < 1e15:
+        raise InputError(f"{place}: column '{shown}' is {text[:40]}; look at its unit")
+    return value
+
+
+def _require(c, path, names, what):
+    if not any(name in c for name in names):
+        raise InputError(f"{path}: {what} is missing; add a column {' or '.join(names)}")
+
+
+def _speed(c, path, diameter, notes):
+    """Belt speed, m/s."""
+    _require(c, path, ("belt_speed_m_s", "rpm"), "the belt's speed")
+    if "belt_speed_m_s" in c:
+        return c["belt_speed_m_s"]
+    if diameter is None:
+        diameter = NOMINAL_DIAMETER
+        notes.append(
+            f"only the rotation speed is known: the coefficient and the reference speed refer to a "
+            f"nominal drive wheel of {diameter:g} mm diameter; give --wheel-diameter if you know it"
+        )
+    elif not (math.isfinite(diameter) and diameter > 0):
+        raise InputError("the drive wheel's diameter must be positive")
+    return math.pi * diameter / 1000.0 * c["rpm"] / 60.0
+
+
+def _exposure(c, path, lines, needed):
+    """(time s, feed mm/s or 0, spread mm2, measured figure)."""
+    _require(c, path, ("time_s", "feed_mm_s"), "the time of grinding, or the feed of the pass,")
+    if needed:
+        _require(c, path, ("removed_volume_mm3", "depth_mm"), "the measured removal")
+    count = len(c["force_N"])
+    unknown = np.full(count, math.nan)
+    feed = np.nan_to_num(c.get("feed_mm_s", np.zeros(count)))
+    moving = feed > 0
+    length, width = c.get("length_mm", unknown), c.get("contact_width_mm", unknown)
+    time = np.where(moving & ~np.isnan(length), length / np.maximum(feed, 1e-12), math.nan)
+    time = np.where(np.isnan(time), c.get("time_s", unknown), time)
+    # Without the removal, what is asked for is the volume, or where it has no sense the depth.
+    volume = "removed_volume_mm3" in c or not ("depth_mm" in c or np.isnan(time).any())
+    figure = c.get("removed_volume_mm3", c.get("depth_mm", np.ones(count)))
+    spread = np.ones(count)
+    if not volume:
+        spread = np.where(moving, width, math.nan)
+        time = np.where(moving, 1.0 / np.maximum(feed, 1e-12), time)  # per mm of the pass
+        _complete(width, moving, path, lines, "contact_width_mm, over which a pass removes it,")
+    _complete(time, ~moving, path, lines, "time_s of a grind without feed")
+    _complete(time, moving, path, lines, "length_mm, on which the volume of a pass depends,")
+    return time * c.get("passes", np.ones(count)), feed, spread, figure
+
+
+def _complete(values, where, path, lines, what):
+    bad = np.flatnonzero(where & np.isnan(values))
+    if len(bad):
+        raise InputError(f"{path}: line {lines[bad[0]]}: {what} is missing; add it")
+
+
+def _area(c, notes):
+    """Contact area in mm2, nan where it is not known."""
+    force = c["force_N"]
+    area = c["area_mm2"].copy() if "area_mm2" in c else np.full(len(force), math.nan)
+    if all(name in c for name in WHEEL):
+        solved = {}
+        for i in np.flatnonzero(np.isnan(area)):
+            radius = c["part_radius_mm"][i] if "part_radius_mm" in c else math.nan
+            key = (float(force[i]), float(radius), *(float(c[name][i]) for name in WHEEL))
+            if not np.isnan(key[2:]).any():
+                if key not in solved:
+                    solved[key] = _solve(key)
+                area[i] = solved[key]
+        if solved:
+            notes.append(f"{len(solved)} contact areas are computed from the wheel and the part")
+    elif any(name in c for name in WHEEL):
+        missing = [name for name in WHEEL if name not in c]
+        notes.append(f"the wheel gives no contact area without {', '.join(missing)}")
+    return area
+
+
+def with_areas(table):
+    """The table with a nominal contact area if none is known; a note says what becomes of areas."""
+    unknown = np.isnan(table.area)
+    if unknown.all():
+        nominal = float(np.exp(np.log(table.force).mean())) / NOMINAL_PRESSURE
+        table.notes.append(
+            f"no contact area is known: {nominal:.3g} mm² is taken for all, so that the "
+            "coefficient holds for that area only; add area_mm2, or the wheel's and part's geometry"
+        )
+        return table._replace(area=np.full(len(unknown), nominal))
+    if unknown.any():
+        table.notes.append(
+            f"{int(unknown.sum())} of {len(unknown)} contact areas are unknown; each is taken as "
+            "one of the known ones, by its probability (expectation maximisation)"
+        )
+    return table
+
+
+def _solve(key):
+    """Contact area of a wheel on a cylinder across its travel (nan: a plane), mm2."""
+    force, part, radius, width, rim, modulus = key
+    workpiece = {"shape": "plane"} if math.isnan(part) else {"shape": "cylinder", "radius_mm": part}
+    wheel = {
+        "outer_radius_mm": radius,
+        "width_mm": width,
+        "rim_thickness_mm": rim,
+        "youngs_modulus_MPa": modulus,
+    }
+    given = {"wheel": wheel, "workpiece": workpiece, "force_N": force}
+    return float(contacts.run(contacts.validate(given))["contact_area"])

@@ -1,0 +1,173 @@
+"""Bodies of the cell, and whether they run into each other on the way.
+
+A job's ``cell.bodies`` says which there are (job.schema.json); the part and the wheel are always among
+them. The part is its whole shape with its stock; the wheel is what lies behind the rim.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..base import frames
+from ..engine import InputError, core
+from ..job.bodies import PART, STOCK, WHEEL
+from ..job.poses import program_name
+
+DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
+LARGE = 1e-4  # of its size: the chord error of what is larger
+LONGEST = 1e7  # s of a program, some months
+LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
+
+
+def check(job, shape, paths, warnings, context=None):
+    """What ``core.check_collisions`` finds for each core.ToolPath of a validated job. ``shape``: the
+    design's core.Shape; [] if the job does not want it. Raises InputError, Cancelled.
+    """
+    if not job["cell"]["check_collisions"]:
+        return []
+    if not shape.valid:  # OpenCASCADE's mesher may never end on its faults
+        warnings.append("collisions are not checked: the part is not a valid shape; repair it")
+        return []
+    context = context or core.RunContext()
+    found = bodies(job, shape, warnings, context)
+    for body in found:
+        if not np.isfinite(body["mesh"].vertices).all():
+            raise InputError(f"cell: the body '{body['name']}' is too large; check its sizes")
+    clearance = float(job["cell"]["clearance_mm"])
+    results = []
+    for i, path in enumerate(paths):
+        part = context.part(i / len(paths), (i + 1) / len(paths))
+        if not path.duration() < LONGEST:
+            raise InputError(
+                f"{program_name(job, i)}: the program takes {path.duration():.3g} s, too long to be "
+                "checked for collisions; check its poses and feeds"
+            )
+        results.append(core.check_collisions(path, found, clearance, context=part))
+    return results
+
+
+def bodies(job, shape, warnings, context=None):
+    """The bodies of a validated job as ``core.check_collisions`` takes them."""
+    stock = job["stock"]
+    grown = max(0.0, stock["allowance_mm"]) if stock["kind"] == "allowance" else 0.0
+    mesh = _triangulate(shape, context)
+    found = [{"name": PART, "frame": "part", "mesh": mesh, "margin": grown}]
+    if stock["kind"] != "allowance":
+        mesh = read_body(stock, "stock", warnings, context)
+        found.append({"name": STOCK, "frame": "part", "mesh": mesh})
+    disc = wheel_body(job["belt_machine"]["wheel"], job["cell"]["wheel_inset_mm"])
+    if disc is not None:
+        found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
+    for body in job["cell"]["bodies"]:
+        mesh = read_body(body, body["name"], warnings, context)
+        found.append({"name": body["name"], "frame": body["frame"], "mesh": mesh})
+    return found
+
+
+def read_body(body, name, warnings, context=None):
+    """core.TriangleMesh of a job's body or stock, in its frame. Raises InputError."""
+    from ..job.workpiece import MESH_SUFFIXES
+
+    try:
+        placement = frames.from_data(body.get("placement"))
+    except ValueError as error:
+        raise InputError(f"{name}: placement: {error}") from None
+    if "file" in body and Path(body["file"]).suffix.lower() in MESH_SUFFIXES:
+        return core.read_mesh(body["file"], body["unit_mm"], placement)
+    if "brep" in body:
+        shape = core.Shape.from_brep(body["brep"], name)
+    else:
+        shape = core.Shape.read(body["file"])
+    warnings += [f"{name}: {text}" for text in shape.warnings()]
+    mesh = _triangulate(shape, context)
+    points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
+    return core.TriangleMesh(points.astype(np.float32), mesh.triangles)
+
+
+def _triangulate(shape, context):
+    low, high = shape.extents()
+    size = float(np.linalg.norm(np.subtract(high, low)))
+    return core.triangulate(shape, max(DEFLECTION, LARGE * size), context)
+
+
+def wheel_body(wheel, inset):
+    """The wheel within its rim, ``inset`` mm below the belt's surface, as a core.TriangleMesh in the
+    contact frame; None if nothing of it is left. ``wheel``: as in a job.
+    """
+    line = wheel_profile(wheel)
+    line[:, 1] -= inset
+    if line[:, 1].min() <= 0.0:
+        return None
+    ends = [[line[0, 0], 0.0]], [[line[-1, 0], 0.0]]
+    line = np.concatenate([ends[0], line, ends[1]])
+    around = max(LEAST_AROUND, math.ceil(2.0 * math.pi / _chord_angle(line[:, 1].max())))
+    angles = np.linspace(0.0, 2.0 * math.pi, around, endpoint=False)
+    count = len(line)
+    points = np.zeros((around, count, 3))
+    points[..., 0] = np.sin(angles)[:, None] * line[:, 1]
+    points[..., 1] = line[:, 0]
+    points[..., 2] = np.cos(angles)[:, None] * line[:, 1] - wheel["radius_mm"]
+    i, k = np.meshgrid(np.arange(around), np.arange(count - 1), indexing="ij")
+    a, b = i * count + k, (i + 1) % around * count + k
+    # The outermost quads end on the axis: of each, one triangle.
+    quads = [a, b, b + 1], [a, b + 1, a + 1]
+    triangles = np.concatenate(
+        [
+            np.stack(quads[0], axis=-1)[:, 1:].reshape(-1, 3),
+            np.stack(quads[1], axis=-1)[:, :-1].reshape(-1, 3),
+        ]
+    )
+    # All points on the axis at an end are one.
+    triangles = np.where(triangles % count == 0, 0, triangles)
+    triangles = np.where(triangles % count == count - 1, count - 1, triangles)
+    return core.TriangleMesh(points.reshape(-1, 3).astype(np.float32), triangles.astype(np.uint32))
+
+
+def _chord_angle(radius):
+    """The angle of a chord that leaves a circle of ``radius`` by DEFLECTION, or by no more than
+    MOST_AROUND corners of the whole circle let it.
+    """
+    angle = 2.0 * math.acos(max(0.0, 1.0 - DEFLECTION / radius))
+    return max(angle, 2.0 * math.pi / MOST_AROUND)
+
+
+def wheel_profile(wheel):
+    """Points [y, radius] (n, 2) in mm across a job's wheel."""
+    radius, width, crown = wheel["radius_mm"], wheel["width_mm"], wheel["crown_radius_mm"]
+    parts = (
+        math.ceil(2.0 * math.asin(0.5 * width / crown) / _chord_angle(crown)) if crown > 0 else 1
+    )
+    across = np.linspace(-0.5 * width, 0.5 * width, parts + 1)
+    turned = np.array(wheel["profile_mm"], dtype=float).reshape(-1, 2)
+    if len(turned):
+        across = np.union1d(across, turned[:, 0])
+    drop = np.interp(across, turned[:, 0], turned[:, 1]) if len(turned) else np.zeros(len(across))
+    if crown > 0:
+        drop = drop + crown - np.sqrt(np.maximum(crown**2 - across**2, 0.0))
+    return np.stack([across, radius - drop], axis=1)
+
+
+def summary(found, paths):
+    """The least clearance of every pair of bodies, as summary.json has it, the nearest first.
+
+    ``found``: what ``check`` gives for ``paths``.
+    """
+    least, begin = {}, 0.0
+    for program, (result, path) in enumerate(zip(found, paths)):
+        lines = path.lines()
+        for pair in result["pairs"]:
+            key = tuple(pair["bodies"])
+            if key in least and least[key]["distance_mm"] <= pair["distance"]:
+                continue
+            least[key] = {
+                "bodies": list(key),
+                "distance_mm": pair["distance"],
+                "program": program,
+                "pose": pair["pose"],
+                "line": int(lines[pair["pose"]]),
+                "time_s": pair["time"] + begin,
+                "points": [np.asarray(point).tolist() for point in pair["points"]],
+            }
+        begin += path.duration()
+    return sorted(least.values(), key=lambda pair: pair["distance_mm"])

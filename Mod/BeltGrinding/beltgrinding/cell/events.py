@@ -1,0 +1,76 @@
+"""Events of a run: what goes wrong on the way, with stable codes. docs/events.md is their manual.
+
+The kinds stand in the core (src/events/event_kinds.cpp); events.schema.json is the form.
+"""
+
+from ..base import schemas
+from ..engine import core
+
+SEVERITIES = ("error", "warning", "info")  # the worst first
+# What an event of an older result, or one that a caller makes, need not have.
+NOTHING = {
+    "program": 0,
+    "pose": 0,
+    "line": 0,
+    "time": 0.0,
+    "duration": 0.0,
+    "value": 0.0,
+    "limit": None,
+    "unit": "",
+    "point": None,
+    "face": None,
+    "bodies": [],
+    "message": "",
+    "facts": [],
+}
+
+
+def kinds():
+    """{code: dict(severity, unit, meaning, advice)} in the order of the manual."""
+    return {kind.pop("code"): kind for kind in core.event_kinds()}
+
+
+def schema():
+    """The JSON Schema of events.json, as a dict."""
+    return schemas.schema("events")
+
+
+def complete(events):
+    """Copies of events with every key that the schema asks for: older results have fewer. A kind
+    that is not known is a warning without advice."""
+    known = kinds()
+    return [_complete(event, known.get(event["kind"], {})) for event in events]
+
+
+def _complete(event, kind):
+    defaults = {
+        **NOTHING,
+        "bodies": [],
+        "facts": [],
+        "severity": kind.get("severity", "warning"),
+        "unit": kind.get("unit", ""),
+        "advice": kind.get("advice", ""),
+        "worst_time": event.get("time", 0.0),
+    }
+    return {**defaults, **event}
+
+
+def count(events):
+    """{code: how many}."""
+    counts = {}
+    for event in events:
+        counts[event["kind"]] = counts.get(event["kind"], 0) + 1
+    return counts
+
+
+def merge(programs):
+    """One list of the events of programs that run one after the other, by time.
+
+    ``programs``: (number from 0, its begin in s, its events, as the core gives them) each.
+    """
+    merged = []
+    for number, begin, found in programs:
+        for event in sorted(found, key=lambda event: event["time"]):
+            times = {key: event[key] + begin for key in ("time", "worst_time")}
+            merged.append({"program": number, **event, **times})
+    return merged

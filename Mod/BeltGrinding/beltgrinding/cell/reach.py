@@ -1,0 +1,94 @@
+"""What a robot's joints meet along a program. Joint angles are in degrees; frames are 4 x 4 in mm."""
+
+import csv
+import io
+import math
+
+import numpy as np
+
+from ..engine import InputError
+from ..presets.robot import arm_of, checked, given, name, robot_frame
+from ..presets.robot_model import JOINTS
+
+EVENTS = (
+    "out_of_reach",
+    "joint_limit",
+    "singularity",
+    "wrist_flip",
+    "arm_flip",
+    "joint_speed",
+)
+
+
+def reach(path, robot, max_travel_mm=1.0, max_angle_deg=1.0, context=None):
+    """What the joints do along a core.ToolPath.
+
+    ``robot``: as in a job, or a preset's id. Returns dict(joints (n, 6) in degrees, one row per
+    pose, NaN where the robot does not get; events, as a simulation has them; least, greatest (6,)
+    in degrees; checks: how many places were looked at). Raises InputError, Cancelled.
+    """
+    robot = checked({"preset": robot} if isinstance(robot, str) else robot)
+    if not given(robot):
+        raise InputError("robot: give a preset or a model; without one its reach is not known")
+    options = {
+        "base_from_robot": robot_frame(robot, "base_from_robot"),
+        "flange_from_tcp": robot_frame(robot, "flange_from_tcp"),
+        "max_travel": float(max_travel_mm),
+        "max_angle": math.radians(max_angle_deg),
+        "singularity": math.radians(robot["singularity_deg"]),
+        "flip": math.radians(robot["flip_deg"]),
+    }
+    if robot["start_joints_deg"]:
+        options["start"] = np.radians(np.array(robot["start_joints_deg"], dtype=float))
+    found = arm_of(robot).reach(path, options, context=context)
+    for key in ("joints", "least", "greatest"):
+        found[key] = np.degrees(found[key])
+    return found
+
+
+def job_reach(job, paths, context=None):
+    """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot."""
+    if not given(job["robot"]):
+        return []
+    steps = job["simulation"]
+    return [
+        reach(path, job["robot"], steps["max_travel_mm"], steps["max_angle_deg"], context)
+        for path in paths
+    ]
+
+
+def summary(robot, found):
+    """Figures of ``job_reach`` as summary.json has them."""
+    if not found:
+        return {}
+    of = arm_of(robot)
+    least = np.fmin.reduce([one["least"] for one in found])
+    greatest = np.fmax.reduce([one["greatest"] for one in found])
+    poses = sum(len(one["joints"]) for one in found)
+    figures = {
+        "name": name(robot),
+        "inverse_kinematics": of.structure,
+        "poses": poses,
+        "reached_poses": sum(int(np.isfinite(one["joints"]).all(axis=1).sum()) for one in found),
+    }
+    if np.isfinite(least).all():
+        lower, upper = np.degrees(of.lower), np.degrees(of.upper)
+        margin = np.minimum(least - lower, upper - greatest)
+        figures["joint_range_deg"] = np.stack([least, greatest], axis=1).tolist()
+        figures["least_margin_deg"] = float(margin.min())
+        figures["least_margin_joint"] = int(margin.argmin()) + 1
+    return figures
+
+
+def joints_csv(found, paths_lines):
+    """CSV of the joints at every pose: program and pose from 1, source line, six angles in degrees,
+    which are empty where the robot does not get.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["program", "pose", "line", *(f"j{k}_deg" for k in range(1, JOINTS + 1))])
+    for program, (one, lines) in enumerate(zip(found, paths_lines), 1):
+        for pose, (joints, line) in enumerate(zip(one["joints"], lines), 1):
+            angles = [f"{q:.6f}" if np.isfinite(q) else "" for q in joints]
+            writer.writerow([program, pose, int(line), *angles])
+    return text.getvalue()

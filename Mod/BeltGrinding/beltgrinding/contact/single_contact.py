@@ -1,0 +1,176 @@
+"""Single contacts of a wheel, for people who study it: with an analytic workpiece, or at a pose."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from ..base import schemas
+from ..base.files import write_whole
+from ..cell import tool_path as tool_paths
+from ..engine import InputError, core
+from ..job import engine_input
+from ..job.workpiece import apply_stock, make_field, read_design
+from ..presets import rubber
+
+DEFAULT_MODULUS = 5.0  # MPa
+
+
+def load(path):
+    """Reads and validates a contact file (contact.schema.json). Raises InputError."""
+    path = Path(path)
+    try:
+        return validate(schemas.read_json(path), path.resolve().parent)
+    except InputError as error:
+        raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
+
+
+def validate(contact, folder="."):
+    """A copy of ``contact`` with all defaults and paths absolute (relative to ``folder``). Raises
+    InputError naming the key that is wrong.
+    """
+    contact = schemas.checked(contact, schemas.schema("contact"), "contact")
+    if ("force_N" in contact) == ("approach_mm" in contact):
+        raise InputError("contact: give exactly one of 'force_N' or 'approach_mm'")
+    wheel, workpiece = contact["wheel"], contact["workpiece"]
+    if "shore_a" in wheel and "youngs_modulus_MPa" in wheel:
+        raise InputError("wheel: give 'youngs_modulus_MPa' or 'shore_a', not both")
+    modulus(wheel)  # refuses a hardness for which there is no formula
+    if workpiece["shape"] in ("cylinder", "sphere") and not workpiece.get("radius_mm"):
+        raise InputError(f"workpiece: a {workpiece['shape']} needs a 'radius_mm' other than 0")
+    if workpiece["shape"] == "strip" and "width_mm" not in workpiece:
+        raise InputError("workpiece: a strip needs a 'width_mm'")
+    if contact["surrogate_file"]:
+        contact["surrogate_file"] = str(Path(folder, contact["surrogate_file"]).resolve())
+    elif contact["model"] == "surrogate":
+        raise InputError("contact: a surrogate needs the key 'surrogate_file'")
+    return contact
+
+
+def run(contact):
+    """Solves a validated contact. Returns dict(x (nx,) mm along the circumference, y (ny,) mm along
+    the axis, pressure (ny, nx) MPa, force N, approach mm, contact_area mm2, peak_pressure MPa,
+    iterations, converged, time s, model, cell_area mm2).
+    """
+    wheel, workpiece = contact["wheel"], contact["workpiece"]
+    given = {"shape": workpiece["shape"], "axis_angle_deg": float(workpiece["axis_angle_deg"])}
+    for key, name in (("radius_mm", "radius"), ("width_mm", "width")):
+        if key in workpiece:
+            given[name] = float(workpiece[key])
+    shape = {
+        "radius": float(wheel["outer_radius_mm"]),
+        "width": float(wheel["width_mm"]),
+        "crown_radius": float(wheel["crown_radius_mm"]),
+        "profile": wheel["profile_mm"],
+    }
+    return core.single_contact(
+        shape,
+        given,
+        engine_input.compliance_arguments(
+            {
+                "model": contact["model"],
+                "youngs_modulus_MPa": modulus(wheel),
+                "poissons_ratio": wheel["poissons_ratio"],
+                "rim_thickness_mm": wheel["rim_thickness_mm"],
+                "belt_tension_N_per_mm": wheel["belt_tension_N_per_mm"],
+                "belt_bending_N_mm": wheel["belt_bending_N_mm"],
+                "stiffness_MPa_per_mm": wheel["stiffness_MPa_per_mm"],
+                "surrogate_file": contact["surrogate_file"],
+                "layers": [],
+            },
+            shape,
+        ),
+        contact.get("force_N"),
+        contact.get("approach_mm"),
+        float(contact["spacing_mm"]),
+        float(contact["tolerance"]),
+    )
+
+
+def at_pose(job, pose, program=1, context=None):
+    """The contact of a validated job at a pose of a program (both numbered from 1), on the surface
+    as it is when the robot gets there. Returns what ``run`` does, and gap (ny, nx), coverage.
+    Raises InputError, Cancelled.
+    """
+    if not 1 <= program <= len(job["programs"]):
+        raise InputError(f"there is no program {program}; the job has {len(job['programs'])}")
+    warnings = []
+    path = tool_paths.tool_path(job, program - 1, warnings)
+    if not 1 <= pose <= len(path):
+        raise InputError(f"there is no pose {pose}; the program has {len(path)}")
+    context = context or core.RunContext()
+    field = make_field(job, read_design(job["design"]), warnings, context)
+    apply_stock(field, job["stock"], warnings, context)
+    wheel, compliance, law, options = engine_input.engine_arguments(job)
+    before = [tool_paths.tool_path(job, i, warnings) for i in range(program - 1)]
+    if pose > 1:
+        before.append(tool_paths.tool_path(job, program - 1, warnings, pose))
+    for ground in before:
+        without = {**options, "must_touch": False, "shifted_laws": [], "trace": False}
+        if ground.grinds():
+            done = core.simulate(field, ground, wheel, compliance, law, without, context)
+            options["belt"] = done["belt"]
+    start = time.perf_counter()
+    result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
+    result["time"] = time.perf_counter() - start
+    return result
+
+
+def rim_of(wheel_radius_mm, elasticity):
+    """The rim that ``reference.solve`` takes. ``elasticity``: a dict with the keys of a job's
+    compliance. Raises InputError for a rim of several rubbers.
+    """
+    if elasticity.get("layers"):
+        raise InputError("the finite-element reference knows rims of one rubber only")
+    return {
+        "radius": float(wheel_radius_mm),
+        "thickness": float(elasticity["rim_thickness_mm"]),
+        "youngs_modulus": float(elasticity["youngs_modulus_MPa"]),
+        "poissons_ratio": float(elasticity["poissons_ratio"]),
+    }
+
+
+def rim(contact):
+    """The rim of a validated contact, or of a validated job."""
+    if "belt_machine" in contact:
+        machine = contact["belt_machine"]
+        return rim_of(machine["wheel"]["radius_mm"], machine["compliance"])
+    wheel = contact["wheel"]
+    return rim_of(wheel["outer_radius_mm"], {**wheel, "youngs_modulus_MPa": modulus(wheel)})
+
+
+def modulus(wheel):
+    """Young's modulus of a contact's wheel, MPa."""
+    if "shore_a" in wheel:
+        return rubber.modulus(wheel["shore_a"])
+    return wheel.get("youngs_modulus_MPa", DEFAULT_MODULUS)
+
+
+def summary(result):
+    """The figures of a contact, as the command line prints them."""
+    return {
+        "force_N": result["force"],
+        "approach_mm": result["approach"],
+        "peak_pressure_MPa": result["peak_pressure"],
+        "contact_area_mm2": result["contact_area"],
+        "iterations": result["iterations"],
+        "time_ms": 1000.0 * result["time"],
+        "converged": result["converged"],
+        "model": result["model"],
+    }
+
+
+def write_csv(result, path, reference=None):
+    """Writes x_mm, y_mm, p_MPa of every cell of the footprint, and p_reference_MPa if there is one.
+    Raises InputError.
+    """
+    x, y = np.meshgrid(result["x"], result["y"])
+    columns = {"x_mm": x, "y_mm": y, "p_MPa": result["pressure"] + 0.0}
+    if reference is not None:
+        columns["p_reference_MPa"] = reference["pressure"] + 0.0
+    rows = np.column_stack([values.ravel() for values in columns.values()])
+    lines = [",".join(columns), *(",".join(f"{v:.8g}" for v in row) for row in rows.tolist()), ""]
+    try:
+        write_whole(Path(path), "\n".join(lines).encode())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None

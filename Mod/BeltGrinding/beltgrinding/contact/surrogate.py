@@ -1,0 +1,220 @@
+"""A surrogate of the contact: support-vector regression trained on a database of solved contacts.
+
+After Zhang, Kuhlenkötter and Kneupner, Int. J. Machine Tools & Manufacture 45 (2005). The database
+is made here, from the wheel rim or from CalculiX, or brought along; both files are numpy archives.
+"""
+
+import time
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job.surrogate_file import LEAST_CONTACTS, WHEEL, core_arguments
+from . import single_contact as contacts
+
+CONTACTS = 2000
+SAMPLES = 6  # cells of a contact that are learnt
+HELD_OUT = 0.1  # of the contacts
+COST, EPSILON = 10.0, 0.02
+GAMMA = 0.9  # over the number of features
+
+
+def wheel_of(contact):
+    """The wheel of a validated contact, as a surrogate's file names it."""
+    if contact["wheel"]["profile_mm"]:
+        raise InputError("a surrogate knows no profiled wheels; leave 'profile_mm' out")
+    wheel = {**contact["wheel"], "youngs_modulus_MPa": contacts.modulus(contact["wheel"])}
+    return {key: float(wheel[key]) for key in WHEEL}
+
+
+def random_gap(random, wheel, ds):
+    """A random surface under the wheel: gap (ny, nx) mm from first touch, inf where there is none,
+    and coverage. Curved either way, tilted, rippled, stepped, or a strip with free edges.
+    """
+    radius, width, rim = wheel["outer_radius_mm"], wheel["width_mm"], wheel["rim_thickness_mm"]
+    ny = max(1, round(width / ds))
+    half = min(1.0 * radius, np.sqrt(2.0 * radius * rim / 3.0))
+    nx = 2 * int(np.ceil(half / ds)) + 1
+    s, y = np.meshgrid(
+        (np.arange(nx) - (nx - 1) / 2) * ds, (np.arange(ny) - (ny - 1) / 2) * width / ny
+    )
+
+    def log_uniform(low, high):
+        return np.exp(random.uniform(np.log(low), np.log(high)))
+
+    def curvature(most_concave):
+        if random.random() < 0.3:
+            return 0.0
+        return max(
+            random.choice([1, 1, -1]) / log_uniform(0.15 * radius, 6.0 * radius), most_concave
+        )
+
+    along, across = curvature(-0.7 / radius), curvature(-0.8 / width)
+    angle = random.uniform(0.0, np.pi) if random.random() < 0.5 else 0.0
+    if angle and random.random() < 0.5:
+        along, across = max(along, 0.0), max(across, 0.0)
+    off = (
+        random.uniform(-0.6, 0.6) * width
+        if random.random() < 0.5
+        else 0.06 * width * random.normal()
+    )
+    u = s * np.cos(angle) + (y - off) * np.sin(angle)
+    v = -s * np.sin(angle) + (y - off) * np.cos(angle)
+    gap = s * s / (2.0 * radius) + 0.5 * along * u * u + 0.5 * across * v * v
+    if wheel["crown_radius_mm"] > 0.0:
+        crown = wheel["crown_radius_mm"]
+        gap = gap + crown - np.sqrt(crown * crown - y * y)
+    if random.random() < 0.5:
+        gap = gap + np.radians(0.7 * random.normal()) * y
+    if random.random() < 0.3:
+        length, turn = log_uniform(0.5 * rim, 2.7 * rim), random.uniform(0.0, np.pi)
+        phase = 2.0 * np.pi * (s * np.cos(turn) + y * np.sin(turn)) / length
+        gap = gap + log_uniform(0.01, 0.15) * np.cos(phase + random.uniform(0.0, 2.0 * np.pi))
+    if random.random() < 0.2:
+        turn, place = random.uniform(0.0, np.pi), 0.4 * width * random.uniform(-1.0, 1.0)
+        q = s * np.cos(turn) + y * np.sin(turn) - place
+        gap = gap + log_uniform(0.02, 0.2) * np.tanh(q / random.uniform(2.0, 10.0))
+    coverage = np.ones_like(gap)
+    if random.random() < 0.35:
+        turn = random.choice([0.0, 0.5 * np.pi, random.uniform(0.0, np.pi)])
+        q = s * np.sin(turn) + y * np.cos(turn) - random.uniform(-0.45, 0.45) * width
+        coverage = np.clip((0.5 * log_uniform(0.2, 1.6) * width - np.abs(q)) / ds + 0.5, 0.0, 1.0)
+        coverage = np.where(coverage > 0.02, coverage, 0.0)
+        if (coverage * (np.abs(s) < 0.1 * half)).sum() < 4:
+            return random_gap(random, wheel, ds)
+    gap = np.where(coverage > 0.0, gap, np.inf)
+    return gap - gap.min(), coverage
+
+
+def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None):
+    """Solves ``count`` random contacts of the validated contact's wheel, on its ``spacing_mm``,
+    under a fifth of its ``force_N`` up to twice of it. ``source``: 'wheel_rim' or 'ccx'.
+    ``tell(done, count)`` hears of progress. Returns a database (see docs/contact.md).
+    """
+    if "force_N" not in contact:
+        raise InputError("contact: a database of contacts needs 'force_N'")
+    if count < LEAST_CONTACTS:
+        raise InputError(f"a database needs at least {LEAST_CONTACTS} contacts")
+    wheel, ds = wheel_of(contact), float(contact["spacing_mm"])
+    shape, elasticity = _core_wheel(wheel), {**_core_compliance(wheel), "model": "wheel_rim"}
+    random, rows, start = np.random.default_rng(seed), [], time.perf_counter()
+    tried = 0
+    while len(rows) < count:
+        tried += 1
+        if tried > 10 * count:
+            raise InputError(
+                "nine of ten random contacts reach beyond the grid or do not converge: "
+                "lower 'force_N'"
+            )
+        gap, coverage = random_gap(random, wheel, ds)
+        force = contact["force_N"] * np.exp(random.uniform(np.log(0.2), np.log(2.0)))
+        solved = core.solve_gap(gap, coverage, ds, shape, elasticity, force)
+        if not solved["converged"] or solved["pressure"][:, [0, 1, -2, -1]].any():
+            continue
+        pressure = solved["pressure"]
+        if source == "ccx":
+            from . import finite_elements as reference
+
+            truth = _finite_elements(reference, solved, contacts.rim(contact))
+            if truth is None:
+                continue
+            covered = np.maximum(coverage, 0.02)
+            pressure = np.where(coverage > 0.0, truth["pressure"] / covered, 0.0)
+            force = truth["force"]
+        rows.append((gap, coverage, pressure, solved["approach"], force))
+        if tell:
+            tell(len(rows), count)
+    columns = [np.array(column, dtype=np.float32) for column in zip(*rows)]
+    return {
+        **dict(zip(("gap", "coverage", "pressure", "approach", "force"), columns)),
+        "ds": np.array(ds),
+        "wheel": wheel,
+        "source": source,
+        "seconds": time.perf_counter() - start,
+    }
+
+
+def _finite_elements(reference, solved, rim):
+    try:
+        return reference.solve(solved, rim)
+    except InputError as error:
+        if "did not solve" in str(error):  # rather another contact than none
+            return None
+        raise
+
+
+def train(database, seed=1):
+    """Trains on nine tenths of a database's contacts, tries itself on the rest. Returns
+    (surrogate: what ``save`` writes, report: dict of figures).
+    """
+    random = np.random.default_rng(seed)
+    count = len(database["force"])
+    order = random.permutation(count)
+    held = order[: max(1, int(HELD_OUT * count))]
+    wheel, ds = database["wheel"], float(database["ds"])
+    features, targets = [], []
+    for k in order[len(held) :]:
+        gap, coverage = database["gap"][k], database["coverage"][k]
+        approach = float(database["approach"][k])
+        cells, values = core.surrogate_features(
+            gap, coverage, ds, wheel["width_mm"], approach, ds, wheel["rim_thickness_mm"]
+        )
+        chosen = random.permutation(len(cells))[:SAMPLES]
+        features.append(values[chosen])
+        greatest = approach - gap[coverage > 0].min()
+        targets.append(database["pressure"][k].ravel()[cells[chosen]] / greatest)
+    features, targets = np.concatenate(features), np.concatenate(targets)
+    start = time.perf_counter()
+    regression = core.train_regression(features, targets, COST, GAMMA / features.shape[1], EPSILON)
+    seconds = time.perf_counter() - start
+    surrogate = {**regression, "cell": ds, "wheel": wheel}
+    report = {
+        "contacts": count,
+        "source": database["source"],
+        "database_time_s": database["seconds"],
+        "training_samples": len(targets),
+        "training_time_s": seconds,
+        "support_vectors": len(regression["coefficients"]),
+        "held_out_contacts": len(held),
+        **_held_out(surrogate, database, held),
+    }
+    surrogate["report"] = report
+    return surrogate, report
+
+
+def _held_out(surrogate, database, held):
+    errors, approaches, times = [], [], []
+    arguments, shape = core_arguments(surrogate, "held out"), _core_wheel(surrogate["wheel"])
+    for k in held:
+        gap, coverage = database["gap"][k], database["coverage"][k]
+        force = float(database["force"][k])
+        found = core.solve_gap(gap, coverage, float(database["ds"]), shape, arguments, force)
+        truth = coverage * database["pressure"][k]
+        errors.append(np.abs(coverage * found["pressure"] - truth).sum() / truth.sum())
+        approaches.append(found["approach"] / database["approach"][k] - 1.0)
+        times.append(found["time"])
+    return {
+        "held_out_L1_mean": float(np.mean(errors)),
+        "held_out_L1_median": float(np.median(errors)),
+        "held_out_L1_p90": float(np.quantile(errors, 0.9)),
+        "held_out_approach_rms": float(np.sqrt(np.mean(np.square(approaches)))),
+        "solve_time_ms": 1000.0 * float(np.median(times)),
+    }
+
+
+def _core_wheel(wheel):
+    return {
+        "radius": wheel["outer_radius_mm"],
+        "width": wheel["width_mm"],
+        "crown_radius": wheel["crown_radius_mm"],
+    }
+
+
+def _core_compliance(wheel):
+    return {
+        "youngs_modulus": wheel["youngs_modulus_MPa"],
+        "poissons_ratio": wheel["poissons_ratio"],
+        "rim_thickness": wheel["rim_thickness_mm"],
+        "belt_tension": wheel["belt_tension_N_per_mm"],
+        "belt_bending": wheel["belt_bending_N_mm"],
+    }

@@ -1,0 +1,103 @@
+"""Finds and loads the compiled core, and says what is to be done where none fits.
+
+A release carries several cores side by side, told apart by the tag of their Python
+(``beltgrinding_core.cpython-311-x86_64-linux-gnu.so``); beside each a ``.json`` says for what it was
+built (cmake/BeltGrindingInstall.cmake).
+"""
+
+import importlib
+import importlib.machinery
+import json
+import os
+import sys
+from pathlib import Path
+
+NAME = "beltgrinding_core"
+
+
+def places():
+    """Folders in which a core may lie: installed beside this package, or a checkout's build."""
+    package = Path(__file__).resolve().parents[1]
+    found = [package.parent, package.parents[2] / "build" / "release" / "python"]
+    if "BELTGRINDING_BUILD" in os.environ:
+        found.insert(0, Path(os.environ["BELTGRINDING_BUILD"]) / "python")
+    return found
+
+
+def built_for(core):
+    """What a core was built for: {"system", "python", "opencascade"}, or {} where nobody says."""
+    try:
+        return json.loads(core.with_name(core.name + ".json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def load():
+    """Imports the core. ImportError says what this FreeCAD needs, what is there, what to do."""
+    looked = places()
+    suffixes = tuple(importlib.machinery.EXTENSION_SUFFIXES)
+    fitting = []
+    for place in looked:
+        found = [core for core in _cores(place) if core.name[len(NAME) :] in suffixes]
+        fitting += found
+        if found and str(place) not in sys.path:
+            sys.path.append(str(place))
+    if fitting:
+        _check_opencascade(built_for(fitting[0]), fitting[0])
+    try:
+        return importlib.import_module(NAME)
+    except ImportError as error:
+        if fitting:
+            reason = f"{fitting[0]} cannot be loaded: {error}."
+        else:
+            reason = (
+                f"There is none for Python {sys.version_info[0]}.{sys.version_info[1]}, which runs "
+                f"here; it would be named {NAME}{suffixes[0]}. "
+                f"Looked in: {', '.join(str(place) for place in looked)}."
+            )
+        raise ImportError(message(reason), name=NAME) from error
+
+
+def message(reason):
+    """The whole message: the reason, the cores that are there, and the ways out."""
+    lines = [f"The compiled core of the belt-grinding workbench does not fit. {reason}"]
+    known = [built_for(core) for place in places() for core in _cores(place)]
+    told = sorted({f"- {_words(one)}" for one in known if one})
+    if told:
+        lines += ["", "The cores that are installed are for", *told]
+    lines += [
+        "",
+        "What to do: on Debian install the .deb of your release, which brings all libraries it "
+        "needs (apt install ./beltgrinding_*.deb), and use Debian's own FreeCAD. Anywhere else "
+        "build the core for your FreeCAD from the sources: tools/install. Both are told in "
+        "docs/install.md.",
+    ]
+    return "\n".join(lines)
+
+
+def _cores(place):
+    return sorted(place.glob(f"{NAME}*.so"))
+
+
+def _words(one):
+    python, opencascade = one.get("python", "?"), one.get("opencascade", "?")
+    return f"{one.get('system', '?')}: Python {python}, OpenCASCADE {opencascade}"
+
+
+def _check_opencascade(built, core):
+    """Two generations of OpenCASCADE in one process share names and crash: refuses before that."""
+    if "FreeCAD" not in sys.modules or "opencascade" not in built:
+        return
+    try:
+        import Part
+
+        here = Part.OCC_VERSION
+    except (ImportError, AttributeError):
+        return  # a FreeCAD that does not tell: the loader has the word
+    if here.split(".")[:2] != built["opencascade"].split(".")[:2]:
+        raise ImportError(
+            message(
+                f"{core} needs OpenCASCADE {built['opencascade']}; this FreeCAD runs with {here}."
+            ),
+            name=NAME,
+        )

@@ -1,0 +1,11 @@
+"""How views reach the commands, which stand in a layer above: what registers them is put in here."""
+
+register = None  # tells FreeCAD the commands, if it does not know them: set by the package itself
+
+
+def action(name):
+    """The QActions of a command of the workbench."""
+    import FreeCADGui as Gui  # the package itself is imported without FreeCAD
+
+    register()
+    return Gui.Command.get(name).getAction()

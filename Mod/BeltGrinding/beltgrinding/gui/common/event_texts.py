@@ -1,0 +1,37 @@
+"""Events in words, in the language of the window."""
+
+from ...reporting import event_messages
+from .compat import translate
+from .report_language import words
+
+
+def severities():
+    """{severity: (its name, the name of several)}, the worst first."""
+    return {
+        "error": (translate("BeltGrinding", "Error"), translate("BeltGrinding", "Errors")),
+        "warning": (translate("BeltGrinding", "Warning"), translate("BeltGrinding", "Warnings")),
+        "info": (translate("BeltGrinding", "Note"), translate("BeltGrinding", "Notes")),
+    }
+
+
+def title(code):
+    """The title of a kind; of one that is not known, its code in words."""
+    return words()(event_messages.kind_text(code))
+
+
+def message(event):
+    """What happened, as the core says it."""
+    return event_messages.message(event, words())
+
+
+def bodies(event):
+    """The bodies that are concerned."""
+    return ", ".join(event_messages.body(name, words()) for name in event["bodies"])
+
+
+def advice(event):
+    """What to try, "" if nothing is known."""
+    return words()(event["advice"])
+
+
+COLOURS = {"error": "#c62828", "warning": "#e08a00", "info": "#1f5fa8"}

@@ -1,0 +1,30 @@
+"""Errors, said in the report view and in a message that does not hold FreeCAD up."""
+
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .compat import QtGui, translate
+
+
+def report(error):
+    """Says an error in the report view and, where there is a user to see it, in a message."""
+    from ...engine import InputError  # not above: that the core is missing must be said, too
+
+    if not isinstance(error, InputError):
+        lines = traceback.format_exception(type(error), error, error.__traceback__)
+        FreeCAD.Console.PrintError("".join(lines))
+    tell(str(error))
+
+
+def tell(text):
+    """An error in the report view and in a message that does not hold FreeCAD up."""
+    FreeCAD.Console.PrintError(f"{text}\n")
+    box = QtGui.QMessageBox(Gui.getMainWindow())
+    box.setObjectName("BeltGrinding_Error")
+    box.setIcon(QtGui.QMessageBox.Warning)
+    box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
+    box.setText(text)
+    box.setModal(False)
+    box.show()

@@ -1,0 +1,112 @@
+"""Runs a job's simulation in a thread of its own, polled by the window."""
+
+import threading
+import time
+
+from ...engine import Cancelled, RunContext
+from ...objects import api, job_inputs
+from ...simulation import run as runs
+from .compat import QtCore, translate
+
+POLL = 50  # ms
+
+
+class Background(QtCore.QObject):
+    """Runs ``work(context)`` in a thread; ``done(result or None, error or None)`` follows on the
+    window's thread.
+    """
+
+    def __init__(self, work, done):
+        super().__init__()
+        self.context = RunContext()
+        self.outcome = (None, None)
+        self.done = done
+        self.thread = threading.Thread(target=self._work, args=(work,), daemon=True)
+        self.thread.start()
+        self.timer = QtCore.QTimer(self)
+        self.timer.timeout.connect(self._poll)
+        self.timer.start(POLL)
+
+    def cancel(self):
+        """Asks the work to end; ``done`` follows with Cancelled."""
+        self.context.cancel()
+
+    def abandon(self, then=lambda: None):
+        """Cancels for one who goes away: in the end only ``then`` is called."""
+        self.done = lambda *_: then()
+        self.cancel()
+
+    def _work(self, work):
+        try:
+            self.outcome = (work(self.context), None)
+        except BaseException as error:  # handed to the window's thread
+            self.outcome = (None, error)
+
+    def _poll(self):
+        if not self.thread.is_alive():
+            self.timer.stop()
+            self.done(*self.outcome)
+
+
+class Runner(Background):
+    """One run. The job's data are collected here and now (raises InputError); the document is
+    written only in the end, on the window's thread, in one undo transaction.
+
+    recording: an empty core.Recording, or None. progress(share): called while it runs; done(simulation or None, error or None): in the end.
+    """
+
+    def __init__(self, job, progress, done, recording=None):
+        self.document, self.name = job.Document, job.Name
+        self.progress, self.ended = progress, done
+        self.folder = job_inputs.scratch_folder()
+        self.data = job_inputs.to_data(job, self.folder.name)
+        self.fingerprint = job_inputs.fingerprint(job)
+        self.start = time.monotonic()
+        self.recorded = recording
+        super().__init__(self.work, self._finish)
+
+    def work(self, context):
+        """The ``job.Result``; in the thread."""
+        return runs.run(self.data, context, self.recorded)
+
+    def job(self):
+        """The job, or None if it or its document is no longer there."""
+        try:
+            return self.document.getObject(self.name)
+        except ReferenceError:
+            return None
+
+    def abandon(self):
+        """Cancels, and stores nothing even if the run has just ended."""
+        self.progress = lambda _: None
+        super().abandon(self.folder.cleanup)
+
+    def _poll(self):
+        if self.job() is None:
+            self.context.cancel()
+        if self.thread.is_alive():
+            self.progress(self.context.progress)
+        super()._poll()
+
+    def _finish(self, result, error):
+        self.folder.cleanup()
+        simulation = None
+        if error is None:
+            try:
+                simulation = self._store(result)
+            except Exception as problem:
+                error = problem
+        self.ended(simulation, error)
+
+    def _store(self, result):
+        job = self.job()
+        if job is None:
+            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
+        self.document.openTransaction("Simulate")
+        try:
+            simulation = api.store_result(job, result, self.fingerprint)
+            self.document.commitTransaction()
+            return simulation
+        except BaseException:
+            self.document.abortTransaction()
+            raise

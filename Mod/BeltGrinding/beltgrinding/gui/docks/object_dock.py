@@ -1,0 +1,57 @@
+"""Base of the docks that show one document object: one dock of a kind for the window."""
+
+import FreeCADGui as Gui
+
+from ..common.compat import QtCore, QtGui
+
+
+class ObjectDock(QtGui.QDockWidget):
+    """Base. What it shows, ``obj``, is the object that was opened last, None before. Subclasses have
+    ``refresh()``, which shows it as it is now, and call ``place`` once they are filled.
+    """
+
+    _made = {}  # kind -> the one dock
+
+    def __init__(self, title, name):
+        super().__init__(title, Gui.getMainWindow())
+        self.setObjectName(name)
+        self.obj = None
+
+    @classmethod
+    def open(cls, obj):
+        """Shows the object in the dock of this kind; returns that."""
+        if cls not in cls._made:
+            cls._made[cls] = cls()
+        dock = cls._made[cls]
+        dock.show_object(obj)
+        dock.show()
+        dock.raise_()
+        return dock
+
+    @classmethod
+    def current(cls):
+        """The dock of this kind, None before the first was opened."""
+        return cls._made.get(cls)
+
+    def place(self, area, pixels):
+        """Puts the dock into an area of the window, so wide or high."""
+        window = Gui.getMainWindow()
+        window.addDockWidget(area, self)
+        below = area in (QtCore.Qt.BottomDockWidgetArea, QtCore.Qt.TopDockWidgetArea)
+        window.resizeDocks([self], [pixels], QtCore.Qt.Vertical if below else QtCore.Qt.Horizontal)
+
+    def show_object(self, obj):
+        """Shows another object."""
+        self.obj = obj
+        self.setWindowTitle(obj.Label)
+        self.refresh()
+
+    def refresh(self):
+        raise NotImplementedError
+
+    def alive(self):
+        """Whether the object shown is still in its document."""
+        try:
+            return self.obj is not None and self.obj.Document.getObject(self.obj.Name) is not None
+        except (ReferenceError, RuntimeError):
+            return False

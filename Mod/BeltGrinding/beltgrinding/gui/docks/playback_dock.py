@@ -1,0 +1,312 @@
+"""Playback: a dock under the 3D view that shows a recorded simulation at any moment."""
+
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...engine import Cancelled, InputError, core
+from ...objects import job_data
+from ...objects.simulation import Simulation
+from ..charts.strip_chart import StripChart
+from ..common.compat import QtCore, QtGui, translate
+from ..common.runner import Runner
+from ..scene.playback_scene import SAME, Scene
+
+SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # of the real time
+TICK = 40  # ms between two pictures
+PARTS = 100_000  # of the slider
+SCALE = ("ToleranceLower", "ToleranceUpper", "ColourLimit", "Bands", "Shown")  # of a Deviation
+
+
+class Playback(QtGui.QDockWidget):
+    """Plays the simulation of a job. It changes no property of the document."""
+
+    def __init__(self, job):
+        super().__init__(translate("BeltGrinding", "Playback"), Gui.getMainWindow())
+        self.setObjectName("BeltGrinding_PlaybackDock")
+        self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
+        self.document, self.name = job.Document, job.Name
+        self.scene = self.runner = self.stale = None
+        self.waiting = set()  # what is to be done once FreeCAD has done its own
+        self.clock = QtCore.QTimer(self)
+        self.clock.setInterval(TICK)
+        self.clock.timeout.connect(self._tick)
+        self.show_result()
+        FreeCAD.addDocumentObserver(self)
+        self.watching = True
+
+    def job(self):
+        """The job, or None if it or its document is no longer there."""
+        try:
+            return self.document.getObject(self.name)
+        except ReferenceError:
+            return None
+
+    def show_result(self):
+        """Shows the job's recording, or offers to make one."""
+        self._clear()
+        job = self.job()
+        if job is None:
+            self.close()
+            return
+        simulation = job_data.child(job, Simulation)
+        found = simulation.Proxy.recording(simulation) if simulation is not None else None
+        if found is None:
+            self.setWidget(self._offer(simulation))
+            return
+        try:
+            self.scene = Scene(job, simulation, found[0])
+        except InputError as error:
+            self.setWidget(self._offer(simulation))
+            self.state.setText(str(error))
+            return
+        self.setWidget(self._controls(simulation, found[1]))
+        self.go(0.0)
+
+    def _offer(self, simulation):
+        """What is there without a recording."""
+        panel = QtGui.QWidget()
+        body = QtGui.QVBoxLayout(panel)
+        self.state = QtGui.QLabel(
+            translate("BeltGrinding", "There is no result yet.")
+            if simulation is None
+            else translate("BeltGrinding", "This result was not recorded.")
+        )
+        self.state.setWordWrap(True)
+        self.bar = QtGui.QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.bar.hide()
+        self.record = QtGui.QPushButton(translate("BeltGrinding", "Simulate with recording"))
+        self.record.setObjectName("record")
+        self.record.clicked.connect(self.simulate)
+        self.cancel = QtGui.QPushButton(translate("BeltGrinding", "Cancel"))
+        self.cancel.setObjectName("cancelRecording")
+        self.cancel.clicked.connect(lambda: self.runner and self.runner.cancel())
+        self.cancel.hide()
+        row = QtGui.QHBoxLayout()
+        for widget in (self.record, self.bar, self.cancel):
+            row.addWidget(widget)
+        row.addStretch()
+        body.addWidget(self.state)
+        body.addLayout(row)
+        body.addStretch()
+        return panel
+
+    def simulate(self):
+        """Simulates with a recording, in the background."""
+        try:
+            self.runner = Runner(self.job(), self._progress, self._simulated, core.Recording())
+        except InputError as error:
+            self.state.setText(str(error))
+            return
+        self.record.hide()
+        self.bar.show()
+        self.cancel.show()
+
+    def _progress(self, share):
+        self.bar.setValue(int(1000 * share))
+
+    def _simulated(self, simulation, error):
+        self.runner = None
+        if self.job() is None:
+            self.close()
+        elif error is None:
+            self.show_result()
+        else:
+            if not isinstance(error, (InputError, Cancelled)):
+                lines = traceback.format_exception(type(error), error, error.__traceback__)
+                FreeCAD.Console.PrintError("".join(lines))
+            self.setWidget(self._offer(job_data.child(self.job(), Simulation)))
+            cancelled = isinstance(error, Cancelled)
+            self.state.setText(translate("BeltGrinding", "Cancelled.") if cancelled else str(error))
+
+    def _controls(self, simulation, steps):
+        panel = QtGui.QWidget()
+        body = QtGui.QVBoxLayout(panel)
+        row = QtGui.QHBoxLayout()
+        style = self.style()
+
+        def button(name, picture, text, action):
+            made = QtGui.QToolButton()
+            made.setObjectName(name)
+            made.setIcon(style.standardIcon(picture))
+            made.setToolTip(text)
+            made.clicked.connect(lambda *_: action())
+            row.addWidget(made)
+            return made
+
+        icons = QtGui.QStyle
+        text = translate("BeltGrinding", "Previous event")
+        button("previousEvent", icons.SP_MediaSkipBackward, text, lambda: self.step(-1))
+        text = translate("BeltGrinding", "Play or pause")
+        self.play_button = button("play", icons.SP_MediaPlay, text, self.toggle)
+        text = translate("BeltGrinding", "Next event")
+        button("nextEvent", icons.SP_MediaSkipForward, text, lambda: self.step(1))
+        self.speed = QtGui.QComboBox()
+        self.speed.setObjectName("speed")
+        self.speed.setToolTip(translate("BeltGrinding", "Speed, as a multiple of the real time"))
+        for speed in SPEEDS:
+            self.speed.addItem(f"{speed:g} ×", speed)
+        self.speed.setCurrentIndex(SPEEDS.index(1.0))
+        row.addWidget(self.speed)
+        self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
+        self.slider.setObjectName("timeSlider")
+        self.slider.setRange(0, PARTS)
+        self.slider.valueChanged.connect(self._slid)
+        row.addWidget(self.slider, 1)
+        self.label = QtGui.QLabel()
+        self.label.setObjectName("moment")
+        row.addWidget(self.label)
+        self.moving = QtGui.QCheckBox(translate("BeltGrinding", "Show the cell as it moves"))
+        self.moving.setObjectName("playbackMoves")
+        self.moving.setEnabled(self.scene.cell.cell()["holding"] == "part_in_hand")
+        self.moving.toggled.connect(self.scene.cell.set_moving)
+        row.addWidget(self.moving)
+        self.events = simulation.Proxy.events(simulation)
+        self.chart = StripChart(steps, self.events, self.scene.duration)
+        self.chart.chosen = self.scrub
+        choice = QtGui.QToolButton()
+        choice.setText(translate("BeltGrinding", "Rows"))
+        choice.setMenu(self.chart.menu)
+        choice.setPopupMode(QtGui.QToolButton.InstantPopup)
+        row.addWidget(choice)
+        body.addLayout(row)
+        text = translate("BeltGrinding", "Out of date: an input has changed since; simulate again.")
+        self.stale = QtGui.QLabel(text)
+        self.stale.setObjectName("playbackOutOfDate")
+        self.stale.setStyleSheet("color: #b3261e; font-weight: bold;")
+        self.stale.setVisible(simulation.OutOfDate)
+        body.addWidget(self.stale)
+        body.addWidget(self.chart, 1)
+        return panel
+
+    def toggle(self):
+        """Plays or pauses; from the end, plays from the begin."""
+        if self.clock.isActive():
+            self.pause()
+            return
+        if self.scene.time >= self.scene.duration - SAME:
+            self.go(0.0)
+        self.last = time.monotonic()
+        self.clock.start()
+        self.play_button.setIcon(self.style().standardIcon(QtGui.QStyle.SP_MediaPause))
+
+    def pause(self):
+        self.clock.stop()
+        self.play_button.setIcon(self.style().standardIcon(QtGui.QStyle.SP_MediaPlay))
+
+    def scrub(self, moment):
+        """Goes to a moment by hand: a playback pauses."""
+        self.pause()
+        self.go(moment)
+
+    def step(self, way):
+        """Goes to the next event (``way`` 1) or to the one before (-1)."""
+        times = sorted(event["time"] for event in self.events)
+        now = self.scene.time
+        if way > 0:
+            found = [t for t in times if t > now + SAME][:1]
+        else:
+            found = [t for t in times if t < now - SAME][-1:]
+        if found:
+            self.scrub(found[0])
+
+    def go(self, moment):
+        """Shows the moment, s since the begin of the first program."""
+        self.scene.go(moment)
+        self.slider.blockSignals(True)
+        self.slider.setValue(round(PARTS * self.scene.time / max(self.scene.duration, SAME)))
+        self.slider.blockSignals(False)
+        self.chart.set_time(self.scene.time)
+        text = translate("BeltGrinding", "{:.2f} of {:.2f} s · {}, pose {}")
+        label, pose, line = self.scene.place
+        text = text.format(self.scene.time, self.scene.duration, label, pose + 1)
+        if line:
+            text += translate("BeltGrinding", ", line {}").format(line)
+        self.label.setText(text)
+
+    def _slid(self, value):
+        self.scrub(self.scene.duration * value / PARTS)
+
+    def _tick(self):
+        if self.job() is None:
+            self.close()
+            return
+        now = time.monotonic()
+        moment = self.scene.time + (now - self.last) * self.speed.currentData()
+        self.last = now
+        self.go(moment)
+        if moment >= self.scene.duration:
+            self.pause()
+
+    def slotChangedObject(self, obj, name):
+        """FreeCAD changes a property: by hand, by undo, by another run."""
+        if self.scene is None:
+            return
+        if obj == self.scene.simulation:
+            if name == "OutOfDate":
+                self.stale.setVisible(obj.OutOfDate)
+            elif name in ("Recording", "HeightField", "Fingerprint"):
+                self._later(self.show_result)
+        elif obj == self.scene.deviation and name in SCALE:
+            self._later(self.recolour)
+
+    def slotDeletedObject(self, obj):
+        """FreeCAD removes an object."""
+        if self.scene is not None and any(obj == one for one in self.scene.needed):
+            self.pause()
+            self._later(self.show_result)
+
+    def _later(self, work):
+        """Calls ``work`` once, when FreeCAD is through with what it does."""
+        if work.__name__ not in self.waiting:
+            self.waiting.add(work.__name__)
+            QtCore.QTimer.singleShot(0, lambda: self._now(work))
+
+    def _now(self, work):
+        self.waiting.discard(work.__name__)
+        if self.watching:
+            work()
+
+    def preferences_changed(self):
+        """The colours, or the legend's unit, are others."""
+        self._later(self.recolour)
+
+    def recolour(self):
+        """Follows the bounds, steps and colours of the job's Deviation."""
+        if self.scene is not None and self.job() is not None:
+            self.scene.recolour(self.job())
+
+    def slotDeletedDocument(self, document):
+        """FreeCAD closes a document."""
+        if document is self.document or self.job() is None:
+            self.close()
+
+    def _clear(self):
+        self.clock.stop()
+        if self.scene is not None:
+            self.scene.close()
+            self.scene = None
+
+    def closeEvent(self, event):
+        if self.watching:
+            FreeCAD.removeDocumentObserver(self)
+            self.watching = False
+        if self.runner is not None:
+            self.runner.abandon()
+            self.runner = None
+        self._clear()
+        super().closeEvent(event)
+
+
+def show(job):
+    """Opens the playback of a job under the 3D view, in place of another one's."""
+    window = Gui.getMainWindow()
+    for dock in window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock"):
+        dock.close()
+    dock = Playback(job)
+    window.addDockWidget(QtCore.Qt.BottomDockWidgetArea, dock)
+    dock.show()
+    return dock

@@ -1,0 +1,270 @@
+"""The verdict's dock: pass or fail, faces and zones, clusters, and the motions that did it."""
+
+import FreeCAD
+import FreeCADGui as Gui
+import numpy as np
+
+from ...objects import verdict as objects
+from ...objects.job_data import children, face_name
+from ...objects.robot_path import RobotPath
+from ...objects.section import forget_field
+from ..common.compat import QtCore, QtGui, translate
+from ..scene import camera
+from ..scene.cell_view import CellView
+from ..scene.verdict_scene import VerdictScene
+from ..widgets.pose_walk import PoseTable
+from .object_dock import ObjectDock
+from .verdict_tables import cluster_rows, doubts, fill, headline, motion_rows, region_rows, table
+
+WIDTH = 470  # pixels of the dock as it comes
+SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other
+AROUND = 1.5  # times a cluster's length that the camera sees
+LEAST_SEEN = 10.0  # mm
+COLOURS = {"pass": "#1b5e20", "fail": "#b3261e", "unknown": "#8a6d00"}
+
+
+class VerdictDock(ObjectDock):
+    """Shows a Verdict object."""
+
+    def __init__(self):
+        super().__init__(translate("BeltGrinding", "Verdict"), "BeltGrinding_VerdictDock")
+        self.found = self.scene = self.wheel = None
+        self.field = self.cluster_of = None
+        self.shown_path = None
+        body = QtGui.QWidget()
+        layout = QtGui.QVBoxLayout(body)
+        self.overall = QtGui.QLabel()
+        self.overall.setObjectName("overall")
+        self.overall.setAlignment(QtCore.Qt.AlignCenter)
+        self.figures = QtGui.QLabel()
+        self.figures.setObjectName("verdictFigures")
+        self.figures.setWordWrap(True)
+        self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        layout.addWidget(self.overall)
+        layout.addWidget(self.figures)
+        parts = QtGui.QSplitter(QtCore.Qt.Vertical)
+        self.regions = table("regions", region_rows.titles())
+        self.clusters = table("clusters", cluster_rows.titles())
+        self.motions = table("motions", motion_rows.titles())
+        self.clusters.setToolTip(
+            translate("BeltGrinding", "Largest first. Click: go there in the 3D view")
+        )
+        self.motions.setToolTip(
+            translate(
+                "BeltGrinding", "Click: show the wheel and the line. Double click: open the program"
+            )
+        )
+        self.poses = PoseTable()
+        self.poses.hide()
+        for title, widget in (
+            (translate("BeltGrinding", "Zones and faces"), self.regions),
+            (translate("BeltGrinding", "Clusters out of tolerance"), self.clusters),
+            (translate("BeltGrinding", "Motions of the cluster"), self.motions),
+            (None, self.poses),
+        ):
+            parts.addWidget(_titled(title, widget))
+        parts.setSizes(SHARES)
+        layout.addWidget(parts, 1)
+        self.setWidget(body)
+        self.regions.cellClicked.connect(lambda row, _: self.go_to_region(row))
+        self.clusters.currentCellChanged.connect(lambda row, *_: self.go_to_cluster(row))
+        self.clusters.cellClicked.connect(lambda row, _: self.go_to_cluster(row))
+        self.motions.currentCellChanged.connect(lambda row, *_: self.show_motion(row))
+        self.motions.cellDoubleClicked.connect(lambda row, _: self.open_program(row))
+        self.poses.chosen = self._pose_chosen
+        self.place(QtCore.Qt.RightDockWidgetArea, WIDTH)
+        FreeCAD.addDocumentObserver(self)
+
+    # What is shown
+
+    def show_object(self, obj):
+        if self.obj is not obj:
+            self._forget()
+        super().show_object(obj)
+
+    def refresh(self):
+        """Shows the object as it is now."""
+        if not self.alive():
+            return self._forget()
+        obj = self.obj
+        self.found = obj.Proxy.data(obj)
+        self.cluster_of = None
+        self._unmark()
+        if self.found is None:
+            self.overall.setText(translate("BeltGrinding", "No result yet."))
+            self.overall.setStyleSheet("")
+            for one in (self.regions, self.clusters, self.motions):
+                one.setRowCount(0)
+            return self.figures.setText("")
+        self.overall.setText(headline(self.found))
+        self.overall.setStyleSheet(
+            f"background: {COLOURS[self.found['overall']]}; color: white; "
+            "font-weight: bold; padding: 6px;"
+        )
+        text = doubts(self.found)
+        if obj.OutOfDate:
+            text = translate("BeltGrinding", "Out of date: simulate again.") + "\n" + text
+        self.figures.setText(text)
+        self.figures.setVisible(bool(text))
+        self._fill_tables()
+
+    def _fill_tables(self):
+        job = self.obj.getParentGroup()
+        name = lambda face: face_name(job, face - 1) or f"Face{face}"  # noqa: E731
+        self.shown_regions = [
+            (region, cells, bad) for region, cells, bad in region_rows(self.found, name)
+        ]
+        fill(self.regions, [(cells, bad) for _, cells, bad in self.shown_regions])
+        fill(self.clusters, cluster_rows(self.found, name))
+        self.motions.setRowCount(0)
+
+    # Going there
+
+    def go_to_region(self, row):
+        """Looks at the worst place of a face or a zone."""
+        if 0 <= row < len(self.shown_regions):
+            worst = self.shown_regions[row][0]["worst"]
+            if worst is not None and self._read_field():
+                self._fly(worst["sample"], LEAST_SEEN * 2.0)
+
+    def go_to_cluster(self, row):
+        """Looks at a cluster, marks it, and lists its motions."""
+        if self.found is None or not 0 <= row < len(self.found["clusters"]):
+            return
+        cluster = self.found["clusters"][row]
+        fill(self.motions, motion_rows(cluster, self.found["programs"]))
+        self._show_wheel(None, 0)
+        if not self._read_field():
+            return
+        if self.cluster_of is None:
+            job = self.obj.getParentGroup()
+            self.field, self.cluster_of = objects.cluster_of_samples(job, self.obj.Simulation)
+        if self.scene is None:
+            self.scene = VerdictScene(self.obj.Document)
+        self.scene.show(self.field, self.cluster_of == row, cluster["worst"]["sample"])
+        middle = np.mean(cluster["box_mm"], axis=0)
+        size = max(AROUND * cluster["extent_mm"], LEAST_SEEN)
+        self._fly(cluster["worst"]["sample"], size, middle)
+
+    def _read_field(self):
+        if self.field is None:
+            self.field = objects.field_of(self.obj.Simulation)
+        return self.field is not None
+
+    def _fly(self, sample, size, middle=None):
+        """Looks against the sample's normal, at the sample itself or at ``middle`` (mm)."""
+        normal = self.field.normals[sample]
+        point = self.field.points[sample] if middle is None else middle
+        for view in Gui.getDocument(self.obj.Document.Name).mdiViewsOfType("Gui::View3DInventor"):
+            camera.fly_to(view, point.tolist(), normal.tolist(), size)
+
+    # Motions
+
+    def _motion(self, row):
+        """(RobotPath or None, motion) of a row of the motions."""
+        cluster = self.clusters.currentRow()
+        if self.found is None or not 0 <= cluster < len(self.found["clusters"]):
+            return None, None
+        motions = self.found["clusters"][cluster]["motions"]
+        if not 0 <= row < len(motions) or motions[row]["program"] is None:
+            return None, None
+        motion = motions[row]
+        name = self.found["programs"][motion["program"]]["name"]
+        paths = children(self.obj.getParentGroup(), RobotPath)
+        named = [path for path in paths if path.Label == name]
+        at = motion["program"]
+        if at < len(paths) and (paths[at].Label == name or not named):
+            return paths[at], motion
+        return (named[0] if named else None), motion
+
+    def show_motion(self, row):
+        """Draws the wheel at the motion's pose, and shows the pose and its line."""
+        path, motion = self._motion(row)
+        if path is None or motion["pose"] >= path.PoseCount:
+            return self._show_wheel(None, 0)
+        self._show_wheel(path, motion["pose"])
+        if self.shown_path is not path:
+            self.poses.show_path(path)
+            self.shown_path = path
+            self.poses.setCurrentIndex(1 if self.poses.isTabEnabled(1) else 0)
+        self.poses.show()
+        self.poses.show_pose(motion["pose"])
+        from ..panels.program_panel import show_pose
+
+        show_pose(path, motion["pose"], False)
+
+    def _pose_chosen(self, index):
+        if self.wheel is not None:
+            self.wheel.set_pose(index)
+
+    def _show_wheel(self, path, pose):
+        if self.wheel is not None:
+            self.wheel.close()
+            self.wheel = None
+        if path is None:
+            self.poses.hide()
+            return
+        self.wheel = CellView(self.obj.Document, path.Machine)
+        self.wheel.set_path(path.Proxy.arrays(path)["frames"])
+        self.wheel.set_pose(pose)
+
+    def open_program(self, row):
+        """Opens the program's panel at the motion's pose."""
+        from ..panels.program_panel import show_pose
+
+        path, motion = self._motion(row)
+        if path is not None and motion["pose"] < path.PoseCount:
+            self._show_wheel(None, 0)  # the panel draws its own
+            show_pose(path, motion["pose"], True)
+
+    # What FreeCAD tells
+
+    def slotChangedObject(self, obj, name):
+        if self.obj is not None and obj is self.obj and name in ("Shown", "OutOfDate"):
+            QtCore.QTimer.singleShot(0, self.refresh)
+
+    def slotDeletedObject(self, obj):
+        if self.obj is None:
+            return
+        if obj == self.obj or obj == self.shown_path:
+            self._forget()
+
+    def slotDeletedDocument(self, document):
+        try:
+            other = self.obj is None or self.obj.Document != document
+        except (ReferenceError, RuntimeError):
+            other = False
+        if not other:
+            self._forget()
+
+    def closeEvent(self, event):
+        self._unmark()
+        super().closeEvent(event)
+
+    def _unmark(self):
+        if self.wheel is not None:
+            self.wheel.close()
+        if self.scene is not None:
+            self.scene.close()
+        self.wheel = self.scene = self.shown_path = None
+        self.poses.hide()
+
+    def _forget(self):
+        self._unmark()
+        self.obj = self.found = self.field = self.cluster_of = None
+        forget_field()
+        self.overall.setText("")
+        self.overall.setStyleSheet("")
+        self.figures.setText("")
+        for one in (self.regions, self.clusters, self.motions):
+            one.setRowCount(0)
+
+
+def _titled(title, widget):
+    box = QtGui.QWidget()
+    layout = QtGui.QVBoxLayout(box)
+    layout.setContentsMargins(0, 0, 0, 0)
+    if title:
+        layout.addWidget(QtGui.QLabel(title))
+    layout.addWidget(widget, 1)
+    return box

@@ -1,0 +1,243 @@
+"""What the verdict's dock writes into its tables and labels."""
+
+from ..common.compat import QtGui, translate
+
+BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
+
+
+def table(name, titles):
+    """An empty table whose rows are chosen as a whole."""
+    made = QtGui.QTableWidget(0, len(titles))
+    made.setObjectName(name)
+    made.setHorizontalHeaderLabels(titles)
+    made.verticalHeader().hide()
+    made.verticalHeader().setDefaultSectionSize(20)
+    made.horizontalHeader().setStretchLastSection(True)
+    made.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+    made.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+    made.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+    made.setWordWrap(False)
+    return made
+
+
+def fill(made, rows):
+    """Puts rows (texts, colour or None) into a table."""
+    made.blockSignals(True)
+    made.setRowCount(len(rows))
+    for i, (texts, colour) in enumerate(rows):
+        for k, text in enumerate(texts):
+            item = QtGui.QTableWidgetItem(text)
+            item.setToolTip(text)
+            if colour is not None:
+                item.setForeground(colour)
+            made.setItem(i, k, item)
+    made.setCurrentCell(-1, -1)
+    made.resizeColumnsToContents()
+    made.blockSignals(False)
+
+
+def word(verdict):
+    """A verdict in the user's language."""
+    return {
+        "pass": translate("BeltGrinding", "pass"),
+        "fail": translate("BeltGrinding", "fail"),
+        "unknown": translate("BeltGrinding", "unknown"),
+    }[verdict]
+
+
+def headline(found):
+    """The verdict in one line."""
+    if found["overall"] == "pass":
+        return translate("BeltGrinding", "In tolerance")
+    if found["overall"] == "unknown":
+        return translate("BeltGrinding", "Cannot be told: not everything was inspected")
+    bad = sum(one["verdict"] == "fail" for one in found["faces"])
+    text = translate("BeltGrinding", "Not in tolerance: {} of {} faces").format(
+        bad, len(found["faces"])
+    )
+    if bad == 0:
+        text = translate("BeltGrinding", "Not in tolerance")
+    return text
+
+
+def doubts(found):
+    """What the user must know besides, a line each."""
+    lines = [
+        translate(
+            "BeltGrinding", "{:.2f} % in tolerance, {:.2f} % too high, {:.2f} % too deep"
+        ).format(100 * found["in_share"], 100 * found["above_share"], 100 * found["below_share"]),
+        translate(
+            "BeltGrinding", "Removed {:,.1f} mm³, left {:,.1f} mm³, too deep {:,.1f} mm³"
+        ).format(
+            found["removed_volume_mm3"], found["excess_volume_mm3"], found["gouge_volume_mm3"]
+        ),
+    ]
+    if found["untouched_area_mm2"] is not None:
+        lines.append(
+            translate("BeltGrinding", "Never touched: {:,.1f} of {:,.1f} mm²").format(
+                found["untouched_area_mm2"], found["area_mm2"]
+            )
+        )
+    counts = (
+        (translate("BeltGrinding", "missed rays"), found["missed_rays"]),
+        (translate("BeltGrinding", "samples with defective stock"), found["defective_samples"]),
+        (
+            translate("BeltGrinding", "events outside of the law's range"),
+            found["extrapolated_law_events"],
+        ),
+        (translate("BeltGrinding", "contacts not converged"), found["not_converged_events"]),
+        (
+            translate("BeltGrinding", "places of the programs not resolved"),
+            found["unresolved_motions"] or 0,
+        ),
+    )
+    told = ", ".join(f"{count} {what}" for what, count in counts)
+    lines.append(translate("BeltGrinding", "In doubt") + f": {told}")
+    return "\n".join(lines + found["notes"])
+
+
+class _Rows:
+    """A function that makes rows, and the titles of their columns, which wait for the language."""
+
+    def __init__(self, make, titles):
+        self.make, self.titles = make, titles
+
+    def __call__(self, *arguments):
+        return self.make(*arguments)
+
+
+def _region_titles():
+    return [
+        translate("BeltGrinding", "Where"),
+        translate("BeltGrinding", "Verdict"),
+        translate("BeltGrinding", "In, %"),
+        translate("BeltGrinding", "High, %"),
+        translate("BeltGrinding", "Deep, %"),
+        translate("BeltGrinding", "Worst, mm"),
+        translate("BeltGrinding", "Beyond, mm"),
+        translate("BeltGrinding", "Waves Wt, mm"),
+    ]
+
+
+def _colour(verdict):
+    return {"pass": None, "fail": BAD, "unknown": UNKNOWN}[verdict]
+
+
+def _regions(found, face_name):
+    """[(region, texts, colour)] of the zones, their thickness, and the faces."""
+    rows = []
+    for zone in found["zones"]:
+        name = zone["name"]
+        if name is None:
+            if len(found["zones"]) == 1:
+                continue  # there are no zones: the faces say it all
+            name = translate("BeltGrinding", "elsewhere")
+        # A zone may fail by its thickness alone, which has a row of its own.
+        out = zone["above_share"] + zone["below_share"] > 0
+        verdict = zone["verdict"] if zone["worst"] is None or out else "pass"
+        rows.append((zone, [name, word(verdict), *_figures(zone), ""], _colour(verdict)))
+        thick = zone["thickness"]
+        if thick is not None:
+            title = translate("BeltGrinding", "{}: thickness").format(name)
+            rows.append((thick, [title, *_thickness(thick)], _colour(thick["verdict"])))
+    for face in found["faces"]:
+        wave = face["waviness"]
+        told = [f"{wave[name]['Wt_mm']:.4f}" if wave[name] else "–" for name in ("along", "across")]
+        texts = [face_name(face["face"]), word(face["verdict"]), *_figures(face)]
+        rows.append((face, [*texts, " / ".join(told)], _colour(face["verdict"])))
+    return rows
+
+
+def _figures(region):
+    if region["worst"] is None:
+        return [""] * 5
+    worst = region["worst"]
+    shares = [f"{100 * region[f'{name}_share']:.2f}" for name in ("in", "above", "below")]
+    return [*shares, f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"]
+
+
+def _thickness(thick):
+    if thick["worst"] is None:
+        return [word(thick["verdict"]), *[""] * 6]
+    worst = thick["worst"]
+    share = f"{100 * (1 - thick['out_share']):.2f}"
+    value, beyond = f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"
+    return [word(thick["verdict"]), share, "", "", value, beyond, ""]
+
+
+def _cluster_titles():
+    return [
+        "",
+        translate("BeltGrinding", "What"),
+        translate("BeltGrinding", "Area, mm²"),
+        translate("BeltGrinding", "Worst, mm"),
+        translate("BeltGrinding", "Size, mm"),
+        translate("BeltGrinding", "Line"),
+        translate("BeltGrinding", "Faces"),
+    ]
+
+
+def _clusters(found, face_name):
+    """[(texts, None)] of the clusters, largest first."""
+    sides = {
+        "above": translate("BeltGrinding", "too high"),
+        "below": translate("BeltGrinding", "too deep"),
+    }
+    rows = []
+    for cluster in found["clusters"]:
+        first = cluster["motions"][0] if cluster["motions"] else None
+        line = ""
+        if (cluster["untouched_share"] or 0.0) > 0.5:
+            line = translate("BeltGrinding", "never touched")
+        elif first is not None:
+            line = str(first["line"] or "")
+        rows.append(
+            (
+                [
+                    str(cluster["number"]),
+                    sides[cluster["side"]],
+                    f"{cluster['area_mm2']:.2f}",
+                    f"{cluster['worst']['value_mm']:+.3f}",
+                    f"{cluster['extent_mm']:.1f} × {cluster['width_mm']:.1f}",
+                    line,
+                    ", ".join(face_name(face) for face in cluster["faces"]),
+                ],
+                None,
+            )
+        )
+    return rows
+
+
+def _motion_titles():
+    return [
+        translate("BeltGrinding", "Share, %"),
+        translate("BeltGrinding", "Line"),
+        translate("BeltGrinding", "Pose"),
+        translate("BeltGrinding", "Depth, mm"),
+        translate("BeltGrinding", "Program"),
+    ]
+
+
+def _motions(cluster, programs):
+    """[(texts, None)] of a cluster's motions, largest share first."""
+    rows = []
+    for motion in cluster["motions"]:
+        known = motion["program"] is not None
+        rows.append(
+            (
+                [
+                    f"{100 * motion['share']:.1f}",
+                    str(motion["line"] or ""),
+                    str(motion["pose"] + 1) if known else "",
+                    f"{motion['depth_mm']:.3f}",
+                    programs[motion["program"]]["name"] if known else "",
+                ],
+                None,
+            )
+        )
+    return rows
+
+
+region_rows = _Rows(_regions, _region_titles)
+cluster_rows = _Rows(_clusters, _cluster_titles)
+motion_rows = _Rows(_motions, _motion_titles)

@@ -1,0 +1,73 @@
+"""Task panel of a belt: what it has done, a new one, and the count of a run."""
+
+from ...engine import InputError
+from ...objects import belt_machine, job_data, job_object
+from ...objects.simulation import Simulation
+from ..common.compat import QtGui, translate
+from ..widgets.form import Form
+from .panel import Panel
+
+
+class BeltPanel(Panel):
+    """Edits a Belt."""
+
+    def __init__(self, obj):
+        super().__init__(obj, translate("BeltGrinding", "Belt"), "BeltGrinding_Belt")
+        self.fields = None
+        self.place = QtGui.QVBoxLayout()
+        self.body.addLayout(self.place)
+        self.left = QtGui.QLabel()
+        self.left.setObjectName("remainingCut")
+        self.body.addWidget(self.left)
+        for name, text, action in (
+            ("countRun", translate("BeltGrinding", "Count the simulated grind"), self.count),
+            ("newBelt", translate("BeltGrinding", "New belt"), self.renew),
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(action)
+            self.body.addWidget(button)
+        self.finish()
+        self.fill()
+
+    def fill(self):
+        """The fields anew: the buttons change the properties."""
+        if self.fields is not None:
+            self.fields.setParent(None)
+        self.fields = Form(self.obj, translate("BeltGrinding", "What it has done"))
+        self.fields.add("Hours", translate("BeltGrinding", "In contact"), unit="h")
+        self.fields.add("WorkDone", translate("BeltGrinding", "Work"), unit="J")
+        self.fields.add("RemovedVolume", translate("BeltGrinding", "Removed"), unit="mm³")
+        self.place.addWidget(self.fields)
+        text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
+        self.left.setText(text.format(self.obj.RemainingCut))
+
+    def renew(self):
+        self.obj.Proxy.reset(self.obj)
+        self.fill()
+        self.tell(translate("BeltGrinding", "A new belt is on."))
+
+    def count(self):
+        """Adds the use of the results of the jobs that run on this belt."""
+        counted, refused = 0, []
+        for simulation in self._simulations():
+            try:
+                self.obj.Proxy.count(self.obj, simulation)
+                counted += 1
+            except InputError as error:
+                refused.append(str(error))
+        self.fill()
+        if counted:
+            self.tell(translate("BeltGrinding", "Runs counted: {}.").format(counted))
+        else:
+            nothing = translate("BeltGrinding", "Simulate a job that runs on this belt first.")
+            self.tell(refused[0] if refused else nothing, True)
+
+    def _simulations(self):
+        for job in self.document.Objects:
+            if job_object.type_of(job) != job_object.BeltGrindingJob.TYPE:
+                continue
+            machine = job_data.child(job, belt_machine.BeltMachine)
+            simulation = job_data.child(job, Simulation)
+            if machine is not None and machine.Belt == self.obj and simulation is not None:
+                yield simulation

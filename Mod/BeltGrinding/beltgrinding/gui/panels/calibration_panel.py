@@ -1,0 +1,222 @@
+"""Task panel: the law of removal fitted to a table of measured grinds."""
+
+import FreeCADGui as Gui
+
+from ...calibration import calibrate as calibration, plot as calibration_plot
+from ...engine import Cancelled, InputError
+from ...objects import job_data, properties
+from ..common.compat import QtCore, QtGui, buttons, translate
+from ..common.icons import qicon
+from ..common.runner import Background
+from ..widgets.form import MINIMUM_WIDTH
+
+WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
+LONG = 12  # characters of an interval's two ends that fit beside each other
+TABLES = "Measured grinds (*.csv *.txt);;All files (*)"
+
+
+class CalibrationPanel:
+    """Fits, shows the result, and on demand writes it into the job in one undo step."""
+
+    def __init__(self, job):
+        self.job = job
+        self.task = self.result = None
+        self.picture = QtGui.QPixmap()
+        self.form = QtGui.QWidget()
+        self.form.setWindowTitle(translate("BeltGrinding", "Calibrate removal law"))
+        self.form.setWindowIcon(qicon("BeltGrinding_Calibrate"))
+        body = QtGui.QVBoxLayout(self.form)
+        fields = QtGui.QFormLayout()
+        fields.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
+        self.file = Gui.UiLoader().createWidget("Gui::FileChooser")
+        self.file.setObjectName("grinds")
+        self.file.setProperty("filter", TABLES)
+        self.file.setToolTip(
+            translate("BeltGrinding", "CSV with columns such as force_N, time_s, area_mm2")
+        )
+        fields.addRow(translate("BeltGrinding", "Measured grinds"), self.file)
+        self.diameter = self._number(
+            fields,
+            "driveWheelDiameter",
+            translate("BeltGrinding", "Drive wheel's diameter, mm"),
+            translate("BeltGrinding", "needed only where the table gives rotations a minute"),
+        )
+        self.wear_unit = self._number(
+            fields,
+            "wearUnit",
+            translate("BeltGrinding", "Work of one unit of wear, J"),
+            translate("BeltGrinding", "needed only where the table gives a wear number"),
+        )
+        body.addLayout(fields)
+        self.start = self._button(body, translate("BeltGrinding", "Fit"), self.fit)
+        self.state = QtGui.QLabel()
+        self.state.setObjectName("calibrationState")
+        self.state.setWordWrap(True)
+        body.addWidget(self.state)
+        self.table = self._table()
+        body.addWidget(self.table)
+        self.plot = QtGui.QLabel()
+        self.plot.setObjectName("calibrationPlot")
+        self.plot.setAlignment(QtCore.Qt.AlignCenter)
+        body.addWidget(self.plot)
+        self.larger = self._button(body, translate("BeltGrinding", "Larger plot"), self.enlarge)
+        self.warnings = QtGui.QLabel()
+        self.warnings.setObjectName("calibrationWarnings")
+        self.warnings.setWordWrap(True)
+        body.addWidget(self.warnings)
+        self.use = self._button(body, translate("BeltGrinding", "Use in the job"), self.apply)
+        body.addStretch()
+        self._show_parts(False)
+
+    def _number(self, fields, name, text, tip):
+        """An entry that may stay empty."""
+        widget = QtGui.QLineEdit()
+        widget.setObjectName(name)
+        widget.setMinimumWidth(MINIMUM_WIDTH)
+        widget.setToolTip(tip)
+        widget.setPlaceholderText(translate("BeltGrinding", "(not known)"))
+        validator = QtGui.QDoubleValidator(0.0, 1e12, 12, widget)
+        validator.setLocale(QtCore.QLocale.c())
+        widget.setValidator(validator)
+        fields.addRow(text, widget)
+        return widget
+
+    def _button(self, body, text, action):
+        button = QtGui.QPushButton(text)
+        button.clicked.connect(lambda *_: action())
+        body.addWidget(button)
+        return button
+
+    def _table(self):
+        table = QtGui.QTableWidget(0, 2)
+        table.setObjectName("calibrationTable")
+        table.setHorizontalHeaderLabels(
+            [
+                translate("BeltGrinding", "Parameter"),
+                translate("BeltGrinding", "Value (95 %)"),
+            ]
+        )
+        table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        table.verticalHeader().hide()
+        table.setMinimumWidth(WIDTH)
+        table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        table.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        table.horizontalHeader().setStretchLastSection(True)
+        return table
+
+    def _show_parts(self, on):
+        for widget in (self.table, self.plot, self.larger, self.warnings, self.use):
+            widget.setVisible(on)
+
+    def fit(self):
+        """Reads the table and fits, in a thread of its own."""
+        path = str(self.file.property("fileName") or "")
+        if not path:
+            self.state.setText(translate("BeltGrinding", "Choose the table of measured grinds."))
+            return
+        diameter = self._entered(self.diameter)
+        unit = self._entered(self.wear_unit) or 1.0
+        self._show_parts(False)
+        self.start.setEnabled(False)
+        self.state.setText(translate("BeltGrinding", "Fitting ..."))
+
+        def work(_):
+            result = calibration.fit(path, diameter, unit)
+            report = result["report"]
+            return result, calibration_plot.render(report), calibration_plot.render_small(report)
+
+        self.task = Background(work, self.show)
+
+    def _entered(self, field):
+        return float(field.text()) if field.text() and field.hasAcceptableInput() else None
+
+    def show(self, outcome, error):
+        """Shows what the fit has found."""
+        self.task = None
+        self.start.setEnabled(True)
+        if isinstance(error, Cancelled):
+            return
+        if error is not None:
+            self.state.setText(str(error))
+            if not isinstance(error, InputError):
+                raise error
+            return
+        self.result, plot, small = outcome
+        report = self.result["report"]
+        self.state.setText(
+            translate(
+                "BeltGrinding",
+                "{} grinds. Left out one by one, they are predicted with a median error of "
+                "{:.1f} %, nine of ten within {:.0f} %.",
+            ).format(
+                report["grinds"],
+                100.0 * report["leave_one_out"]["median"],
+                100.0 * report["leave_one_out"]["p90"],
+            )
+        )
+        self._fill(report["parameters"])
+        self.picture.loadFromData(plot)
+        preview = QtGui.QPixmap()
+        preview.loadFromData(small)
+        self.plot.setPixmap(preview.scaledToWidth(WIDTH, QtCore.Qt.SmoothTransformation))
+        self.warnings.setText("\n".join(f"\u2022 {text}" for text in report["warnings"]))
+        self._show_parts(True)
+        self.warnings.setVisible(bool(report["warnings"]))
+
+    def _fill(self, parameters):
+        self.table.setRowCount(len(parameters))
+        for row, one in enumerate(parameters):
+            name = one["name"].replace("_", "\n", 1).replace("_", " ")
+            interval = translate("BeltGrinding", "fixed")
+            if one["free"]:
+                low, high = (f"{one[side]:.3g}" for side in ("low", "high"))
+                between = "\n... " if len(low + high) > LONG else " ... "
+                interval = low + between + high
+            texts = (
+                f"{name}\n{one['unit'].replace('mm2', 'mm²')}".strip(),
+                f"{one['value']:.4g}\n({interval})",
+            )
+            for column, text in enumerate(texts):
+                self.table.setItem(row, column, QtGui.QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+        self.table.resizeRowsToContents()
+        rows = sum(self.table.rowHeight(row) for row in range(len(parameters)))
+        self.table.setFixedHeight(rows + self.table.horizontalHeader().sizeHint().height() + 4)
+
+    def enlarge(self):
+        """The plot in a window of its own."""
+        window = QtGui.QDialog(self.form)
+        window.setObjectName("calibrationWindow")
+        window.setWindowTitle(self.form.windowTitle())
+        body = QtGui.QVBoxLayout(window)
+        area = QtGui.QScrollArea()
+        label = QtGui.QLabel()
+        label.setPixmap(self.picture)
+        area.setWidget(label)
+        body.addWidget(area)
+        window.resize(self.picture.width() + 60, min(self.picture.height() + 60, 900))
+        window.show()
+
+    def apply(self):
+        """Writes the law's parameters into the job's properties, in one undo step."""
+        document = self.job.Document
+        document.openTransaction(translate("BeltGrinding", "Calibrate removal law"))
+        try:
+            properties.from_job(self.job, job_data.KEYS, {"law": self.result["law"]})
+            document.recompute()
+            document.commitTransaction()
+        except Exception:
+            document.abortTransaction()
+            raise
+        self.state.setText(
+            translate("BeltGrinding", "{} uses the calibrated law.").format(self.job.Label)
+        )
+
+    def getStandardButtons(self):
+        return buttons("Close")
+
+    def reject(self):
+        if self.task is not None:
+            self.task.abandon()
+        Gui.Control.closeDialog()
+        return True

@@ -1,0 +1,125 @@
+"""Task panel of the deviation: the tolerance and the figures."""
+
+from ...engine import InputError
+from ...objects import preferences
+from ..common.compat import QtGui, translate
+from ..scene.probe import Probe
+from ..widgets.form import Form
+from .job_panel import check_tolerance, mark_tolerance
+from .panel import Panel
+
+TABLE_HEIGHT = 300  # pixels: all rows
+
+
+class DeviationPanel(Panel):
+    """Edits the job's tolerance; the colours and the figures follow."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Deviation")
+        super().__init__(obj, title, "BeltGrinding_Deviation")
+        form = Form(obj.getParentGroup(), translate("BeltGrinding", "Tolerance"))
+        form.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
+        form.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
+        form.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
+        form.changed = self.update
+        self.tolerance = form
+        self.body.addWidget(form)
+        colours = Form(obj, translate("BeltGrinding", "Colours"))
+        colours.changed = self.update
+        ends = {
+            "by hand": translate("BeltGrinding", "by hand"),
+            "by tolerance": translate("BeltGrinding", "by tolerance"),
+            "by percentile": translate("BeltGrinding", "by percentile"),
+        }
+        colours.add("Bounds", translate("BeltGrinding", "Colours end"), ends)
+        colours.add("TimesTolerance", translate("BeltGrinding", "Times the limit"))
+        colours.add("Percentile", translate("BeltGrinding", "Percentile"), unit="%")
+        colours.add("Bands", translate("BeltGrinding", "Steps of each ramp"))
+        self.colours, self.tolerance = colours, form
+        self.body.addWidget(colours)
+        if obj.ExpectedInTolerance > 0.0 or getattr(obj.Simulation, "ScanFigures", ""):
+            shown = {
+                "deviation": translate("BeltGrinding", "Deviation"),
+                "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
+                "measured": translate("BeltGrinding", "Scan"),
+                "difference": translate("BeltGrinding", "Scan less prediction"),
+            }
+            colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
+        self.table = QtGui.QTableWidget(0, 2)
+        self.table.setObjectName("statistics")
+        self.table.horizontalHeader().hide()
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
+        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.body.addWidget(self.table, 1)
+        self.probe = Probe(obj)
+        self.body.addWidget(self.probe)
+        self.finish()
+        self.update()
+
+    def update(self):
+        """Colours and figures anew."""
+        obj = self.obj
+        rows = {"by tolerance": ["TimesTolerance"], "by percentile": ["Percentile"]}
+        always = [
+            name for name in self.colours.rows if name not in ("TimesTolerance", "Percentile")
+        ]
+        self.colours.show_rows([*always, *rows.get(obj.Bounds, [])])
+        by_hand = ["ColourLimit"] if obj.Bounds == "by hand" else []
+        self.tolerance.show_rows(["ToleranceLower", "ToleranceUpper", *by_hand])
+        mark_tolerance(self.tolerance, obj.getParentGroup())
+        try:
+            self.check()
+        except InputError as error:
+            self.tell(str(error), True)
+            return
+        obj.Proxy.update(obj)
+        self.tell(
+            translate("BeltGrinding", "Out of date: simulate again.") if obj.OutOfDate else "", True
+        )
+
+        def mm(value, sign="+"):
+            return preferences.length_text(value.Value, 1, sign)
+
+        rows = (
+            (translate("BeltGrinding", "In tolerance"), f"{obj.InTolerance:.2f} %"),
+            (translate("BeltGrinding", "Too much left"), f"{obj.AboveTolerance:.2f} %"),
+            (translate("BeltGrinding", "Cut too deep"), f"{obj.BelowTolerance:.2f} %"),
+            (translate("BeltGrinding", "Minimum"), mm(obj.Minimum)),
+            (translate("BeltGrinding", "Maximum"), mm(obj.Maximum)),
+            (translate("BeltGrinding", "Mean"), mm(obj.Mean)),
+            (translate("BeltGrinding", "Root mean square"), mm(obj.RootMeanSquare, "")),
+            (translate("BeltGrinding", "5 % lie below"), mm(obj.Percentile05)),
+            (translate("BeltGrinding", "Median"), mm(obj.Percentile50)),
+            (translate("BeltGrinding", "95 % lie below"), mm(obj.Percentile95)),
+            (translate("BeltGrinding", "Removed"), f"{obj.RemovedVolume.Value:,.1f} mm³"),
+            (translate("BeltGrinding", "Area"), f"{obj.DesignArea.Value:,.1f} mm²"),
+        )
+        if obj.ExpectedInTolerance > 0.0:
+            rows += (
+                (
+                    translate("BeltGrinding", "In tol., expected"),
+                    f"{obj.ExpectedInTolerance:.2f} %",
+                ),
+                (
+                    translate("BeltGrinding", "Uncertainty, mean"),
+                    mm(obj.UncertaintyMean, ""),
+                ),
+                (
+                    translate("BeltGrinding", "Uncertainty, 95 %"),
+                    mm(obj.Uncertainty95, ""),
+                ),
+            )
+        self.table.setRowCount(len(rows))
+        for i, (name, text) in enumerate(rows):
+            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
+            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+        self.table.resizeRowsToContents()
+
+    def close(self):
+        self.probe.release()
+
+    def check(self):
+        check_tolerance(self.obj.getParentGroup())

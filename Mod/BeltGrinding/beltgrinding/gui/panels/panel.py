@@ -1,0 +1,92 @@
+"""Base of the task panels: one undo transaction each, accepted or taken back."""
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...engine import InputError
+from ..common.compat import QtGui, buttons, translate
+from ..common.icons import qicon
+from ..widgets.form import Form
+
+
+class Panel:
+    """A task panel that edits ``obj``. Subclasses fill ``self.body`` (a QVBoxLayout).
+
+    The transaction is open before the panel is (by the command, or by ``edit``); OK commits it,
+    Cancel aborts it.
+    """
+
+    def __init__(self, obj, title, icon_name):
+        self.obj = obj
+        self.document = obj.Document
+        self.form = QtGui.QWidget()
+        self.form.setWindowTitle(title)
+        self.form.setWindowIcon(qicon(icon_name))
+        self.body = QtGui.QVBoxLayout(self.form)
+        self.note = QtGui.QLabel()
+        self.note.setObjectName("note")
+        self.note.setWordWrap(True)
+        self.note.hide()
+
+    def finish(self):
+        """Puts the line for messages below the fields; call it last in __init__."""
+        self.body.addWidget(self.note)
+        self.body.addStretch()
+
+    def tell(self, text, error=False):
+        """A message in the panel; '' hides it."""
+        self.note.setText(text)
+        self.note.setStyleSheet("color: #b3261e; font-weight: bold;" if error else "")
+        self.note.setVisible(bool(text))
+
+    def check(self):
+        """Raises InputError for what must be mended before OK."""
+
+    def close(self):
+        """Called when the panel goes, whatever the button."""
+
+    def getStandardButtons(self):
+        return buttons("Ok", "Cancel")
+
+    def accept(self):
+        try:
+            for form in self.form.findChildren(QtGui.QGroupBox):
+                if isinstance(form, Form):
+                    form.check()
+            self.check()
+        except InputError as error:
+            self.tell(str(error), True)
+            FreeCAD.Console.PrintError(f"{self.obj.Label}: {error}\n")
+            return False
+        self.close()
+        self.document.recompute()
+        self.document.commitTransaction()
+        _leave(self.document)
+        return True
+
+    def reject(self):
+        self.close()
+        self.document.abortTransaction()  # before leaving: resetEdit commits what is open
+        _leave(self.document)
+        self.document.recompute()
+        return True
+
+
+def _leave(document):
+    gui = Gui.getDocument(document.Name)
+    if gui.getInEdit() is not None:
+        gui.resetEdit()
+    else:
+        Gui.Control.closeDialog()
+
+
+def edit(obj):
+    """Opens the panel of an object, as a double click does, in an undo transaction."""
+    if Gui.Control.activeDialog():
+        FreeCAD.Console.PrintWarning(
+            translate("BeltGrinding", "Close the open task panel first.") + "\n"
+        )
+        return
+    if not obj.Document.HasPendingTransaction:
+        obj.Document.openTransaction(translate("BeltGrinding", "Edit") + " " + obj.Label)
+    Gui.getDocument(obj.Document.Name).setEdit(obj.Name, 0)

@@ -1,0 +1,114 @@
+"""Task panel of a robot program."""
+
+from pathlib import Path
+
+from ...engine import InputError
+from ...objects import robot_path
+from ..common.compat import QtGui, translate
+from ..widgets.form import Form
+from ..widgets.pose_walk import PoseTable, PoseWalk
+from .panel import Panel, edit
+
+SHOWN_PROBLEMS = 200
+TABLE_HEIGHT = 260  # pixels
+_open = []  # the panel that is open
+
+
+def show_pose(obj, index, opening):
+    """Selects the pose ``index`` (from 0) of a RobotPath in its panel, if that is open or with
+    ``opening``, which opens it.
+    """
+    if opening and not _open:
+        edit(obj)
+    for panel in _open:
+        if panel.obj == obj and index < obj.PoseCount:
+            panel.walk.go(index)
+
+
+class ProgramPanel(Panel):
+    """Edits a RobotPath: its file, its overrides; shows its poses, their source, what could not be
+    resolved. A pose chosen in the view, the table, the source or by the slider is chosen in all."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Robot program")
+        super().__init__(obj, title, "BeltGrinding_ImportProgram")
+        form = Form(obj, translate("BeltGrinding", "Program"))
+        if obj.SourceObject is None:
+            from ..common.file_filters import programs_filter
+
+            form.add("Source", translate("BeltGrinding", "File"), programs_filter())
+        form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
+        form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
+        self.body.addWidget(form)
+        again = QtGui.QPushButton(translate("BeltGrinding", "Read the file again"))
+        again.setObjectName("reload")
+        again.clicked.connect(self.reload)
+        again.setVisible(obj.SourceObject is None)
+        self.body.addWidget(again)
+        self.walk = PoseWalk(obj.Document, obj.Machine, [obj])
+        self.table = PoseTable()
+        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.problems = QtGui.QListWidget()
+        self.problems.setObjectName("problems")
+        self.walk.moved = self.table.show_pose
+        self.table.chosen = self.walk.go
+        self.body.addWidget(self.walk)
+        self.body.addWidget(self.table, 1)
+        self.source = obj.Source
+        form.changed = self.changed
+        self.finish()
+        self.show()
+        _open.append(self)
+
+    def changed(self):
+        if self.obj.Source != self.source:
+            self.reload()
+        else:
+            self.describe()
+
+    def reload(self):
+        """Reads the file; on an error the poses stay as they were."""
+        try:
+            robot_path.load_program(self.obj, self.obj.Source)
+            self.source = self.obj.Source
+            self.obj.Label = Path(self.obj.Source).stem
+        except InputError as error:
+            self.obj.Source = self.source
+            self.tell(str(error), True)
+            return
+        self.show()
+
+    def show(self):
+        """Poses, source and problems as they are now."""
+        obj = self.obj
+        self.table.show_path(obj)
+        self.walk.choose(0)
+        if obj.Poses:
+            self.table.show_pose(0)
+        self.problems.clear()
+        self.problems.addItems(obj.Problems[:SHOWN_PROBLEMS])
+        if len(obj.Problems) > SHOWN_PROBLEMS:
+            more = len(obj.Problems) - SHOWN_PROBLEMS
+            self.problems.addItem(translate("BeltGrinding", "... and {} more").format(more))
+        at = self.table.indexOf(self.problems)
+        if at >= 0:
+            self.table.removeTab(at)
+        if obj.Problems:
+            text = translate("BeltGrinding", "Problems ({})").format(len(obj.Problems))
+            self.table.addTab(self.problems, text)
+        self.describe()
+
+    def describe(self):
+        """Figures of the path."""
+        obj = self.obj
+        if "Touched" in obj.State:
+            obj.recompute()
+        self.tell(
+            translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
+                obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
+            )
+        )
+
+    def close(self):
+        _open.remove(self)
+        self.walk.release()

@@ -1,0 +1,219 @@
+"""Task panel of a raster path; the passes in the 3D view follow every change."""
+
+import FreeCADGui as Gui
+
+from ...engine import InputError
+from ...objects import raster_path
+from ..common.compat import QtCore, QtGui, translate
+from ..widgets.form import Form
+from .panel import Panel
+
+WAIT = 300  # ms after the last change
+SHOWN_WARNINGS = 20
+
+
+class RasterPanel(Panel):
+    """Edits a RasterPath."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Raster path")
+        super().__init__(obj, title, "BeltGrinding_RasterPath")
+        self.timer = QtCore.QTimer(self.form)
+        self.timer.setSingleShot(True)
+        self.timer.timeout.connect(self.compute)
+        self.body.addWidget(self._faces())
+        self.passes = self._passes()
+        self.body.addWidget(self.passes)
+        self.body.addWidget(self._process())
+        self.body.addWidget(self._posing())
+        self.warnings = QtGui.QListWidget()
+        self.warnings.setObjectName("rasterWarnings")
+        self.warnings.setWordWrap(True)
+        self.warnings.setMaximumHeight(100)
+        self.body.addWidget(self.warnings)
+        self.finish()
+        self.arrange()
+        self.compute()
+
+    def _faces(self):
+        box = QtGui.QGroupBox(translate("BeltGrinding", "Faces"))
+        row = QtGui.QHBoxLayout(box)
+        self.faces = QtGui.QLabel()
+        self.faces.setObjectName("rasterFaces")
+        self.faces.setWordWrap(True)
+        row.addWidget(self.faces, 1)
+        button = QtGui.QPushButton(translate("BeltGrinding", "Take selected"))
+        button.setObjectName("takeFaces")
+        button.clicked.connect(self.take_selected)
+        row.addWidget(button)
+        self.name_faces()
+        return box
+
+    def _passes(self):
+        form = Form(self.obj, translate("BeltGrinding", "Passes"))
+        along = {
+            "u": translate("BeltGrinding", "u of each face"),
+            "v": translate("BeltGrinding", "v of each face"),
+            "direction": translate("BeltGrinding", "A direction"),
+        }
+        spacing = {
+            "lines": translate("BeltGrinding", "Lines of the surface"),
+            "even": translate("BeltGrinding", "Even on the surface"),
+        }
+        order = {
+            "zigzag": translate("BeltGrinding", "Zigzag"),
+            "one_way": translate("BeltGrinding", "One way"),
+        }
+        form.add("Along", translate("BeltGrinding", "Along"), along)
+        self.direction = DirectionField(self.obj, self.changed, self.tell)
+        label = QtGui.QLabel(translate("BeltGrinding", "Direction"))
+        form.layout_.addRow(label, self.direction)
+        form.rows["Direction"] = (label, self.direction)
+        form.add("PassSpacing", translate("BeltGrinding", "Spacing"), spacing)
+        form.add("StepOver", translate("BeltGrinding", "Step-over (0: by contact)"))
+        form.add("StepOverShare", translate("BeltGrinding", "Share of contact width"))
+        form.add("Order", translate("BeltGrinding", "Order"), order)
+        form.add("RunOut", translate("BeltGrinding", "Run-out at borders"))
+        form.add("Bridge", translate("BeltGrinding", "Bridge gaps up to"))
+        form.changed = self.changed
+        return form
+
+    def _process(self):
+        form = Form(self.obj, translate("BeltGrinding", "Process"))
+        ways = {
+            "plunge": translate("BeltGrinding", "Along the normal"),
+            "arc": translate("BeltGrinding", "Tangential arc"),
+        }
+        form.add("Feed", translate("BeltGrinding", "Feed"))
+        form.add("Force", translate("BeltGrinding", "Force (0: machine's)"))
+        form.add("Approach", translate("BeltGrinding", "Approach"), ways)
+        form.add("ApproachLength", translate("BeltGrinding", "Approach length"))
+        form.add("ApproachFeed", translate("BeltGrinding", "Approach feed"))
+        form.add("Clearance", translate("BeltGrinding", "Clearance"))
+        form.changed = self.changed
+        return form
+
+    def _posing(self):
+        form = Form(self.obj, translate("BeltGrinding", "Poses"))
+        form.add("BeltAngle", translate("BeltGrinding", "Belt against pass"))
+        form.add("Smoothing", translate("BeltGrinding", "Smooth normals over"))
+        form.add("ChordError", translate("BeltGrinding", "Chord error"))
+        form.add("MaxDistance", translate("BeltGrinding", "Distance at most"))
+        form.add("MaxTurn", translate("BeltGrinding", "Turn at most"))
+        form.changed = self.changed
+        return form
+
+    def name_faces(self):
+        """Shows which faces the passes lie on."""
+        everything = translate("BeltGrinding", "all faces")
+        texts = [
+            f"{obj.Label}: {', '.join(s for s in subs if s) or everything}"
+            for obj, subs in self.obj.Faces
+        ]
+        self.faces.setText("\n".join(texts))
+
+    def take_selected(self):
+        """Lays the passes on the faces that are selected in the 3D view."""
+        links = []
+        for one in Gui.Selection.getSelectionEx(self.document.Name):
+            names = [s for s in one.SubElementNames if s.startswith("Face")]
+            if hasattr(one.Object, "Shape") and names:
+                links.append((one.Object, tuple(names)))
+        if not links:
+            self.tell(translate("BeltGrinding", "Select faces in the 3D view first."), True)
+            return
+        self.obj.Faces = links
+        self.name_faces()
+        self.changed()
+
+    def arrange(self):
+        """Shows the fields that the choices use."""
+        hidden = set()
+        if self.obj.Along != "direction":
+            hidden.add("Direction")
+        if self.obj.StepOver.Value > 0:
+            hidden.add("StepOverShare")
+        self.passes.show_rows(set(self.passes.rows) - hidden)
+
+    def changed(self):
+        self.arrange()
+        self.timer.start(WAIT)
+
+    def compute(self):
+        """Lays the passes and shows what came out."""
+        self.timer.stop()
+        try:
+            raster_path.generate(self.obj)
+        except InputError as error:
+            self.tell(str(error), True)
+            return
+        obj = self.obj
+        obj.recompute()
+        text = translate(
+            "BeltGrinding", "{} passes {:.2f} mm apart, {:.0f} mm; {} poses, {:.1f} s"
+        ).format(
+            obj.PassCount,
+            obj.StepOverUsed.Value,
+            obj.GroundLength.Value,
+            obj.PoseCount,
+            obj.Duration,
+        )
+        if obj.ContactWidth.Value > 0:
+            width = translate("BeltGrinding", "Contact across the pass: {:.1f} mm")
+            text += "\n" + width.format(obj.ContactWidth.Value)
+        self.tell(text)
+        self.warnings.clear()
+        self.warnings.addItems(obj.Warnings[:SHOWN_WARNINGS])
+        self.warnings.setVisible(bool(obj.Warnings))
+
+    def check(self):
+        self.timer.stop()
+        raster_path.generate(self.obj)
+
+    def close(self):
+        self.timer.stop()
+
+
+class DirectionField(QtGui.QWidget):
+    """x, y, z of the property Direction; a selected straight edge can give them."""
+
+    def __init__(self, obj, changed, tell):
+        super().__init__()
+        self.obj, self.changed, self.tell = obj, changed, tell
+        grid = QtGui.QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        self.fields = []
+        for k, name in enumerate("xyz"):
+            line = QtGui.QLineEdit(f"{obj.Direction[k]:g}")
+            line.setObjectName(f"Direction_{name}")
+            line.setToolTip(f"{name}: {obj.getDocumentationOfProperty('Direction')}")
+            validator = QtGui.QDoubleValidator(-1e9, 1e9, 9, line)
+            validator.setLocale(QtCore.QLocale.c())
+            line.setValidator(validator)
+            line.setMinimumWidth(30)
+            line.textChanged.connect(self._typed)
+            grid.addWidget(line, 0, k)
+            self.fields.append(line)
+        button = QtGui.QPushButton(translate("BeltGrinding", "From selected edge"))
+        button.setObjectName("takeEdge")
+        button.clicked.connect(self.take_edge)
+        grid.addWidget(button, 1, 0, 1, 3)
+
+    def _typed(self, *_):
+        if all(line.hasAcceptableInput() for line in self.fields):
+            self.obj.Direction = tuple(float(line.text()) for line in self.fields)
+            self.changed()
+
+    def take_edge(self):
+        """The direction from end to end of the edge that is selected."""
+        for one in Gui.Selection.getSelectionEx(self.obj.Document.Name):
+            for name, sub in zip(one.SubElementNames, one.SubObjects):
+                if name.startswith("Edge") and len(sub.Vertexes) == 2:
+                    placement = one.Object.getGlobalPlacement()
+                    local = one.Object.Placement.inverse()
+                    ends = [placement * (local * vertex.Point) for vertex in sub.Vertexes]
+                    way = (ends[1] - ends[0]).normalize()
+                    for line, value in zip(self.fields, way):
+                        line.setText(f"{value + 0.0:.6g}")
+                    return
+        self.tell(translate("BeltGrinding", "Select an edge in the 3D view first."), True)

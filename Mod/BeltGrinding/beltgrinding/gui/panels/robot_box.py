@@ -1,0 +1,149 @@
+"""The robot in the cell's panel: which one, where it stands, what it meets along the program."""
+
+import json
+
+from ...cell import reach
+from ...engine import Cancelled, InputError, core
+from ...presets import library as presets, robot as robots
+from ..common import event_texts
+from ..common.compat import QtGui, translate
+from ..common.runner import Background
+from ..widgets.form import FrameField
+
+OWN = "RobotModel"
+SHOWN_EVENTS = 200
+LIST_HEIGHT = 90  # pixels
+
+
+class RobotBox(QtGui.QGroupBox):
+    """Edits the robot of a BeltMachine. ``changed()`` follows every edit; ``found(result)`` a check
+    of the path that ``path()`` gives; ``go(pose)`` asks for a pose, from 0."""
+
+    def __init__(self, machine, path):
+        super().__init__(translate("BeltGrinding", "Robot"))
+        self.machine, self.path = machine, path
+        self.changed = self.found = self.go = lambda *_: None
+        self.task, self.events = None, []
+        layout = QtGui.QFormLayout(self)
+        layout.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        self.choice = QtGui.QComboBox()
+        self.choice.setObjectName("robot")
+        self.choice.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.ids = ["", *(one["id"] for one in presets.robots())]
+        self.choice.addItem(translate("BeltGrinding", "(none: reach is not checked)"))
+        for one in presets.robots():
+            self.choice.addItem(one["name"])
+        if json.loads(machine.RobotModel or "{}").get("joints"):
+            self.ids.append(OWN)
+            self.choice.addItem(translate("BeltGrinding", "own model (property RobotModel)"))
+        current = machine.Robot or (OWN if OWN in self.ids else "")
+        self.choice.setCurrentIndex(self.ids.index(current) if current in self.ids else 0)
+        self.choice.setEnabled(OWN not in self.ids)
+        layout.addRow(translate("BeltGrinding", "Robot"), self.choice)
+        self.fields = []
+        for name, text in (
+            ("BaseFromRobot", translate("BeltGrinding", "Robot in base")),
+            ("FlangeFromTcp", translate("BeltGrinding", "Tool in flange")),
+        ):
+            field = FrameField(
+                getattr(machine, name), lambda value, name=name: self._set(name, value)
+            )
+            field.setObjectName(name)
+            field.setToolTip(machine.getDocumentationOfProperty(name))
+            label = QtGui.QLabel(text)
+            layout.addRow(label, field)
+            self.fields += [label, field]
+        self.joints = QtGui.QLabel()
+        self.joints.setObjectName("joints")
+        self.joints.setWordWrap(True)
+        self.check = QtGui.QPushButton(translate("BeltGrinding", "Check the whole program"))
+        self.check.setObjectName("checkReach")
+        self.check.clicked.connect(self.start)
+        self.list = QtGui.QListWidget()
+        self.list.setObjectName("reachEvents")
+        self.list.setMaximumHeight(LIST_HEIGHT)
+        self.list.currentRowChanged.connect(self._chosen)
+        for widget in (self.joints, self.check, self.list):
+            layout.addRow(widget)
+            self.fields.append(widget)
+        self.choice.currentIndexChanged.connect(self._choose)
+        self._arrange()
+
+    def _choose(self, index):
+        self._set("Robot", self.ids[index])
+        self._arrange()
+
+    def _set(self, name, value):
+        if getattr(self.machine, name) != value:
+            setattr(self.machine, name, value)
+            self.forget()
+            self.changed()
+
+    def _arrange(self):
+        some = bool(self.ids[self.choice.currentIndex()])
+        for widget in self.fields:
+            widget.setVisible(some)
+        self.list.setVisible(some and bool(self.events))
+
+    def forget(self):
+        """What was found no longer holds."""
+        if self.task is not None:
+            self.task.cancel()
+        self.events = []
+        self.list.clear()
+        self.list.hide()
+
+    def show_joints(self, joints):
+        """Joint angles (6,) in degrees at the pose, None: out of reach."""
+        if joints is None:
+            self.joints.setText(translate("BeltGrinding", "Out of reach at this pose."))
+            return
+        angles = ", ".join(f"{angle:.1f}" for angle in joints)
+        self.joints.setText(translate("BeltGrinding", "Joints: {}°").format(angles))
+
+    def start(self):
+        """Follows the whole program, in the background."""
+        self.forget()
+        obj = self.path()
+        try:
+            robot = robots.checked(self.machine.Proxy.robot(self.machine))
+            path = core.ToolPath(**obj.Proxy.arrays(obj), **self.machine.Proxy.cell(self.machine))
+        except InputError as error:
+            self.joints.setText(str(error))
+            return
+        self.check.setEnabled(False)
+        self.task = Background(
+            lambda context: reach.reach(path, robot, context=context), self._done
+        )
+
+    def _done(self, result, error):
+        self.task = None
+        self.check.setEnabled(True)
+        if isinstance(error, Cancelled):
+            return
+        if error is not None:
+            if not isinstance(error, InputError):
+                raise error
+            self.joints.setText(str(error))
+            return
+        self.events = result["events"][:SHOWN_EVENTS]
+        self.list.clear()
+        for event in self.events:
+            kind, message = event_texts.title(event["kind"]), event_texts.message(event)
+            self.list.addItem(f"{event['pose'] + 1}: {kind}: {message}")
+        if not self.events:
+            self.list.addItem(
+                translate("BeltGrinding", "The robot follows the whole program; nothing to report.")
+            )
+        self.list.show()
+        self.found(result)
+
+    def _chosen(self, row):
+        if 0 <= row < len(self.events):
+            self.go(self.events[row]["pose"])
+
+    def close(self):
+        """The panel goes: a check under way is given up."""
+        if self.task is not None:
+            self.task.abandon()
+            self.task = None

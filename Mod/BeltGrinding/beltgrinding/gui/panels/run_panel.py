@@ -1,0 +1,126 @@
+"""Base of the task panels that run something in the background: progress, time left, Cancel, errors."""
+
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...engine import Cancelled, InputError
+from ..common.compat import QtGui, buttons, translate
+from ..common.icons import qicon
+from ..common.status_progress import StatusProgress
+from ..common.time_left import TimeLeft, duration
+
+BAD = "#b3261e"
+
+
+class RunPanel:
+    """Base. Makes ``form`` and the widgets ``state``, ``bar`` and ``cancel``; subclasses lay them out, and
+    show and hide their own in ``_arrange``.
+    """
+
+    def __init__(self, job, title, icon_name):
+        self.job = job
+        self.runner = self.status = None
+        self.form = QtGui.QWidget()
+        self.form.setWindowTitle(title)
+        self.form.setWindowIcon(qicon(icon_name))
+        self.state = QtGui.QLabel()
+        self.state.setObjectName("state")
+        self.state.setWordWrap(True)
+        self.bar = QtGui.QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
+
+    def doing(self):
+        """What goes on, with {} for the time."""
+        raise NotImplementedError
+
+    def make_runner(self):
+        """A Runner that calls ``progress`` and ``done``. Raises InputError for what is missing."""
+        raise NotImplementedError
+
+    def show(self, simulation):
+        """Shows the Simulation object, or None."""
+        raise NotImplementedError
+
+    def _button(self, name, text, action):
+        button = QtGui.QPushButton(text)
+        button.setObjectName(name)
+        button.clicked.connect(action)
+        return button
+
+    def start(self):
+        """Begins; what is missing is said in the panel."""
+        try:
+            self.runner = self.make_runner()
+        except InputError as error:
+            self._arrange(False)
+            self._tell(error)
+            return
+        self.left = TimeLeft()
+        self.status = StatusProgress(self.stop)
+        self._arrange(True)
+        self.progress(0.0)
+
+    def stop(self):
+        if self.runner:
+            self.runner.cancel()
+
+    def progress(self, share):
+        self.bar.setValue(int(1000 * share))
+        seconds = time.monotonic() - self.runner.start
+        text = self.doing().format(duration(seconds))
+        left = self.left.update(seconds, share)
+        if left is not None:
+            text += translate("BeltGrinding", "; about {} left").format(duration(left))
+        self._say(text)
+        self.status.update_progress(share, text)
+
+    def done(self, simulation, error):
+        """It has ended."""
+        self._remove_status()
+        if self.runner.job() is None:
+            Gui.Control.closeDialog()
+            return
+        self.runner = None
+        self._arrange(False)
+        if error is None:
+            self.show(simulation)
+        elif isinstance(error, Cancelled):
+            self._say(translate("BeltGrinding", "Cancelled; the document is as it was."))
+        else:
+            self._tell(error)
+
+    def _tell(self, error):
+        """An error in the panel, and in full in the report view."""
+        if not isinstance(error, InputError):
+            lines = traceback.format_exception(type(error), error, error.__traceback__)
+            FreeCAD.Console.PrintError("".join(lines))
+        FreeCAD.Console.PrintError(f"{error}\n")
+        self._say(str(error), True)
+
+    def _say(self, text, error=False):
+        self.state.setText(text)
+        self.state.setStyleSheet(f"color: {BAD}; font-weight: bold;" if error else "")
+
+    def _arrange(self, running):
+        self.bar.setVisible(running)
+        self.cancel.setVisible(running)
+
+    def _remove_status(self):
+        if self.status:
+            self.status.remove()
+            self.status = None
+
+    def getStandardButtons(self):
+        return buttons("Close")
+
+    def reject(self):
+        """Close: what still goes on is cancelled."""
+        if self.runner:
+            self._remove_status()
+            self.runner.abandon()  # this panel's widgets are gone before the run has ended
+        Gui.Control.closeDialog()
+        return True

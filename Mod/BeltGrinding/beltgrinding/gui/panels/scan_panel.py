@@ -1,0 +1,233 @@
+"""Task panel of a scan: which file, where it starts, on which faces it is laid, and what comes out."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+from ...engine import InputError
+from ...objects import deviation, ground_mesh, part_scan, preferences, simulation
+from ...objects.job_data import child, children
+from ...scan import comparison as scan, start as scan_start
+from ..common.compat import QtGui, translate
+from ..common.runner import Background
+from .panel import Panel
+
+UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4))
+AS_IT_LIES, PRINCIPAL, MATRIX, PAIRS, ALIGNED = range(5)
+TABLE_HEIGHT = 230  # pixels: all rows
+
+
+class ScanPanel(Panel):
+    """Compares on a button, in a thread; OK keeps what was compared last, Cancel takes it back."""
+
+    def __init__(self, job):
+        title = translate("BeltGrinding", "Compare a scan")
+        super().__init__(child(job, simulation.Simulation), title, "BeltGrinding_Scan")
+        self.job, self.work = job, None
+        rows = QtGui.QFormLayout()
+        self.file = self._file(rows, translate("BeltGrinding", "Scan"), "scan")
+        self.unit = self._choice(rows, translate("BeltGrinding", "Unit"), [u for u, _ in UNITS])
+        self.unit.setObjectName("unit")
+        starts = [
+            translate("BeltGrinding", "as it lies"),
+            translate("BeltGrinding", "principal axes"),
+            translate("BeltGrinding", "matrix from a file"),
+            translate("BeltGrinding", "pairs of points from a file"),
+            translate("BeltGrinding", "aligned already"),
+        ]
+        self.start = self._choice(rows, translate("BeltGrinding", "Start"), starts)
+        self.start.setObjectName("start")
+        self.start_file = self._file(rows, translate("BeltGrinding", "Its file"), "start_file")
+        self.start.currentIndexChanged.connect(self._enable)
+        self.datum = QtGui.QLineEdit()
+        self.datum.setObjectName("datum")
+        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
+        self.datum.setToolTip(
+            translate("BeltGrinding", "numbers of the faces that the scan is laid on, as 1,2,5")
+        )
+        rows.addRow(translate("BeltGrinding", "Datum faces"), self.datum)
+        self._add_alignment(rows)
+        self.body.addLayout(rows)
+        self.button = QtGui.QPushButton(translate("BeltGrinding", "Compare"))
+        self.button.setObjectName("compare")
+        self.button.clicked.connect(self.compare)
+        self.body.addWidget(self.button)
+        self.table = QtGui.QTableWidget(0, 2)
+        self.table.setObjectName("figures")
+        self.table.horizontalHeader().hide()
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
+        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.body.addWidget(self.table, 1)
+        self.finish()
+        self._enable()
+
+    def _add_alignment(self, rows):
+        """What of the start is kept, and how much of the scan decides."""
+        held = QtGui.QWidget()
+        held.setObjectName("held")
+        held.setToolTip(
+            translate(
+                "BeltGrinding",
+                "what stays as it starts: translations along the part's axes, rotations about them",
+            )
+        )
+        grid = QtGui.QGridLayout(held)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(2)
+        self.held = {}
+        for i, name in enumerate(scan.FREEDOMS):
+            text = f"{'Δ' if name[0] == 't' else '∠'}{name[1].upper()}"
+            self.held[name] = QtGui.QCheckBox(text)
+            self.held[name].setObjectName(name)
+            grid.addWidget(self.held[name], i // 3, i % 3)
+        rows.addRow(translate("BeltGrinding", "Hold"), held)
+        self.share = QtGui.QDoubleSpinBox()
+        self.share.setObjectName("share")
+        self.share.setRange(1.0, 100.0)
+        self.share.setDecimals(0)
+        self.share.setSuffix(" %")
+        self.share.setValue(100.0 * scan.SHARE)
+        self.share.setToolTip(
+            translate(
+                "BeltGrinding",
+                "of the pairs of points, the nearest: the rest, as a table or a clamp, does not count",
+            )
+        )
+        rows.addRow(translate("BeltGrinding", "Nearest"), self.share)
+
+    def _file(self, rows, text, name):
+        box = QtGui.QWidget()
+        line, button = QtGui.QLineEdit(), QtGui.QPushButton("...")
+        line.setObjectName(name)
+        line.setMinimumWidth(40)
+        button.setMaximumWidth(32)
+        layout = QtGui.QHBoxLayout(box)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(line)
+        layout.addWidget(button)
+        button.clicked.connect(lambda: self._browse(line, text))
+        rows.addRow(text, box)
+        return line
+
+    def _browse(self, line, title):
+        path = QtGui.QFileDialog.getOpenFileName(self.form, title, line.text())[0]
+        if path:
+            line.setText(path)
+
+    def _choice(self, rows, text, choices):
+        box = QtGui.QComboBox()
+        # A long choice must not make the panel wider than the view that holds it.
+        box.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        box.setMinimumContentsLength(8)
+        box.addItems(choices)
+        rows.addRow(text, box)
+        return box
+
+    def _enable(self, _=None):
+        self.start_file.parentWidget().setEnabled(self.start.currentIndex() in (MATRIX, PAIRS))
+        for widget in (self.datum, self.share, *self.held.values()):
+            widget.setEnabled(self.start.currentIndex() != ALIGNED)
+
+    def options(self):
+        """What ``scan.compare`` takes, from the fields. Raises InputError."""
+        start, file = self.start.currentIndex(), self.start_file.text().strip()
+        if start in (MATRIX, PAIRS) and not file:
+            raise InputError(translate("BeltGrinding", "Choose the file of the start."))
+        options = {"unit_mm": UNITS[self.unit.currentIndex()][1], "aligned": start == ALIGNED}
+        if start == PRINCIPAL:
+            options["start"] = "principal"
+        if start == MATRIX:
+            options["start"] = scan_start.read_matrix(file)
+        if start == PAIRS:
+            options["pairs"] = scan_start.read_pairs(file)
+        if self.datum.text().strip():
+            options["datum_faces"] = scan_start.face_numbers(self.datum.text())
+        options["fixed"] = [name for name, box in self.held.items() if box.isChecked()]
+        options["share"] = self.share.value() / 100.0
+        return options
+
+    def compare(self):
+        """Begins; ``_done`` follows."""
+        path = self.file.text().strip()
+        try:
+            if not Path(path).is_file():
+                raise InputError(translate("BeltGrinding", "Choose the scan's file."))
+            options = self.options()
+            result = part_scan.prepare(self.obj, self.job)
+        except InputError as error:
+            self.tell(str(error), True)
+            return
+        self.button.setEnabled(False)
+        self.tell(translate("BeltGrinding", "Aligning and measuring..."))
+        work = SimpleNamespace(result=result)
+
+        def run(_):
+            return work.result, scan.compare(work.result, path, **options)
+
+        self.work = Background(run, self._done)
+
+    def _done(self, found, error):
+        self.work = None
+        self.button.setEnabled(True)
+        if error is not None:
+            self.tell(str(error), True)
+            return
+        result, figures = found
+        part_scan.store(self.obj, result, figures)
+        shown = child(self.job, deviation.Deviation)
+        if shown is not None:
+            shown.ColourBy = deviation.DIFFERENCE
+            for mesh in children(self.job, ground_mesh.GroundMesh):
+                mesh.ViewObject.Visibility = False  # its surface is the same
+            shown.ViewObject.Visibility = True
+        self.obj.touch()
+        self.document.recompute()
+        self.show(figures)
+        self.tell(" ".join(figures["warnings"]), bool(figures["warnings"]))
+
+    def show(self, figures):
+        """The figures of a comparison."""
+
+        def mm(value, sign="+"):
+            return preferences.length_text(value, 1, sign)
+
+        alignment, difference = figures["alignment"], figures["difference_mm"]
+        rows = [
+            (
+                translate("BeltGrinding", "Area measured"),
+                f"{100 * figures['measured_area_share']:.1f} %",
+            ),
+            (translate("BeltGrinding", "Measured, mean"), mm(figures["measured_mm"]["mean"])),
+            (translate("BeltGrinding", "Difference, mean"), mm(difference["mean"])),
+            (translate("BeltGrinding", "Difference, rms"), mm(difference["rms"], "")),
+            (translate("BeltGrinding", "5 % lie below"), mm(difference["p05"])),
+            (translate("BeltGrinding", "95 % lie below"), mm(difference["p95"])),
+            (
+                translate("BeltGrinding", "Same verdict"),
+                f"{100 * figures['same_verdict_area_share']:.1f} %",
+            ),
+        ]
+        if alignment:
+            rows += [
+                (translate("BeltGrinding", "Alignment, rms"), mm(alignment["rms_mm"], "")),
+                (
+                    translate("BeltGrinding", "Points used"),
+                    f"{100 * alignment['used_share']:.1f} %",
+                ),
+            ]
+        self.table.setRowCount(len(rows))
+        for i, (name, text) in enumerate(rows):
+            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
+            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+        self.table.resizeRowsToContents()
+
+    def check(self):
+        if self.work is not None:
+            raise InputError(translate("BeltGrinding", "The comparison is still running."))
+
+    def close(self):
+        if self.work is not None:
+            self.work.abandon()
+            self.work = None

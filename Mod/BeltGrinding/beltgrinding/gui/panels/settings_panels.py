@@ -1,0 +1,171 @@
+"""Task panels of the stock and of the belt machine."""
+
+from ...engine import InputError
+from ...objects.belt import Belt
+from ...objects.proxy import type_of
+from ..common.compat import translate
+from ..widgets.form import Form
+from .panel import Panel
+from .preset_form import HardnessField, PresetForm
+
+MESH_FILES = "*.stl *.ply *.obj *.off *.3mf"
+
+
+class StockPanel(Panel):
+    """Edits a Stock."""
+
+    def __init__(self, obj):
+        super().__init__(obj, translate("BeltGrinding", "Stock"), "BeltGrinding_Stock")
+        form = self.fields = Form(obj, translate("BeltGrinding", "Stock on the design faces"))
+        kinds = {
+            "allowance": translate("BeltGrinding", "Uniform allowance"),
+            "solid": translate("BeltGrinding", "Solid"),
+            "mesh": translate("BeltGrinding", "Mesh (a scan)"),
+        }
+        bodies = [
+            one
+            for one in obj.Document.Objects
+            if hasattr(one, "Shape") or (hasattr(one, "Mesh") and not hasattr(one, "Simulation"))
+        ]
+        form.add("Kind", translate("BeltGrinding", "Kind"), kinds)
+        form.add("Allowance", translate("BeltGrinding", "Allowance"))
+        form.add("Source", translate("BeltGrinding", "Object"), bodies)
+        form.add(
+            "File",
+            translate("BeltGrinding", "or file"),
+            translate("BeltGrinding", "Mesh") + f" ({MESH_FILES})",
+        )
+        form.add("FileUnit", translate("BeltGrinding", "Unit of the file"), unit="mm")
+        form.add("FilePlacement", translate("BeltGrinding", "Place of the file"))
+        form.add("Deflection", translate("BeltGrinding", "Chord error"))
+        form.add("SearchAbove", translate("BeltGrinding", "Search outward"))
+        form.add("SearchBelow", translate("BeltGrinding", "Search inward"))
+        form.changed = self.arrange
+        self.body.addWidget(form)
+        self.finish()
+        self.arrange()
+
+    def arrange(self):
+        """Shows the fields that the kind uses."""
+        rays = {"Kind", "Source", "SearchAbove", "SearchBelow"}
+        files = {"File", "FileUnit", "FilePlacement"} if self.obj.Source is None else set()
+        self.fields.show_rows(
+            {
+                "allowance": {"Kind", "Allowance"},
+                "solid": rays | {"Deflection"},
+                "mesh": rays | files,
+            }[self.obj.Kind]
+        )
+        self.tell("")
+
+    def check(self):
+        obj = self.obj
+        if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
+            raise InputError(translate("BeltGrinding", "Choose the solid that is the stock."))
+        if obj.Kind == "mesh" and not (hasattr(obj.Source, "Mesh") or obj.File):
+            raise InputError(translate("BeltGrinding", "Choose the mesh: an object or a file."))
+
+
+def _belts(document):
+    return [obj for obj in document.Objects if type_of(obj) == Belt.TYPE]
+
+
+class BeltMachinePanel(Panel):
+    """Edits a BeltMachine."""
+
+    def __init__(self, obj):
+        title = translate("BeltGrinding", "Belt machine")
+        super().__init__(obj, title, "BeltGrinding_BeltMachine")
+        wheel = Form(obj, translate("BeltGrinding", "Contact wheel"))
+        wheel.add("WheelRadius", translate("BeltGrinding", "Radius"))
+        wheel.add("WheelWidth", translate("BeltGrinding", "Width"))
+        wheel.add("CrownRadius", translate("BeltGrinding", "Crown radius (0: cylinder)"))
+        models = {
+            "wheel_rim": translate("BeltGrinding", "Wheel rim"),
+            "bonded_layer": translate("BeltGrinding", "Bonded layer"),
+            "half_space": translate("BeltGrinding", "Half-space"),
+            "elastic_foundation": translate("BeltGrinding", "Elastic foundation"),
+            "surrogate": translate("BeltGrinding", "Surrogate (trained)"),
+            "geometric": translate("BeltGrinding", "Rigid (geometric)"),
+        }
+        wheel.add("Compliance", translate("BeltGrinding", "Elasticity"), models)
+        wheel.add("YoungsModulus", translate("BeltGrinding", "Young's modulus"))
+        self.hardness = HardnessField(wheel)
+        wheel.add("PoissonsRatio", translate("BeltGrinding", "Poisson's ratio"))
+        wheel.add("RimThickness", translate("BeltGrinding", "Rim thickness"))
+        wheel.add("BeltTension", translate("BeltGrinding", "Belt tension"), unit="N/mm")
+        wheel.add("BeltBending", translate("BeltGrinding", "Belt bending"), unit="N mm")
+        wheel.add(
+            "Stiffness", translate("BeltGrinding", "Stiffness (0: of the rim)"), unit="MPa/mm"
+        )
+        trained = translate("BeltGrinding", "Surrogate")
+        wheel.add("SurrogateFile", trained, f"{trained} (*.npz)")
+        belt = Form(obj, translate("BeltGrinding", "Belt and control"))
+        belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+        belt.add("Belt", translate("BeltGrinding", "Belt"), _belts(obj.Document))
+        belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
+        control = {
+            "force": translate("BeltGrinding", "Force"),
+            "position": translate("BeltGrinding", "Position"),
+        }
+        belt.add("Control", translate("BeltGrinding", "Control"), control)
+        belt.add("Force", translate("BeltGrinding", "Force"))
+        belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
+        text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
+        belt.add("RobotStiffness", text, unit="N/mm")
+        self.body.addWidget(PresetForm(obj, (wheel, belt), self.hardness))
+        for form in (wheel, belt):
+            form.changed = self.arrange
+            self.body.addWidget(form)
+        self.belt, self.wheel = belt, wheel
+        self.finish()
+        self.arrange()
+
+    def arrange(self):
+        """Shows the fields that the elasticity and the control use."""
+        force = {"force": {"Force", "ForceTravel"}, "position": {"RobotStiffness"}}[
+            self.obj.Control
+        ]
+        rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
+        rim = rubber | {"RimThickness"}
+        belt = {"BeltTension", "BeltBending"}
+        used = {
+            "wheel_rim": rim | belt,
+            "bonded_layer": rim,
+            "half_space": rubber,
+            "surrogate": rim | belt | {"SurrogateFile"},
+            "geometric": set(),
+            "elastic_foundation": {"Stiffness"}
+            | (rim | belt if self.obj.Stiffness <= 0 else set()),
+        }
+        shape = {"WheelRadius", "WheelWidth", "CrownRadius", "Compliance"}
+        self.wheel.show_rows(shape | used[self.obj.Compliance])
+        self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
+        self.hardness.follow()
+        self.tell("")
+
+    def check(self):
+        for name, text in (
+            ("WheelRadius", translate("BeltGrinding", "The wheel's radius must be positive.")),
+            ("WheelWidth", translate("BeltGrinding", "The wheel's width must be positive.")),
+            ("BeltSpeed", translate("BeltGrinding", "The belt speed must be positive.")),
+        ):
+            if getattr(self.obj, name).Value <= 0:
+                raise InputError(text)
+        rim = self.obj.Compliance in ("wheel_rim", "bonded_layer")
+        if rim and not 0 < self.obj.RimThickness.Value < self.obj.WheelRadius.Value:
+            raise InputError(
+                translate("BeltGrinding", "The rim must be thinner than the wheel's radius.")
+            )
+        if self.obj.Compliance != "elastic_foundation" and self.obj.YoungsModulus.Value <= 0:
+            raise InputError(translate("BeltGrinding", "Young's modulus must be positive."))
+        if self.obj.Compliance == "surrogate" and not self.obj.SurrogateFile:
+            raise InputError(
+                translate("BeltGrinding", "Choose the file that `beltgrind surrogate` wrote.")
+            )
+        if self.obj.Compliance == "geometric" and self.obj.Control == "force":
+            raise InputError(
+                translate("BeltGrinding", "A rigid tool has no force: set the control to position.")
+            )
+        if not 0 <= self.obj.PoissonsRatio <= 0.499:
+            raise InputError(translate("BeltGrinding", "Poisson's ratio lies from 0 to 0.499."))

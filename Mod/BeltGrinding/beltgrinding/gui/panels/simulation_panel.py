@@ -1,0 +1,121 @@
+"""Task panel of the simulation: progress and Cancel, then figures and events."""
+
+import FreeCADGui as Gui
+
+from ...engine import InputError
+from ...objects import job_data
+from ...objects.job_data import child
+from ...objects.simulation import Simulation
+from ...objects.verdict import limits_changed
+from ..common.compat import QtCore, QtGui, translate
+from ..common.runner import Runner
+from ..widgets.event_moment import EventMoment
+from ..widgets.event_table import EventTable
+from .run_panel import RunPanel
+
+
+class SimulationPanel(RunPanel):
+    """Runs a job if ``run``, and shows its result."""
+
+    def __init__(self, job, run):
+        title = translate("BeltGrinding", "Simulation")
+        super().__init__(job, title, "BeltGrinding_Simulate")
+        body = QtGui.QVBoxLayout(self.form)
+        body.addWidget(self.state)
+        body.addWidget(self.bar)
+        row = QtGui.QHBoxLayout()
+        self.again = self._button("again", translate("BeltGrinding", "Again"), self.start)
+        self.look = self._button(
+            "deviation", translate("BeltGrinding", "Deviation"), self.deviation
+        )
+        for button in (self.cancel, self.again, self.look):
+            row.addWidget(button)
+        body.addLayout(row)
+        self.figures = QtGui.QLabel()
+        self.figures.setWordWrap(True)
+        self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        body.addWidget(self.figures)
+        self.moment = EventMoment(job)
+        self.table = EventTable(lambda number: job_data.face_name(self.job, number - 1))
+        self.table.chosen = self.show_moment
+        self.table.hide()
+        body.addWidget(self.table, 1)
+        body.addStretch()
+        if run:
+            self.start()
+        else:
+            self.show(child(job, Simulation))
+
+    def doing(self):
+        return translate("BeltGrinding", "Grinding, {}")
+
+    def make_runner(self):
+        self.moment.close()
+        self.moment = EventMoment(self.job)
+        return Runner(self.job, self.progress, self.done)
+
+    def show(self, simulation):
+        """Figures and events of a result."""
+        self._arrange(False)
+        if simulation is None:
+            self._say(translate("BeltGrinding", "No result yet."))
+            return
+        if simulation.OutOfDate:
+            text = translate("BeltGrinding", "Out of date: an input has changed since.")
+        elif limits_changed(self.job, simulation):
+            text = translate(
+                "BeltGrinding", "The limits have changed since: gouges are told by the old ones."
+            )
+        else:
+            text = translate("BeltGrinding", "Done.")
+        self._say(text, simulation.OutOfDate)
+        self.figures.setText(
+            translate(
+                "BeltGrinding",
+                "Removed: {:,.1f} of {:,.1f} mm³\nProcess time: {:.1f} s\n"
+                "Samples: {:,}, steps: {:,}, computed in {:.1f} s\n"
+                "Missed rays: {:,}, defective stock: {:,} samples",
+            ).format(
+                simulation.RemovedVolume.Value,
+                simulation.StockVolume.Value,
+                simulation.ProcessTime,
+                simulation.Samples,
+                simulation.Steps,
+                simulation.WallTime,
+                simulation.MissedRays,
+                simulation.DefectiveSamples,
+            )
+            + ("" if simulation.Events else "\n" + translate("BeltGrinding", "No events."))
+            + "".join(f"\n⚠ {warning}" for warning in simulation.Warnings[:10])
+        )
+        events = simulation.Proxy.events(simulation)
+        self.table.setVisible(bool(events))
+        self.table.show_events(events)
+
+    def show_moment(self, event):
+        """Shows a chosen event in the 3D view."""
+        try:
+            self.moment.show(event)
+        except InputError as error:  # the job has changed since
+            self._say(str(error), True)
+
+    def deviation(self):
+        self.moment.close()
+        Gui.Control.closeDialog()
+        Gui.runCommand("BeltGrinding_Deviation")
+
+    def _arrange(self, running):
+        super()._arrange(running)
+        self.again.setVisible(not running)
+        self.look.setVisible(not running and child(self.job, Simulation) is not None)
+
+    def reject(self):
+        self.moment.close()
+        return super().reject()
+
+
+def show_result(simulation):
+    """Opens the panel with the result of a Simulation object."""
+    job = simulation.getParentGroup()
+    if job is not None and not Gui.Control.activeDialog():
+        Gui.Control.showDialog(SimulationPanel(job, False))

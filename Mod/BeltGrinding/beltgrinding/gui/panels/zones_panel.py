@@ -1,0 +1,249 @@
+"""Task panel of a job's tolerance zones: a table, whose chosen zone's faces are tinted."""
+
+import FreeCADGui as Gui
+
+from ...engine import InputError
+from ...objects import job_data
+from ..common.compat import QtCore, QtGui, translate
+from ..scene.face_tint import FaceTint
+from .job_panel import FaceGate
+from .panel import Panel
+
+NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK = range(7)
+LIMITS = ((LOWER, UPPER, "tolerance_mm"), (THIN, THICK, "thickness_mm"))
+HEIGHT = 180  # pixels
+
+
+class ZonesPanel(Panel):
+    """Edits the zones of a BeltGrindingJob."""
+
+    def __init__(self, obj):
+        super().__init__(obj, translate("BeltGrinding", "Tolerance zones"), "BeltGrinding_Zones")
+        text = translate(
+            "BeltGrinding",
+            "Each zone has limits of its own; where several hold a place, the last one counts. "
+            "Without faces a zone holds all; with an edge radius only convex edges with a smaller "
+            "radius. Lengths in mm; what is left empty is not inspected.",
+        )
+        label = QtGui.QLabel(text)
+        label.setWordWrap(True)
+        self.body.addWidget(label)
+        self.table = self._table()
+        self.body.addWidget(self.table)
+        self.body.addLayout(self._buttons())
+        self.finish()
+        Gui.Selection.addSelectionGate(FaceGate())
+        self.tint = FaceTint(self.document)
+        self.quiet = False
+        self.fill(job_data.zones(obj))
+        self.changed()
+
+    def _table(self):
+        table = QtGui.QTableWidget(0, 7)
+        table.setObjectName("zones")
+        titles = [
+            translate("BeltGrinding", "Zone"),
+            translate("BeltGrinding", "Faces"),
+            translate("BeltGrinding", "Lower"),
+            translate("BeltGrinding", "Upper"),
+            translate("BeltGrinding", "Edge radius"),
+            translate("BeltGrinding", "Thinner by"),
+            translate("BeltGrinding", "Thicker by"),
+        ]
+        table.setHorizontalHeaderLabels(titles)
+        tips = {
+            FACES: translate("BeltGrinding", "Numbers of faces; empty: all"),
+            EDGE: translate("BeltGrinding", "Only convex edges with a smaller radius; empty: all"),
+            THIN: translate("BeltGrinding", "Lower limit of the thickness against the design's"),
+            THICK: translate("BeltGrinding", "Upper limit of the thickness against the design's"),
+        }
+        for column, tip in tips.items():
+            table.horizontalHeaderItem(column).setToolTip(tip)
+        table.verticalHeader().hide()
+        table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+        table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+        table.setMinimumSize(120, HEIGHT)
+        table.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.ResizeToContents)
+        table.itemChanged.connect(lambda _: self.changed())
+        table.currentCellChanged.connect(lambda *_: self.tint_row())
+        return table
+
+    def _buttons(self):
+        grid = QtGui.QGridLayout()
+        for k, (name, text, action) in enumerate(
+            (
+                ("addZone", translate("BeltGrinding", "Add"), self.add),
+                ("removeZone", translate("BeltGrinding", "Remove"), self.remove),
+                ("zoneUp", translate("BeltGrinding", "Up"), lambda: self.move(-1)),
+                ("zoneDown", translate("BeltGrinding", "Down"), lambda: self.move(1)),
+                ("takeZoneFaces", translate("BeltGrinding", "Take selected faces"), self.take),
+            )
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(lambda *_, act=action: act())
+            grid.addWidget(button, k // 2, k % 2, 1, 2 if k == 4 else 1)
+        return grid
+
+    # Between the table and the job's zones
+
+    def fill(self, zones, row=0):
+        """Puts zones into the table."""
+        self.quiet = True
+        self.table.setRowCount(len(zones))
+        for i, zone in enumerate(zones):
+            texts = [""] * 7
+            texts[NAME] = zone["name"]
+            texts[FACES] = " ".join(map(str, zone.get("faces", [])))
+            if "edge_radius_mm" in zone:
+                texts[EDGE] = f"{zone['edge_radius_mm']:g}"
+            for low, high, key in LIMITS:
+                if key in zone:
+                    texts[low], texts[high] = (f"{value:g}" for value in zone[key])
+            for k, text in enumerate(texts):
+                item = QtGui.QTableWidgetItem(text)
+                if k > FACES:
+                    item.setTextAlignment(int(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter))
+                self.table.setItem(i, k, item)
+        if zones:
+            self.table.setCurrentCell(min(row, len(zones) - 1), NAME)
+        self.quiet = False
+
+    def text(self, row, column):
+        item = self.table.item(row, column)
+        return item.text().strip() if item is not None else ""
+
+    def zone(self, row):
+        """The zone in a row. Raises InputError naming the cell."""
+        zone = {"name": self.text(row, NAME), "faces": self._faces(row)}
+        if not zone["name"]:
+            raise InputError(
+                translate("BeltGrinding", "Row {}: a zone needs a name.").format(row + 1)
+            )
+        if self.text(row, EDGE):
+            zone["edge_radius_mm"] = self._number(row, EDGE)
+        for low, high, key in LIMITS:
+            given = [bool(self.text(row, column)) for column in (low, high)]
+            if any(given) and not all(given):
+                text = translate("BeltGrinding", "{}: give both limits, or none.")
+                raise InputError(text.format(zone["name"]))
+            if all(given):
+                zone[key] = [self._number(row, low), self._number(row, high)]
+        return zone
+
+    def _faces(self, row):
+        words = self.text(row, FACES).replace(",", " ").replace("Face", " ").split()
+        if not all(word.isdigit() for word in words):
+            text = translate("BeltGrinding", "{}: write the faces' numbers, such as 1 2 5.")
+            raise InputError(text.format(self.text(row, NAME)))
+        return list(dict.fromkeys(int(word) for word in words))
+
+    def _number(self, row, column):
+        text = self.text(row, column).replace(",", ".")
+        try:
+            value = float(text[:-2] if text.endswith("mm") else text)
+        except ValueError:
+            told = translate("BeltGrinding", "{}: '{}' is no number of millimetres.")
+            raise InputError(told.format(self.text(row, NAME), text)) from None
+        return value
+
+    def zones(self):
+        return [self.zone(row) for row in range(self.table.rowCount())]
+
+    # What is changed
+
+    def changed(self):
+        """Takes the table over into the job, if it is sound; says what is wrong otherwise."""
+        if self.quiet:
+            return
+        try:
+            job_data.set_zones(self.obj, self.zones())
+        except InputError as error:
+            self.tell(str(error), True)
+        else:
+            count = self.table.rowCount()
+            self.tell(
+                translate("BeltGrinding", "Zones: {}. Elsewhere {} to {} mm.").format(
+                    count,
+                    f"{self.obj.ToleranceLower.Value:g}",
+                    f"{self.obj.ToleranceUpper.Value:g}",
+                )
+            )
+        self.tint_row()
+
+    def check(self):
+        job_data.set_zones(self.obj, self.zones())
+
+    def add(self):
+        names = {self.text(row, NAME) for row in range(self.table.rowCount())}
+        number = len(names) + 1
+        base = translate("BeltGrinding", "Zone")
+        while f"{base} {number}" in names:
+            number += 1
+        limits = [self.obj.ToleranceLower.Value, self.obj.ToleranceUpper.Value]
+        faces = self._selected()
+        rows = self._rows()
+        rows.append([f"{base} {number}", " ".join(map(str, faces)), *(f"{v:g}" for v in limits)])
+        self._set_rows(rows, len(rows) - 1)
+
+    def remove(self):
+        row = self.table.currentRow()
+        rows = self._rows()
+        if 0 <= row < len(rows):
+            del rows[row]
+            self._set_rows(rows, row)
+
+    def move(self, step):
+        row, rows = self.table.currentRow(), self._rows()
+        if 0 <= row < len(rows) and 0 <= row + step < len(rows):
+            rows[row], rows[row + step] = rows[row + step], rows[row]
+            self._set_rows(rows, row + step)
+
+    def take(self):
+        """Gives the chosen zone the faces that are selected in the 3D view."""
+        row, faces = self.table.currentRow(), self._selected()
+        if row < 0:
+            return self.tell(translate("BeltGrinding", "Choose a zone in the table first."), True)
+        if not faces:
+            return self.tell(translate("BeltGrinding", "Select faces in the 3D view first."), True)
+        self.table.item(row, FACES).setText(" ".join(map(str, faces)))
+
+    def _rows(self):
+        return [[self.text(row, k) for k in range(7)] for row in range(self.table.rowCount())]
+
+    def _set_rows(self, rows, current):
+        """Puts texts back as they are, sound or not."""
+        self.fill([{"name": texts[NAME]} for texts in rows], current)
+        self.quiet = True
+        for i, texts in enumerate(rows):
+            for k, text in enumerate(texts):
+                self.table.item(i, k).setText(text)
+        self.quiet = False
+        self.changed()
+
+    def _selected(self):
+        """Numbers of the job's faces that are selected in the 3D view."""
+        found = []
+        for one in Gui.Selection.getSelectionEx(self.document.Name):
+            subs = tuple(s for s in one.SubElementNames if s.startswith("Face"))
+            if subs:
+                found += job_data.face_numbers(self.obj, one.Object, subs)
+        return sorted(set(found))
+
+    def tint_row(self):
+        """Tints the faces of the chosen zone."""
+        if self.quiet:
+            return
+        row = self.table.currentRow()
+        try:
+            shape, ground = job_data.design(self.obj)
+            faces = self._faces(row) if row >= 0 else []
+        except InputError:
+            return self.tint.show([])
+        if row >= 0 and not faces:
+            faces = ground
+        self.tint.show([shape.Faces[f - 1] for f in faces if 1 <= f <= len(shape.Faces)])
+
+    def close(self):
+        Gui.Selection.removeSelectionGate()
+        self.tint.close()

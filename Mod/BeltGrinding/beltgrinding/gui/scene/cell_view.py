@@ -1,0 +1,161 @@
+"""The cell at a pose, drawn into a document's 3D views: wheel, tool, bodies, robot, moving part.
+
+All nodes are in the part's coordinates, which are the document's. While the cell is shown as it
+moves, a transform before all that is drawn in the view carries the part through the cell.
+"""
+
+import FreeCADGui as Gui
+import numpy as np
+from pivy import coin
+
+from ...base.frames import work_from_frames
+from ...job.bodies import WHEEL
+from ...objects import bodies
+from .robot_view import RobotView
+from .shapes3d import axes, body, material, separator, set_matrix, unpickable, wheel
+
+PLACES = {"wheel": "contact"}  # where a body goes, if it is not called as in a job
+ALARM, TINT = (0.86, 0.12, 0.10), "BeltGrindingTint"
+CELL = {
+    "holding": "tool_in_hand",
+    **dict.fromkeys(
+        ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact"), np.eye(4)
+    ),
+}
+
+
+class CellView:
+    """Draws the cell of ``machine`` (None: only the tool frame) at the poses of a path."""
+
+    def __init__(self, document, machine):
+        self.machine = machine
+        self.poses = np.zeros((0, 4, 4))
+        self.pose, self.moving = 0, False
+        self.frame = None  # between two poses
+        self.carrier = coin.SoMatrixTransform()
+        self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", "base")}
+        self.things = {name: coin.SoGroup() for name in (*self.places, "part")}
+        self.root = separator(unpickable())
+        for name, things in self.things.items():
+            nodes = [self.places[name]] if name in self.places else []
+            self.root.addChild(separator(*nodes, things))
+        self.bodies, self.tinted = {}, ()  # {name: node}; names
+        self.robot = RobotView()
+        self.root.addChild(self.robot.root)
+        self.scenes = [
+            view.getSceneGraph()
+            for view in Gui.getDocument(document.Name).mdiViewsOfType("Gui::View3DInventor")
+        ]
+        for scene in self.scenes:
+            scene.insertChild(self.carrier, 0)
+            scene.addChild(self.root)
+        self.rebuild()
+
+    def close(self):
+        for scene in self.scenes:
+            for node in (self.carrier, self.root):
+                if scene.findChild(node) >= 0:
+                    scene.removeChild(node)
+        self.scenes = []
+
+    def set_path(self, poses):
+        """base_from_tcp (n, 4, 4) in mm of the path that is walked."""
+        self.poses, self.pose, self.frame = np.asarray(poses, dtype=float), 0, None
+        self.update()
+
+    def set_pose(self, index):
+        self.pose, self.frame = index, None
+        self.update()
+
+    def set_frame(self, base_from_tcp):
+        """Shows the tool at a frame (4, 4) in mm that need not be a pose's."""
+        self.frame = base_from_tcp
+        self.update()
+
+    def set_moving(self, moving):
+        """True: the part moves where the robot holds it; False: it stays, the wheel moves."""
+        self.moving = moving
+        self.update()
+
+    def rebuild(self):
+        """Draws wheel and bodies anew, after the machine was changed."""
+        for things in self.things.values():
+            things.removeAllChildren()
+        size = 50.0
+        if self.machine is not None:
+            size = self.machine.WheelRadius.Value
+            self.bodies = {WHEEL: wheel(self.machine)}
+            self.things["contact"].addChild(self.bodies[WHEEL])
+            for name, frame, obj in bodies.listed(self.machine):
+                self.bodies[name] = body(obj)
+                self.things[PLACES.get(frame, frame)].addChild(self.bodies[name])
+            self.tint(self.tinted)
+            self.robot.choose(self.machine.Proxy.robot(self.machine))
+        self.things["tool"].addChild(axes(0.3 * size))
+        self.update()
+
+    def tint(self, names):
+        """Draws the bodies of these names, as events have them, in a warning colour; the others in
+        their own."""
+        self.tinted = tuple(names)
+        for name, node in self.bodies.items():
+            first = node.getChild(0)
+            if first.getName() == TINT:
+                node.removeChild(first)
+            if name in self.tinted:
+                colour = material(ALARM, 0.4)
+                colour.setName(TINT)
+                colour.setOverride(True)
+                node.insertChild(colour, 0)
+
+    def cell(self):
+        return CELL if self.machine is None else self.machine.Proxy.cell(self.machine)
+
+    def frames(self):
+        """{frame: work_from_frame} at the pose."""
+        return work_from_frames(self.base_from_tcp(), **self.cell())
+
+    def base_from_tcp(self):
+        return self.poses[self.pose] if self.frame is None else self.frame
+
+    def update(self):
+        """Puts everything where it is at the pose."""
+        if not len(self.poses):
+            return
+        frames = self.frames()
+        for name, node in self.places.items():
+            set_matrix(node, frames[name])
+        set_matrix(self.carrier, self.carried(frames))
+        self.robot.place(frames["base"], self.base_from_tcp(), self.pose)
+
+    def carried(self, frames):
+        """How the part has moved in the cell since the first pose; it lies as drawn there."""
+        if not self.moving:
+            return np.eye(4)
+        start = work_from_frames(self.poses[0], **self.cell())["base"]
+        return start @ np.linalg.inv(frames["base"])
+
+    def nearest(self, view, position, reach):
+        """Index of the pose whose contact point is drawn within ``reach`` pixels of ``position``
+        (x, y from the lower left), None if there is none."""
+        points = work_from_frames(self.poses, **self.cell())["contact"][:, :3, 3]
+        points = np.hstack([points, np.ones((len(points), 1))]) @ self.carried(self.frames()).T
+        seen, depth = project(view, points)
+        distance = np.linalg.norm(seen - np.asarray(position, dtype=float), axis=1)
+        near = np.flatnonzero(distance <= reach)
+        # Of those that lie on one another, what is in front is meant.
+        return (
+            int(near[np.lexsort((depth[near], np.round(distance[near])))[0]]) if len(near) else None
+        )
+
+
+def project(view, points):
+    """(pixels (n, 2) from the lower left, depth (n,)) of homogeneous points (n, 4)."""
+    width, height = view.getSize()
+    volume = view.getCameraNode().getViewVolume(width / height)
+    if width < height:  # as SoCamera::ADJUST_CAMERA does
+        volume.scale(height / width)
+    matrix = np.array(volume.getMatrix().getValue()).reshape(4, 4)
+    clip = points @ matrix
+    clip = clip[:, :3] / np.where(np.abs(clip[:, 3:]) < 1e-12, 1e-12, clip[:, 3:])
+    return (clip[:, :2] + 1.0) * 0.5 * np.array([width, height]), clip[:, 2]

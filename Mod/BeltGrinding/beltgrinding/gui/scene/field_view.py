@@ -1,0 +1,218 @@
+"""A height field in the 3D view, fast enough to follow a run: one vertex and one colour a sample.
+
+Drawn by our own Coin node, SoHeightField (module ``beltgrinding_coin``), where that shares its Coin
+with pivy and FreeCAD; else by Coin's stock nodes, which do the same more slowly.
+"""
+
+import os
+
+import numpy as np
+from pivy import coin
+
+from ...engine import InputError, core
+
+STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHeightField
+PICK_RADIUS = 1.0  # pixels
+DEVIATION, REMOVED, UNCERTAINTY, FACE = "deviation", "removed depth", "uncertainty", "face"
+PRESSURE, CONTACT = "pressure", "contact"
+MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT)
+
+
+def _coin_module():
+    """``beltgrinding_coin``, its node known to pivy's Coin; None where that is another Coin."""
+    if os.environ.get(STOCK_NODES):
+        return None
+    try:
+        import beltgrinding_coin
+    except ImportError:
+        return None  # not built, or its libCoin is not there
+    # A second libCoin in the process has not been started, and pivy does not see its types.
+    if not beltgrinding_coin.register_node() or coin.SoType.fromName("SoHeightField").isBad():
+        return None
+    return beltgrinding_coin
+
+
+def has_own_node():
+    """Whether SoHeightField can be used in this program."""
+    return _coin_module() is not None
+
+
+class _OwnNode:
+    """Draws with SoHeightField."""
+
+    def __init__(self, module, field):
+        self.module = module
+        self.shape = coin.SoType.fromName("SoHeightField").createInstance()
+        self.address = int(self.shape.this)
+        self.parts = (self.shape,)
+        module.set_samples(self.address, field.points, field.normals, field.triangles)
+
+    def set_heights(self, heights):
+        self.module.set_heights(self.address, heights)
+
+    def set_colours(self, packed):
+        self.module.set_colours(self.address, packed)
+
+
+class _StockNodes:
+    """Draws with Coin's SoIndexedFaceSet."""
+
+    def __init__(self, field):
+        self.points, self.normals = field.points, field.normals
+        self.colours = coin.SoPackedColor()
+        binding = coin.SoMaterialBinding()
+        binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
+        self.coordinates = coin.SoCoordinate3()
+        normals = coin.SoNormal()
+        normals.vector.setValues(0, len(self.normals), self.normals.tolist())
+        normal_binding = coin.SoNormalBinding()
+        normal_binding.value = coin.SoNormalBinding.PER_VERTEX_INDEXED
+        self.shape = coin.SoIndexedFaceSet()
+        ends = np.full((len(field.triangles), 1), -1)
+        indices = np.hstack([field.triangles.astype(np.int64), ends]).ravel()
+        self.shape.coordIndex.setValues(0, len(indices), indices.tolist())
+        self.parts = (
+            self.colours,
+            binding,
+            self.coordinates,
+            normals,
+            normal_binding,
+            self.shape,
+        )
+
+    def set_heights(self, heights):
+        points = self.points + heights[:, None] * self.normals
+        self.coordinates.point.setValues(0, len(points), list(map(tuple, points.tolist())))
+
+    def set_colours(self, packed):
+        opaque = packed | np.uint32(0xFF)
+        self.colours.orderedRGBA.setValues(0, len(packed), opaque.tolist())
+
+
+class FieldView:
+    """A core.HeightField as Coin nodes; add ``node`` to a scene. Coordinates: mm, work frame.
+
+    ``stock_nodes``: draw with Coin's stock nodes in any case. ``own_node`` tells which it is. All
+    calls belong to the window's thread.
+    """
+
+    def __init__(self, field, stock_nodes=False):
+        # The field itself stays alive: its arrays are views of it.
+        self.field = field
+        self.points, self.normals = field.points, field.normals
+        self.flags, self.faces = field.flags, field.faces
+        module = None if stock_nodes else _coin_module()
+        self.own_node = module is not None
+        self.drawn = _OwnNode(module, field) if self.own_node else _StockNodes(field)
+        self.light = coin.SoLightModel()
+        matt = coin.SoMaterial()  # a highlight would wash the colours out
+        matt.ambientColor = (0.2, 0.2, 0.2)
+        matt.specularColor = matt.emissiveColor = (0.0, 0.0, 0.0)
+        hints = coin.SoShapeHints()  # seen, and lit, from both sides
+        hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+        self.node = coin.SoSeparator()
+        for part in (self.light, matt, hints, *self.drawn.parts):
+            self.node.addChild(part)
+        self.set_heights(field.height)
+        self.drawn.set_colours(np.full(len(self.points), 0xB0B0B0FF, dtype=np.uint32))
+
+    def set_lit(self, lit):
+        """Lit, or flat: every colour exactly as in the legend."""
+        model = coin.SoLightModel
+        self.light.model = model.PHONG if lit else model.BASE_COLOR
+
+    def set_heights(self, heights):
+        """Moves the samples: ``heights`` (n,) mm along the normals. Colours stay as they are."""
+        self.heights = self._one_each(heights, np.float64).copy()
+        self.drawn.set_heights(self.heights)
+
+    def set_colours(self, colours):
+        """``colours``: (n, 4) uint8 RGBA, or (n,) uint32 0xRRGGBBAA; drawn opaque."""
+        colours = np.asarray(colours)
+        if colours.ndim == 2:
+            if colours.dtype != np.uint8 or colours.shape[1] != 4:
+                raise InputError("colours are (n, 4) uint8 or (n,) uint32")
+            colours = np.ascontiguousarray(colours).view(">u4").ravel().astype(np.uint32)
+        self.drawn.set_colours(self._one_each(colours, np.uint32))
+
+    def colour_by(self, mode, *limits, values=None):
+        """Colours by one of MODES.
+
+        deviation: ``limits`` are lower and upper limit and the end of the ramps, mm; then, if not
+        the usual ones, bands and colours as core.deviation_colours has them. removed depth, uncertainty: the end of the ramp, mm. face: none. pressure (MPa), contact (a mask or a share):
+        ``values`` (n,), and the end of the ramp (contact: 1 if not given). ``values`` replaces what
+        the field knows in the other modes too.
+        """
+        if values is not None:
+            values = self._one_each(values, np.float64)
+        if mode == FACE:
+            colours = core.face_colours(self.faces)
+        elif mode == DEVIATION:
+            values = self.heights if values is None else values
+            colours = core.height_colours(values, self.flags, *limits)
+        elif mode in MODES:
+            if values is None:
+                values = self._known(mode)
+            limits = limits or ((1.0,) if mode == CONTACT else ())
+            colours = core.magnitude_colours(values, self.flags, *limits)
+        else:
+            raise InputError(f"'{mode}' is no colour mode; use one of {', '.join(MODES)}")
+        self.drawn.set_colours(colours)
+
+    def _known(self, mode):
+        if mode == REMOVED:
+            return self.field.stock_height - self.heights
+        if mode == UNCERTAINTY:
+            if len(self.field.height_sd) != len(self.points):
+                raise InputError("the result has no uncertainty: its law was not calibrated")
+            return self.field.height_sd
+        raise InputError(f"colours by {mode} need its values")
+
+    def _one_each(self, values, kind):
+        values = np.ascontiguousarray(values, dtype=kind)
+        if values.shape != (len(self.points),):
+            raise InputError(f"{values.shape} values given, ({len(self.points)},) needed")
+        return values
+
+    def pick(self, view, position):
+        """The sample drawn at ``position`` (x, y in pixels from the lower left) of a FreeCAD 3D
+        view; None beside the field. Other things in front are looked through."""
+        width, height = view.getSize()
+        region = coin.SbViewportRegion(int(width), int(height))
+        root = coin.SoSeparator()
+        root.ref()
+        root.addChild(view.getCameraNode())
+        place = coin.SoMatrixTransform()
+        place.matrix = self._placed(view.getSceneGraph(), region)
+        root.addChild(place)
+        root.addChild(self.node)
+        index = self.pick_in(root, region, position)
+        root.removeAllChildren()
+        root.unref()
+        return index
+
+    def pick_in(self, root, region, position):
+        """The same in a scene of one's own: ``root`` with camera and ``node``."""
+        action = coin.SoRayPickAction(region)
+        action.setPoint(coin.SbVec2s(int(position[0]), int(position[1])))
+        action.setRadius(PICK_RADIUS)
+        action.apply(root)
+        picked = action.getPickedPoint()
+        if picked is None or picked.getDetail() is None:
+            return None
+        detail = coin.cast(picked.getDetail(), "SoFaceDetail")
+        corners = [detail.getPoint(k).getCoordinateIndex() for k in range(detail.getNumPoints())]
+        at = np.array(picked.getObjectPoint().getValue(), dtype=float)
+        tops = self.points[corners] + self.heights[corners, None] * self.normals[corners]
+        return int(corners[np.linalg.norm(tops - at, axis=1).argmin()])
+
+    def _placed(self, scene, region):
+        """The matrix at which the scene draws the node; unity where it does not."""
+        search = coin.SoSearchAction()
+        search.setNode(self.node)
+        search.apply(scene)
+        if search.getPath() is None:
+            return coin.SbMatrix.identity()
+        matrix = coin.SoGetMatrixAction(region)
+        matrix.apply(search.getPath())
+        return matrix.getMatrix()

@@ -1,0 +1,186 @@
+"""The legend of the deviation: a colour bar with numbers, laid over the 3D view."""
+
+from pivy import coin
+
+from ...engine import core
+from ...objects import preferences
+from ..common.compat import translate
+
+BAR_STEPS = 120
+# In the legend's own coordinates: the view is 2 high, its middle 0.
+LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
+LABEL_GAP = 0.07  # of half the bar: a line of text
+RIGHT = 0.36  # of its ground: room for a line of 14 letters in a view of 600 pixels
+LETTERS = 15  # of a line
+LINE = 0.055  # from line to line, in a view of 600 pixels
+
+
+def _rgb(packed):
+    return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
+
+
+def scan_node(lower, upper, limit, out_of_date=False, difference=False):
+    """The legend of a scan's heights, or of their difference from the prediction; always in the
+    standard colours without steps.
+    """
+    if difference:
+        text = translate("BeltGrinding", "scan - prediction, {}")
+    else:
+        text = translate("BeltGrinding", "scan, {}")
+    return _deviation(lower, upper, limit, out_of_date, 0, None, text)
+
+
+def node(lower, upper, limit, out_of_date=False, bands=0):
+    """The legend of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
+    each ramp.
+    """
+    text = translate("BeltGrinding", "deviation, {}")
+    return _deviation(lower, upper, limit, out_of_date, bands, preferences.colours(), text)
+
+
+def _deviation(lower, upper, limit, out_of_date, bands, choice, text):
+    values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    unit = preferences.deviation_unit()
+    labels = {
+        _height(value, limit): f"{value / unit.size:+.{unit.decimals}f}"
+        for value in label_values(lower, upper, limit, bands)
+    }
+    colours = core.colour_scale(lower, upper, limit, values, bands, choice)
+    return _legend(colours, labels, text.format(unit.symbol), out_of_date)
+
+
+def label_values(lower, upper, limit, bands=0):
+    """The deviations (mm) that are written: ends, limits, and borders of the bands or halves; none
+    so near to another that they would overlap.
+    """
+    between = (-0.5 * limit, 0.5 * limit)
+    if bands:
+        steps = [k / bands for k in range(1, bands)]
+        between = [upper + t * (limit - upper) for t in steps]
+        between += [lower - t * (limit + lower) for t in steps]
+    values = []
+    for value in (-limit, limit, lower, upper, *between):
+        if all(abs(value - other) > LABEL_GAP * limit for other in values):
+            values.append(value)
+    return values
+
+
+def uncertainty_node(limit, out_of_date=False):
+    """The legend of the deviation's standard deviation, up to ``limit`` mm."""
+    colours = core.uncertainty_scale(
+        limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
+    )
+    unit = preferences.deviation_unit()
+    labels = {HEIGHT * k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
+    text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
+    return _legend(colours, labels, text, out_of_date)
+
+
+def _legend(colours, labels, title, out_of_date):
+    """Colour bar with texts by height at the view's left border; not picked, not counted by
+    fitAll.
+    """
+    outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
+    group = coin.SoAnnotation()
+    outer.addChild(group)
+    pick = coin.SoPickStyle()
+    pick.style = coin.SoPickStyle.UNPICKABLE
+    group.addChild(pick)
+    camera = coin.SoOrthographicCamera()
+    camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
+    camera.position = (0, 0, 1)
+    camera.height = 2.0
+    group.addChild(camera)
+    light = coin.SoLightModel()
+    light.model = coin.SoLightModel.BASE_COLOR
+    group.addChild(light)
+    shift = coin.SoTranslation()
+    shift.translation = (-0.95, -0.5 * HEIGHT, 0)
+    group.addChild(shift)
+    titles = _lines(title)
+    warnings = (
+        _lines(translate("BeltGrinding", "out of date: simulate again")) if out_of_date else []
+    )
+    group.addChild(_panel(HEIGHT + 0.13 + LINE * (len(titles) - 1), len(warnings)))
+    group.addChild(_bar([_rgb(c) for c in colours]))
+    text_colour = coin.SoBaseColor()
+    text_colour.rgb = (0.0, 0.0, 0.0)
+    group.addChild(text_colour)
+    font = coin.SoFont()
+    font.name = "Sans"
+    font.size = 14
+    group.addChild(font)
+    for height, text in labels.items():
+        group.addChild(_label(text, LEFT + WIDTH + 0.02, height))
+    for k, line in enumerate(reversed(titles)):
+        group.addChild(_label(line, LEFT, HEIGHT + 0.06 + LINE * k))
+    if warnings:
+        warning = coin.SoBaseColor()
+        warning.rgb = (0.7, 0.15, 0.1)
+        group.addChild(warning)
+    for k, line in enumerate(warnings):
+        group.addChild(_label(line, LEFT, -0.1 - LINE * k))
+    return outer
+
+
+def _lines(text):
+    """A text in two lines, if it is long and has a place for that."""
+    for mark in (": ", " - "):
+        first, found, rest = text.partition(mark)
+        if found and len(text) > LETTERS:
+            return [first + mark.rstrip(), rest]
+    return [text]
+
+
+def _panel(high, lines_below):
+    """A light ground, up to ``high``: FreeCAD's own background may be dark."""
+    group = coin.SoSeparator()
+    material = coin.SoMaterial()
+    material.diffuseColor = (1.0, 1.0, 1.0)
+    material.transparency = 0.25
+    group.addChild(material)
+    low, right = -0.06 - (0.045 + LINE * lines_below if lines_below else 0.0), LEFT + RIGHT
+    points = coin.SoCoordinate3()
+    corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
+    points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])
+    group.addChild(points)
+    face = coin.SoFaceSet()
+    face.numVertices = 4
+    group.addChild(face)
+    return group
+
+
+def _height(value, limit):
+    return HEIGHT * (value + limit) / (2 * limit)
+
+
+def _label(text, x, y):
+    group = coin.SoSeparator()
+    move = coin.SoTranslation()
+    move.translation = (x, y - 0.012, 0)
+    group.addChild(move)
+    node = coin.SoText2()
+    node.string = text
+    group.addChild(node)
+    return group
+
+
+def _bar(colours):
+    group = coin.SoSeparator()
+    material = coin.SoBaseColor()
+    material.rgb.setValues(0, BAR_STEPS, colours)
+    binding = coin.SoMaterialBinding()
+    binding.value = coin.SoMaterialBinding.PER_FACE
+    corners, indices = [], []
+    for k in range(BAR_STEPS + 1):
+        y = HEIGHT * k / BAR_STEPS
+        corners += [(LEFT, y, 0), (LEFT + WIDTH, y, 0)]
+    for k in range(BAR_STEPS):
+        indices += [2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2, -1]
+    points = coin.SoCoordinate3()
+    points.point.setValues(0, len(corners), corners)
+    faces = coin.SoIndexedFaceSet()
+    faces.coordIndex.setValues(0, len(indices), indices)
+    for node in (material, binding, points, faces):
+        group.addChild(node)
+    return group

@@ -1,0 +1,67 @@
+"""The faces of the part that are not ground, for orientation."""
+
+import Part
+from pivy import coin
+
+from ...engine import InputError
+from ...objects import job_data
+
+GREY = (0.62, 0.64, 0.67)
+EDGE = (0.2, 0.2, 0.22)
+DEFLECTION = 0.002  # chord error, as a share of the part's diagonal
+
+
+def rest_of_part(job):
+    """Coin node with the job's part without the faces to be ground; not picked."""
+    root = coin.SoSeparator()
+    try:
+        shape, numbers = job_data.design(job)
+    except InputError:
+        return root
+    ground = set(numbers)
+    others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
+    if not others:
+        return root
+    rest = Part.Compound(others)
+    deflection = DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
+    points, triangles = rest.tessellate(deflection)
+    if not triangles:
+        return root
+    pick = coin.SoPickStyle()
+    pick.style = coin.SoPickStyle.UNPICKABLE
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+    hints.creaseAngle = 0.5
+    material = coin.SoMaterial()
+    material.diffuseColor = GREY
+    coordinates = coin.SoCoordinate3()
+    coordinates.point.setValues(0, len(points), [tuple(point) for point in points])
+    indices = [index for a, b, c in triangles for index in (a, b, c, -1)]
+    faces = coin.SoIndexedFaceSet()
+    faces.coordIndex.setValues(0, len(indices), indices)
+    for node in (pick, hints, material, coordinates, faces, _edges(rest, deflection)):
+        root.addChild(node)
+    return root
+
+
+def _edges(shape, deflection):
+    """The edges as thin lines: without them, faces of one brightness run into one another."""
+    root = coin.SoSeparator()
+    light = coin.SoLightModel()
+    light.model = coin.SoLightModel.BASE_COLOR
+    colour = coin.SoBaseColor()
+    colour.rgb = EDGE
+    points, counts = [], []
+    for edge in shape.Edges:
+        if edge.Degenerated:
+            continue
+        line = [tuple(point) for point in edge.discretize(Deflection=deflection)]
+        points += line
+        counts.append(len(line))
+    coordinates = coin.SoCoordinate3()
+    coordinates.point.setValues(0, len(points), points)
+    lines = coin.SoLineSet()
+    lines.numVertices.setValues(0, len(counts), counts)
+    for node in (light, colour, coordinates, lines):
+        root.addChild(node)
+    return root

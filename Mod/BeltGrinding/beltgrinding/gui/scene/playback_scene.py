@@ -1,0 +1,114 @@
+"""What playback draws: the field at a moment, the wheel on it, the rest of the part, the legend."""
+
+import numpy as np
+from pivy import coin
+
+from ...engine import InputError
+from ...job.tolerances import colour_scale
+from ...objects import job_data, job_inputs, preferences
+from ...objects.belt_machine import BeltMachine
+from ...objects.deviation import Deviation, bands_of
+from ...objects.robot_path import RobotPath
+from ..common.compat import translate
+from . import legend
+from .cell_view import CellView
+from .field_view import DEVIATION, FieldView
+from .part_context import rest_of_part
+from .shapes3d import separator
+
+SAME = 1e-9  # s
+
+
+class Scene:
+    """What is drawn: the field at a moment, the wheel on it, the rest of the part."""
+
+    def __init__(self, job, simulation, recording):
+        self.recording, self.simulation = recording, simulation
+        self.paths = job_inputs.tool_paths(job)
+        programs = job_data.children(job, RobotPath)
+        self.labels = [program.Label for program in programs]
+        self.lines = [path.lines() for path in self.paths]
+        self.ends = np.cumsum([path.duration() for path in self.paths])
+        self.duration = recording.duration
+        self.deviation = deviation = job_data.child(job, Deviation)
+        machine = job_data.child(job, BeltMachine)
+        self.needed = [job, simulation, machine, *programs]  # without them there is nothing to show
+        self.scale = self._scale(job)
+        field = simulation.Proxy.field(simulation)
+        if field is None or field.size != recording.samples:
+            text = translate("BeltGrinding", "The recording is of another field; simulate again.")
+            raise InputError(text)
+        self.field = FieldView(field)
+        self.frame, self.heights = 0, recording.heights_at(0)
+        self._draw()
+        self.time = 0.0
+        self.cell = CellView(job.Document, machine)
+        self.cell.set_path(programs[0].Proxy.arrays(programs[0])["frames"])
+        self.cell.root.addChild(self.field.node)
+        # The carrier would move the legend with the part.
+        self.legend = separator(coin.SoResetTransform(), self._legend())
+        self.cell.root.addChild(self.legend)
+        if deviation is None or not deviation.ViewObject.Visibility:
+            self.cell.root.addChild(rest_of_part(job))  # else the deviation draws it
+        self.hidden = []  # (view, switch, what it showed)
+        for obj in {part for part, _ in job.DesignFaces}:
+            self._hide(obj.ViewObject, obj.ViewObject.SwitchNode)
+        if deviation is not None:
+            self._hide(deviation.ViewObject, deviation.ViewObject.SwitchNode)
+            self._hide(deviation.ViewObject, deviation.ViewObject.Proxy.legend)
+
+    def _hide(self, view, switch):
+        """Turns a switch of the scene off: the property Visibility would change the document."""
+        self.hidden.append((view, switch, switch.whichChild.getValue()))
+        switch.whichChild = coin.SO_SWITCH_NONE
+
+    def go(self, moment):
+        """Shows a moment, s."""
+        self.time = min(max(moment, 0.0), self.duration)
+        frame = self.recording.frame_at(self.time + SAME)
+        if frame != self.frame:
+            samples, heights = self.recording.advance(self.frame, frame)
+            self.heights[samples] = heights
+            self.frame = frame
+            if len(samples):
+                self._draw()
+        k = min(int(np.searchsorted(self.ends, self.time)), len(self.paths) - 1)
+        begin = self.ends[k - 1] if k else 0.0
+        base_from_tcp, pose = self.paths[k].frame_at(self.time - begin)
+        self.cell.set_frame(base_from_tcp)
+        self.place = (self.labels[k], pose, int(self.lines[k][pose]))
+
+    def _scale(self, job):
+        """(lower, upper, end of the ramps, mm; bands; colours) as the Deviation is drawn."""
+        scale, bands = colour_scale({"inspection": job_data.inspection(job)}), 0
+        if self.deviation is not None and self.deviation.ColourLimit.Value > 0:
+            names = ("ToleranceLower", "ToleranceUpper", "ColourLimit")
+            scale = tuple(getattr(self.deviation, name).Value for name in names)
+            bands = bands_of(self.deviation)
+        return (*scale, bands, preferences.colours())
+
+    def _legend(self):
+        return legend.node(*self.scale[:3], bands=self.scale[3])
+
+    def recolour(self, job):
+        """Takes the scale over anew. What a changed Deviation has turned on is turned off again."""
+        self.scale = self._scale(job)
+        self.legend.replaceChild(1, self._legend())
+        self.field.colour_by(DEVIATION, *self.scale)
+        for _, switch, _ in self.hidden:
+            switch.whichChild = coin.SO_SWITCH_NONE
+
+    def _draw(self):
+        self.field.set_heights(self.heights)
+        self.field.colour_by(DEVIATION, *self.scale)
+
+    def close(self):
+        """Leaves the 3D views as they were. The switches alone were turned, no property."""
+        self.cell.close()
+        for view, switch, child in self.hidden:
+            try:
+                if view.Visibility:
+                    switch.whichChild = child
+            except (ReferenceError, RuntimeError):
+                pass  # the object is gone
+        self.hidden = []

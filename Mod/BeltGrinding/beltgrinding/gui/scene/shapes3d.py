@@ -1,0 +1,137 @@
+"""Coin nodes of things that are drawn for orientation: the contact wheel, frames, bodies."""
+
+import math
+
+import numpy as np
+from pivy import coin
+
+RUBBER, CORE, BODY = (0.25, 0.27, 0.30), (0.72, 0.74, 0.78), (0.55, 0.60, 0.68)
+AXES = ((0.84, 0.15, 0.16), (0.17, 0.55, 0.20), (0.13, 0.36, 0.78))  # x, y, z
+AROUND = 72  # parts of the wheel's circumference
+ACROSS = 9  # points of its profile across the width
+DEFLECTION = 0.002  # chord error of a body, as a share of its diagonal
+
+
+def set_matrix(node, frame):
+    """Gives a SoMatrixTransform a (4, 4) frame; Coin multiplies rows from the left."""
+    node.matrix.setValue(coin.SbMatrix(*np.asarray(frame, dtype=float).T.ravel().tolist()))
+
+
+def separator(*nodes):
+    root = coin.SoSeparator()
+    for node in nodes:
+        root.addChild(node)
+    return root
+
+
+def material(colour, transparency=0.0):
+    node = coin.SoMaterial()
+    node.diffuseColor = colour
+    node.transparency = transparency
+    return node
+
+
+def unpickable():
+    style = coin.SoPickStyle()
+    style.style = coin.SoPickStyle.UNPICKABLE
+    return style
+
+
+def triangles(points, indices, crease=0.5, solid=False):
+    """Faces of points (n, 3) and triangles (m, 3), lit from both sides unless ``solid``."""
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+    if solid:
+        hints.shapeType = coin.SoShapeHints.SOLID
+    hints.creaseAngle = crease
+    coordinates = coin.SoCoordinate3()
+    coordinates.point.setValues(0, len(points), np.asarray(points, dtype=float).tolist())
+    ends = np.full((len(indices), 1), -1)
+    flat = np.hstack([np.asarray(indices, dtype=int).reshape(-1, 3), ends]).ravel().tolist()
+    faces = coin.SoIndexedFaceSet()
+    faces.coordIndex.setValues(0, len(flat), flat)
+    return separator(hints, coordinates, faces)
+
+
+def profile(machine):
+    """Points [y, radius] (n, 2) in mm across a belt machine's wheel, from one side to the other."""
+    radius, width = machine.WheelRadius.Value, machine.WheelWidth.Value
+    turned = [(point.x, point.y) for point in machine.Profile]
+    if turned:
+        y, drop = np.array(turned).T
+        return np.stack([y, radius - drop], axis=1)
+    y = np.linspace(-0.5 * width, 0.5 * width, ACROSS)
+    crown = machine.CrownRadius.Value
+    drop = np.zeros(ACROSS)
+    if crown > 0.5 * width:
+        drop = crown - np.sqrt(crown**2 - y**2)
+    return np.stack([y, radius - drop], axis=1)
+
+
+def revolved(line):
+    """(points, triangles) of a line [y, radius] turned about the y axis."""
+    angles = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+    y, radius = line.T
+    points = np.stack(
+        [
+            np.sin(angles)[:, None] * radius,
+            np.broadcast_to(y, (AROUND, len(y))),
+            np.cos(angles)[:, None] * radius,
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    count = len(line)
+    i, k = np.meshgrid(np.arange(AROUND), np.arange(count - 1), indexing="ij")
+    a, b = i * count + k, (i + 1) % AROUND * count + k
+    quads = np.stack([a, b, b + 1, a + 1], axis=-1).reshape(-1, 4)
+    return points, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def wheel(machine):
+    """The contact wheel in the contact frame (its centre at z = -R): rim see-through, core, axes."""
+    line = profile(machine)
+    radius = machine.WheelRadius.Value
+    least = max(float(line[:, 1].min()) - max(machine.RimThickness.Value, 0.02 * radius), 0.0)
+    first, last = line[0], line[-1]
+    rim = np.vstack([[first[0], least], line, [last[0], least]])
+    core = np.array([[first[0], 0.0], [first[0], least], [last[0], least], [last[0], 0.0]])
+    move = coin.SoTranslation()
+    move.translation = (0.0, 0.0, -radius)
+    return separator(
+        separator(
+            move,
+            separator(material(CORE, 0.5), triangles(*revolved(core))),
+            separator(material(RUBBER, 0.6), triangles(*revolved(rim))),
+        ),
+        axes(0.5 * radius),
+    )
+
+
+def axes(length):
+    """Three arrows of mm ``length``: x red, y green, z blue."""
+    root = coin.SoSeparator()
+    for k, colour in enumerate(AXES):
+        line = np.array([[0.0, 0.0], [0.0, 0.012], [0.8, 0.012], [0.8, 0.04], [1.0, 0.0]]) * length
+        points, faces = revolved(line)
+        # The line turned about y lies along y; the others by a cyclic change of axes.
+        points = np.roll(points, k - 1, axis=1)
+        root.addChild(separator(material(colour), triangles(points, faces)))
+    return root
+
+
+def body(obj):
+    """A Part or Mesh object, its coordinates taken in whatever frame the node is put."""
+    points, faces = mesh_of(obj)
+    return separator(material(BODY), triangles(points, faces))
+
+
+def mesh_of(obj):
+    """(points (n, 3), triangles (m, 3)) of a Part or Mesh object, its placement applied."""
+    from ...objects.geometry import placed_shape
+
+    if hasattr(obj, "Mesh"):
+        points, faces = obj.Mesh.Topology  # in the document's coordinates
+        return [tuple(p) for p in points], faces
+    shape = placed_shape(obj)
+    points, faces = shape.tessellate(DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6))
+    return [tuple(p) for p in points], faces

@@ -1,0 +1,105 @@
+"""View provider of the deviation: vertex colours that survive reopening, legend, rest of the part."""
+
+from pivy import coin
+
+from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of
+from ..scene import legend
+from ..scene.part_context import rest_of_part
+from .coloured_mesh_view import ColouredMeshView
+
+LEGEND = (
+    "ToleranceLower",
+    "ToleranceUpper",
+    "ColourLimit",
+    "UncertaintyLimit",
+    "Bands",
+    "VertexColors",
+    "OutOfDate",
+)
+
+
+class DeviationView(ColouredMeshView):
+    """Proxy of the Mesh view provider."""
+
+    ICON = "BeltGrinding_Deviation"
+    COMMANDS = ("BeltGrinding_Simulate",)
+
+    def __init__(self, view):
+        super().__init__(view)
+        view.addProperty(
+            "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
+        )
+        view.RestOfPart = True
+        _add_lit(view)
+
+    def attach(self, view):
+        self.light = coin.SoLightModel()
+        self.rest = coin.SoSwitch()
+        view.RootNode.insertChild(self.light, 0)
+        view.RootNode.insertChild(
+            self.rest, 0
+        )  # before the mesh's materials, which it would inherit
+        super().attach(view)
+
+    def panel(self, obj):
+        from ..panels.deviation_panel import DeviationPanel
+
+        return DeviationPanel(obj)
+
+    def finishRestoring(self):
+        if not hasattr(self.view, "Lit"):
+            _add_lit(self.view)
+        self.update_light()
+        super().finishRestoring()
+        self.update_rest()
+
+    def updateData(self, obj, name):
+        if getattr(self, "view", None) is None:
+            return
+        if name == "VertexColors":
+            self.colour()
+            self.update_rest()
+        if name in LEGEND:
+            self.update_legend()
+
+    def onChanged(self, view, name):
+        if getattr(self, "legend", None) is None:
+            return
+        super().onChanged(view, name)
+        if name in ("Visibility", "RestOfPart"):
+            self.update_rest()
+        if name == "Lit":
+            self.update_light()
+
+    def update_light(self):
+        model = coin.SoLightModel
+        self.light.model = model.PHONG if self.view.Lit else model.BASE_COLOR
+
+    def legend_node(self):
+        obj = self.view.Object
+        if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
+            return None
+        scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
+        if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
+            return legend.uncertainty_node(obj.UncertaintyLimit.Value, obj.OutOfDate)
+        if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
+            return legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
+        return legend.node(*scale, obj.OutOfDate, bands_of(obj))
+
+    def update_rest(self):
+        """Draws the faces that are not ground; what is cut below them would else be hidden."""
+        self.rest.removeAllChildren()
+        job = self.view.Object.getParentGroup()
+        if job is not None and self.view.Visibility and self.view.RestOfPart:
+            self.rest.addChild(rest_of_part(job))
+            self.rest.whichChild = -3
+
+
+def _add_lit(view):
+    view.addProperty(
+        "App::PropertyBool",
+        "Lit",
+        "Deviation",
+        "shade the surface; off, every colour is exactly as in the legend",
+    )
+    view.Lit = True

@@ -1,0 +1,45 @@
+"""View provider of the ground part's mesh: vertex colours that survive reopening, and the legend."""
+
+from ..common.compat import translate
+from ..common.icons import icon
+from ..scene import legend
+from .coloured_mesh_view import ColouredMeshView
+
+
+class GroundMeshView(ColouredMeshView):
+    """Proxy of the Mesh view provider; a double click makes the mesh anew."""
+
+    ICON = "BeltGrinding_GroundMesh"
+    COMMANDS = ("BeltGrinding_GroundMesh", "BeltGrinding_Simulate")
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
+        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+
+    def updateData(self, obj, name):
+        if getattr(self, "view", None) is None:
+            return
+        if name == "VertexColors":
+            self.colour()
+        if name == "OutOfDate":
+            self.view.signalChangeIcon()
+        if name in ("VertexColors", "OutOfDate"):
+            self.update_legend()
+
+    def legend_node(self):
+        obj = self.view.Object
+        if getattr(obj, "ColourLimit", None) is None or obj.ColourLimit.Value <= 0:
+            return None
+        scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
+        return legend.node(*scale, obj.OutOfDate)
+
+    def doubleClicked(self, view):
+        from ...objects import ground_mesh
+        from ..common.transaction import transaction
+
+        with transaction(view.Object.Document, translate("BeltGrinding", "Ground part as mesh")):
+            ground_mesh.make(view.Object)
+        return True
+
+    def verb(self):
+        return translate("BeltGrinding", "Make the mesh anew")

@@ -1,0 +1,192 @@
+"""The view providers, by the names under which objects ask for them."""
+
+from pivy import coin
+
+from ...objects.robot_path import load_program
+from ..common.compat import translate
+from ..common.icons import icon, qicon
+from .deviation_view import DeviationView
+from .ground_mesh_view import GroundMeshView
+from .section_view import SectionView
+from .view import View
+
+__all__ = [
+    "BeltMachineView",
+    "BeltView",
+    "DeviationView",
+    "GroundMeshView",
+    "JobView",
+    "RasterPathView",
+    "RobotPathView",
+    "SectionView",
+    "SimulationView",
+    "StockView",
+    "VerdictView",
+]
+
+
+class Undrawn(View):
+    """An object that draws nothing. Without a display mode the tree would grey it out as hidden."""
+
+    def attach(self, view):
+        super().attach(view)
+        view.addDisplayMode(coin.SoGroup(), "Default")
+
+    def getDisplayModes(self, view):
+        return ["Default"]
+
+    def getDefaultDisplayMode(self):
+        return "Default"
+
+
+class JobView(View):
+    ICON = "BeltGrinding_Job"
+    COMMANDS = (
+        "BeltGrinding_Stock",
+        "BeltGrinding_BeltMachine",
+        "BeltGrinding_ImportProgram",
+        "BeltGrinding_RasterPath",
+        "BeltGrinding_ReadAgain",
+        "BeltGrinding_Simulate",
+        "BeltGrinding_Deviation",
+        "BeltGrinding_ExportJob",
+        "BeltGrinding_ImportResult",
+    )
+
+    def panel(self, obj):
+        from ..panels.job_panel import JobPanel
+
+        return JobPanel(obj)
+
+
+class StockView(Undrawn):
+    ICON = "BeltGrinding_Stock"
+
+    def panel(self, obj):
+        from ..panels.settings_panels import StockPanel
+
+        return StockPanel(obj)
+
+
+class BeltMachineView(Undrawn):
+    ICON = "BeltGrinding_BeltMachine"
+    COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
+
+    def panel(self, obj):
+        from ..panels.settings_panels import BeltMachinePanel
+
+        return BeltMachinePanel(obj)
+
+
+class BeltView(Undrawn):
+    ICON = "BeltGrinding_Belt"
+    COMMANDS = ("BeltGrinding_Simulate",)
+
+    def panel(self, obj):
+        from ..panels.belt_panel import BeltPanel
+
+        return BeltPanel(obj)
+
+
+class RobotPathView(View):
+    """The line begins at the first pose; FreeCAD's own begins at the document's origin."""
+
+    ICON = "BeltGrinding_ImportProgram"
+    COMMANDS = (
+        "BeltGrinding_ExportProgram",
+        "BeltGrinding_Simulate",
+        "BeltGrinding_Contact",
+        "BeltGrinding_Cell",
+    )
+
+    def attach(self, view):
+        super().attach(view)
+        self.start(view.Object)
+
+    def updateData(self, obj, name):
+        if name == "Path" and getattr(self, "view", None) is not None:
+            self.start(obj)
+
+    def start(self, obj):
+        """Tells the view where the path begins."""
+        if obj.Path.Size and hasattr(self.view, "StartPosition"):
+            self.view.StartPosition = obj.Path.Commands[0].Placement.Base
+
+    def panel(self, obj):
+        from ..panels.program_panel import ProgramPanel
+
+        return ProgramPanel(obj)
+
+    def own_entries(self, obj, menu):
+        if obj.Source:
+            text = translate("BeltGrinding", "Read the file again")
+            menu.addAction(qicon("BeltGrinding_ReadAgain"), text, lambda: read_again(obj))
+
+
+def read_again(obj):
+    """Reads a path's file again, as one undo step."""
+    from ..common.transaction import transaction
+
+    with transaction(obj.Document, translate("BeltGrinding", "Read the file again")):
+        load_program(obj, obj.Source)
+        obj.Document.recompute()
+
+
+class RasterPathView(RobotPathView):
+    ICON = "BeltGrinding_RasterPath"
+
+    def panel(self, obj):
+        from ..panels.raster_panel import RasterPanel
+
+        return RasterPanel(obj)
+
+
+class VerdictView(Undrawn):
+    """The icon says when the result is out of date; a double click shows the dock."""
+
+    ICON = "BeltGrinding_Verdict"
+    COMMANDS = ("BeltGrinding_Zones", "BeltGrinding_Deviation")
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
+        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+
+    def updateData(self, obj, name):
+        if name == "OutOfDate" and getattr(self, "view", None) is not None:
+            self.view.signalChangeIcon()
+
+    def doubleClicked(self, view):
+        from ..docks.verdict_dock import VerdictDock
+
+        VerdictDock.open(view.Object)
+        return True
+
+    def setEdit(self, view, mode=0):
+        return None
+
+    def verb(self):
+        return translate("BeltGrinding", "Show verdict")
+
+
+class SimulationView(Undrawn):
+    """The icon says when the result is out of date; a double click shows the result."""
+
+    ICON = "BeltGrinding_Simulate"
+    COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation", "BeltGrinding_ImportResult")
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
+        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+
+    def updateData(self, obj, name):
+        if name == "OutOfDate" and getattr(self, "view", None) is not None:
+            self.view.signalChangeIcon()
+
+    def doubleClicked(self, view):
+        from ..panels.simulation_panel import show_result
+
+        show_result(view.Object)
+        return True
+
+    def verb(self):
+        return translate("BeltGrinding", "Show result")

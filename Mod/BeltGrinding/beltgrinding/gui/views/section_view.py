@@ -1,0 +1,79 @@
+"""View provider of a cross-section: its line over the ground surface."""
+
+from pivy import coin
+
+from ..common.compat import translate
+from ..common.icons import qicon
+from ..scene.shapes3d import separator, unpickable
+from .view import View
+
+COLOUR = (0.85, 0.0, 0.55)  # in neither ramp of the deviation
+WIDTH = 3  # pixels
+
+
+class SectionView(View):
+    """A line; a double click opens the plot."""
+
+    ICON = "BeltGrinding_Section"
+    COMMANDS = ("BeltGrinding_Section", "BeltGrinding_Simulate")
+
+    def attach(self, view):
+        super().attach(view)
+        style, light, colour = coin.SoDrawStyle(), coin.SoLightModel(), coin.SoBaseColor()
+        style.lineWidth = WIDTH
+        light.model = coin.SoLightModel.BASE_COLOR
+        colour.rgb = COLOUR
+        depth = coin.SoDepthBuffer()
+        depth.range = (0.0, 0.999)
+        self.points, self.lines = coin.SoCoordinate3(), coin.SoLineSet()
+        root = separator(unpickable(), light, colour, style, depth, self.points, self.lines)
+        view.addDisplayMode(root, "Line")
+        self.draw(view.Object)
+
+    def getDisplayModes(self, view):
+        return ["Line"]
+
+    def getDefaultDisplayMode(self):
+        return "Line"
+
+    def updateData(self, obj, name):
+        if name == "Line" and getattr(self, "view", None) is not None:
+            self.draw(obj)
+
+    def draw(self, obj):
+        """Takes the object's line over."""
+        if not hasattr(obj, "LineCounts"):
+            return
+        points, counts = [tuple(point) for point in obj.Line], obj.LineCounts
+        self.lines.numVertices.deleteValues(0)
+        self.points.point.deleteValues(0)
+        if points:
+            self.points.point.setValues(0, len(points), points)
+            self.lines.numVertices.setValues(0, len(counts), counts)
+
+    def doubleClicked(self, view):
+        from ..docks.section_dock import SectionDock
+
+        SectionDock.open(view.Object)
+        return True
+
+    def verb(self):
+        return translate("BeltGrinding", "Show the plot")
+
+    def own_entries(self, obj, menu):
+        for kind in ("CSV", "SVG"):
+            text = translate("BeltGrinding", "Export {}").format(f"{kind}...")
+            menu.addAction(
+                qicon("BeltGrinding_ExportJob"),
+                text,
+                lambda kind=kind.lower(): self.export(obj, kind),
+            )
+
+    def export(self, obj, kind):
+        """Asks for a file and writes the section as "csv" or "svg"; its dock says what came of it."""
+        from ..docks.section_dock import SectionDock
+
+        SectionDock.open(obj).export(kind)
+
+    def setEdit(self, view, mode=0):
+        return None

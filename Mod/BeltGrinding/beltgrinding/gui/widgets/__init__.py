@@ -1,0 +1,1 @@
+"""Widgets that panels and docks are made of."""

@@ -1,0 +1,163 @@
+"""The moment of an event in the 3D view: the cell there and then, a mark on the part, the camera."""
+
+import FreeCADGui as Gui
+import numpy as np
+from pivy import coin
+
+from ...job.bodies import PART, STOCK
+from ...objects import job_data, job_inputs
+from ...objects.belt_machine import BeltMachine
+from ...objects.robot_path import RobotPath
+from ..common import event_texts
+from ..common.compat import QtGui
+from ..common.event_texts import COLOURS
+from ..scene.camera import fly_to
+from ..scene.cell_view import CellView
+
+LEAST_SIZE, WHEELS = 20.0, 3.2  # mm; radii of the wheel that the view shows
+ASIDE = 0.65  # of the view's direction along the wheel's axis: the contact is seen from the side
+
+
+class EventMoment:
+    """Shows events of a job's simulation; ``close`` leaves the 3D view as it was."""
+
+    def __init__(self, job):
+        self.document, self.name = job.Document, job.Name
+        self.cell = self.mark = None
+        self.tinted = []  # views of cells
+        self.paths = None
+
+    def job(self):
+        """The job, or None if it or its document is no longer there."""
+        try:
+            return self.document.getObject(self.name)
+        except ReferenceError:
+            return None
+
+    def show(self, event):
+        """Shows the moment at which an event was worst. Raises InputError if the job has changed so
+        that there is none."""
+        job = self.job()
+        if job is None:
+            return
+        if self.paths is None:
+            self.paths = job_inputs.tool_paths(job)
+        dock = playback(job)
+        if dock is not None:
+            self._drop_cell()
+            dock.scrub(event["worst_time"])
+            cell = dock.scene.cell
+        else:
+            cell = self._own_cell(job)
+            if event["program"] >= len(self.paths):
+                return
+            begin = sum(path.duration() for path in self.paths[: event["program"]])
+            frame, _ = self.paths[event["program"]].frame_at(event["worst_time"] - begin)
+            cell.set_frame(frame)
+        self.untint()
+        cell.tint([name for name in event["bodies"] if name not in (PART, STOCK)])
+        self.tinted = [cell]
+        contact = cell.frames()["contact"]
+        point = contact[:3, 3] if event["point"] is None else np.array(event["point"])
+        self._mark(event, point)
+        self._fly(job, contact, point, cell)
+
+    def _own_cell(self, job):
+        if self.cell is None:
+            self.cell = CellView(job.Document, job_data.child(job, BeltMachine))
+            program = job_data.children(job, RobotPath)[0]
+            self.cell.set_path(program.Proxy.arrays(program)["frames"])
+        return self.cell
+
+    def _drop_cell(self):
+        if self.cell is not None:
+            self.cell.close()
+            self.cell = None
+
+    def _views(self):
+        return Gui.getDocument(self.document.Name).mdiViewsOfType("Gui::View3DInventor")
+
+    def _mark(self, event, point):
+        self._unmark()
+        node = pin(point, COLOURS[event["severity"]], event_texts.title(event["kind"]))
+        self.mark = node, [view.getSceneGraph() for view in self._views()]
+        for scene in self.mark[1]:
+            scene.addChild(node)
+
+    def _unmark(self):
+        if self.mark is not None:
+            node, scenes = self.mark
+            for scene in scenes:
+                if scene.findChild(node) >= 0:
+                    scene.removeChild(node)
+            self.mark = None
+
+    def _fly(self, job, contact, point, cell):
+        machine = job_data.child(job, BeltMachine)
+        size = max(LEAST_SIZE, WHEELS * machine.WheelRadius.Value)
+        moved = cell.carried(cell.frames())  # the part may be drawn as it moves
+        axis, away = contact[:3, 1], -contact[:3, 2]
+        for view in self._views():
+            ahead = np.array(view.getViewDirection())
+            side = -axis if axis @ (moved[:3, :3].T @ ahead) > 0.0 else axis  # the nearer one
+            place = ASIDE * side + (1.0 - ASIDE) * away
+            # Half way to the wheel's centre, so that both are in the picture.
+            target = point + 0.2 * size * away
+            target = moved[:3, :3] @ target + moved[:3, 3]
+            turned = (moved[:3, :3] @ place).tolist(), (moved[:3, :3] @ away).tolist()
+            fly_to(view, target.tolist(), turned[0], size, turned[1])
+
+    def untint(self):
+        """Bodies get their own colours back."""
+        for cell in self.tinted:
+            cell.tint(())
+        self.tinted = []
+
+    def close(self):
+        """Takes everything out of the 3D views."""
+        self.untint()
+        self._unmark()
+        self._drop_cell()
+
+
+def playback(job):
+    """The playback dock that shows a recording of the job; None if there is none."""
+    for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock"):
+        if dock.isVisible() and dock.scene is not None and dock.job() is job:
+            return dock
+    return None
+
+
+def pin(point, colour, text):
+    """A dot with a text at ``point`` (3,), over everything, not picked, not counted by fitAll."""
+    root = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
+    top = coin.SoAnnotation()
+    style = coin.SoPickStyle()
+    style.style = coin.SoPickStyle.UNPICKABLE
+    light = coin.SoLightModel()
+    light.model = coin.SoLightModel.BASE_COLOR
+    place = coin.SoTranslation()
+    place.translation = [float(x) for x in point]
+    dots = coin.SoCoordinate3()
+    dots.point.setValues(0, 1, [(0.0, 0.0, 0.0)])
+    for node in (style, light, place, dots):
+        top.addChild(node)
+    filled = QtGui.QColor(colour).getRgbF()[:3]
+    shapes = ((1.0, 1.0, 1.0), "CIRCLE_FILLED_9_9"), (filled, "CIRCLE_FILLED_7_7")
+    for rgb, name in shapes:
+        tone = coin.SoBaseColor()
+        tone.rgb = rgb
+        marker = coin.SoMarkerSet()
+        marker.markerIndex = getattr(coin.SoMarkerSet, name)
+        top.addChild(tone)
+        top.addChild(marker)
+    tone = coin.SoBaseColor()
+    tone.rgb = (0.0, 0.0, 0.0)
+    font = coin.SoFont()
+    font.size = 15.0
+    label = coin.SoText2()
+    label.string = "   " + text
+    for node in (tone, font, label):
+        top.addChild(node)
+    root.addChild(top)
+    return root

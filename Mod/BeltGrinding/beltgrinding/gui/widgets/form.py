@@ -1,0 +1,309 @@
+"""A form whose fields are bound to an object's properties, with FreeCAD's unit entry."""
+
+import gc
+import math
+
+import FreeCADGui as Gui
+from FreeCAD import Placement, Rotation, Units, Vector
+
+from ...engine import InputError
+from ...objects.properties import limits
+from ..common.compat import QtCore, QtGui, translate
+
+QUANTITIES = {
+    "App::PropertyLength",
+    "App::PropertyDistance",
+    "App::PropertyAngle",
+    "App::PropertySpeed",
+    "App::PropertyForce",
+    "App::PropertyPressure",
+    "App::PropertyAcceleration",
+}
+NUMBERS = {"App::PropertyFloat", "App::PropertyInteger"}
+WRONG = "QAbstractSpinBox, QLineEdit { border: 2px solid #b3261e; }"
+ATTEMPTS = 20
+MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
+NOT_NEGATIVE = {
+    "App::PropertyLength",
+    "App::PropertySpeed",
+    "App::PropertyForce",
+    "App::PropertyPressure",
+    "App::PropertyAcceleration",
+}
+
+
+def quantity_field(quantity):
+    """FreeCAD's entry for a number with its unit; its property rawValue is in FreeCAD's own unit."""
+    widget = _spin_box()
+    show_quantity(widget, quantity)
+    widget.setMinimumWidth(MINIMUM_WIDTH)
+    return widget
+
+
+def _spin_box():
+    for _ in range(ATTEMPTS):
+        widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+        try:
+            widget.objectName()
+            return widget
+        except RuntimeError:
+            # A closed panel's widget was at this address, and PySide hands out its dead wrapper.
+            gc.collect()
+    raise RuntimeError("FreeCAD's entry for quantities cannot be made")
+
+
+def show_quantity(widget, quantity):
+    """Puts a quantity into FreeCAD's entry."""
+    # FreeCAD's two decimals would round the value itself, not only its text.
+    quantity = Units.Quantity(quantity)
+    quantity.Format = {"Precision": 7, "NumberFormat": "g", "Denominator": 8}
+    widget.setProperty("value", quantity)
+
+
+def number(text):
+    """The number in a text, with a point or, as many languages have it, a comma; or None."""
+    try:
+        value = float(text.strip().replace(",", "."))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+SIGNED = "signed"
+
+
+class Form(QtGui.QGroupBox):
+    """Rows of fields; every change goes to the property at once."""
+
+    def __init__(self, obj, title):
+        super().__init__(title)
+        self.obj = obj
+        self.rows = {}  # property name: (label, widget)
+        self.changed = lambda: None  # called after a property was set
+        self.unsigned = set()  # numbers that must not be negative, whatever the schema says
+        # property name: what is wrong with what stands in its field, as typed, as told, as shown
+        self.typed, self.told, self.mistakes = {}, {}, {}
+        self.layout_ = QtGui.QFormLayout(self)
+        self.layout_.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        self.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+
+    def add(self, name, text, choices=None, unit=""):
+        """A row for the property ``name``. choices: texts of an enumeration's values, or the objects
+        that a link can take, or SIGNED for a number that may be negative; unit: shown behind a plain
+        number."""
+        kind = self.obj.getTypeIdOfProperty(name)
+        if kind in QUANTITIES:
+            widget = self._quantity(name, kind)
+        elif kind == "App::PropertyEnumeration":
+            widget = self._enumeration(name, choices or {})
+        elif kind == "App::PropertyBool":
+            widget = QtGui.QCheckBox()
+            widget.setChecked(getattr(self.obj, name))
+            widget.toggled.connect(lambda on: self._set(name, on))
+        elif kind == "App::PropertyInteger":
+            widget = QtGui.QSpinBox()
+            widget.setValue(getattr(self.obj, name))
+            widget.valueChanged.connect(lambda value: self._set(name, value))
+        elif kind == "App::PropertyLinkGlobal":
+            widget = self._link(name, choices or [])
+        elif kind == "App::PropertyFile":
+            widget = self._file(name, choices or "")
+        elif kind == "App::PropertyPlacement":
+            widget = FrameField(getattr(self.obj, name), lambda value: self._set(name, value))
+        else:
+            widget = self._number(name, choices == SIGNED)
+        widget.setToolTip(self.obj.getDocumentationOfProperty(name))
+        widget.setObjectName(name)
+        label = QtGui.QLabel(f"{text}, {unit}" if unit else text)
+        label.setToolTip(widget.toolTip())
+        self.layout_.addRow(label, widget)
+        self.rows[name] = (label, widget)
+        self._watch(name, widget)
+        return widget
+
+    def _watch(self, name, widget):
+        """Checks a number as it is typed."""
+        line = widget if isinstance(widget, QtGui.QLineEdit) else widget.findChild(QtGui.QLineEdit)
+        kind = self.obj.getTypeIdOfProperty(name)
+        if line is not None and (kind in QUANTITIES or kind in NUMBERS):
+            line.textChanged.connect(lambda text: self._check_typed(name, text))
+
+    def _mistake(self, name, text):
+        """What is wrong with a number as it was typed; '' if nothing is."""
+        unit = getattr(getattr(self.obj, name), "Unit", None)
+        if unit is None:
+            value = number(text)
+            if value is None:
+                return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+            return self._out_of_limits(name, value)
+        if text.startswith("="):
+            return ""  # an expression, which FreeCAD checks itself
+        try:
+            quantity = Units.Quantity(text)
+        except Exception:  # the kind differs between FreeCAD's generations
+            return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+        if quantity.Unit == unit:
+            return self._out_of_limits(name, quantity.Value)
+        if quantity.Unit != Units.Unit():
+            return translate("BeltGrinding", "The unit does not fit: {}").format(text)
+        # A bare number takes the unit that the field shows; zero is the same in all.
+        bare = limits(self.obj, name)[0] == 0.0 and quantity.Value <= 0.0
+        return self._out_of_limits(name, quantity.Value) if bare else ""
+
+    def _out_of_limits(self, name, value):
+        low, high, open_low = limits(self.obj, name)
+        if low is None and name in self.unsigned:
+            low = 0.0
+        if low is not None and (value < low or open_low and value == low):
+            if open_low:
+                return translate("BeltGrinding", "Must be greater than {}").format(
+                    self._shown(name, low)
+                )
+            return translate("BeltGrinding", "Must be at least {}").format(self._shown(name, low))
+        if high is not None and value > high:
+            return translate("BeltGrinding", "Must be at most {}").format(self._shown(name, high))
+        return ""
+
+    def _shown(self, name, value):
+        unit = getattr(getattr(self.obj, name), "Unit", None)
+        return f"{value:g}" if unit is None else Units.Quantity(value, unit).UserString
+
+    def mark(self, name, mistake):
+        """Frames a field in red and says in its tooltip what is wrong; '' takes that back. What is
+        wrong with the number as it was typed is marked anyway.
+        """
+        self.told[name] = mistake
+        self._show_mistake(name)
+
+    def _show_mistake(self, name):
+        mistake = self.typed.get(name) or self.told.get(name) or ""
+        if self.mistakes.get(name, "") == mistake:
+            return
+        widget = self.rows[name][1]
+        self.mistakes[name] = mistake
+        widget.setStyleSheet(WRONG if mistake else "")
+        # FreeCAD's entry resets its own tooltip while something wrong stands in it.
+        for shown in (widget, *widget.findChildren(QtGui.QLineEdit)):
+            shown.setToolTip(mistake or self.obj.getDocumentationOfProperty(name))
+
+    def _check_typed(self, name, text):
+        self.typed[name] = self._mistake(name, text)
+        self._show_mistake(name)
+
+    def check(self):
+        """Raises InputError for the first visible field with a mistake."""
+        for name, mistake in self.mistakes.items():
+            label, widget = self.rows[name]
+            if mistake and not widget.isHidden():
+                raise InputError(f"{label.text()}: {mistake}")
+
+    def show_rows(self, names):
+        """Shows the rows in ``names`` and hides the others."""
+        for name, row in self.rows.items():
+            for widget in row:
+                widget.setVisible(name in names)
+
+    def refresh(self, name):
+        """Shows a number that was set from elsewhere."""
+        widget, value = self.rows[name][1], getattr(self.obj, name)
+        if self.obj.getTypeIdOfProperty(name) in QUANTITIES:
+            show_quantity(widget, value)
+        else:
+            widget.setText(f"{value:g}")
+
+    def _set(self, name, value):
+        if getattr(self.obj, name) != value:
+            setattr(self.obj, name, value)
+            self.changed()
+
+    def _quantity(self, name, kind):
+        value = getattr(self.obj, name)
+        widget = quantity_field(value)
+        if kind in NOT_NEGATIVE:
+            widget.setProperty("minimum", 0.0)
+        Gui.ExpressionBinding(widget).bind(self.obj, name)
+
+        def changed(*_):
+            raw = float(widget.property("rawValue"))
+            self._set(name, Units.Quantity(raw, value.Unit))
+
+        widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), changed)
+        return widget
+
+    def _number(self, name, signed=False):
+        widget = QtGui.QLineEdit(f"{getattr(self.obj, name):g}")
+        if not signed:
+            self.unsigned.add(name)
+        widget.setCursorPosition(0)  # else a narrow panel shows the last digits only
+
+        def changed(text):
+            value = number(text)
+            if value is not None and not self._out_of_limits(name, value):
+                self._set(name, value)
+
+        widget.textChanged.connect(changed)
+        return widget
+
+    def _enumeration(self, name, texts):
+        widget = QtGui.QComboBox()
+        # A long choice must not make the panel wider than the view that holds it.
+        widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        widget.setMinimumContentsLength(10)
+        values = self.obj.getEnumerationsOfProperty(name)
+        for value in values:
+            widget.addItem(texts.get(value, value))
+        widget.setCurrentIndex(values.index(getattr(self.obj, name)))
+        widget.currentIndexChanged.connect(lambda i: self._set(name, values[i]))
+        return widget
+
+    def _link(self, name, objects):
+        widget = QtGui.QComboBox()
+        choices = [None, *objects]
+        for one in choices:
+            widget.addItem(one.Label if one else translate("BeltGrinding", "(none)"))
+        current = getattr(self.obj, name)
+        widget.setCurrentIndex(choices.index(current) if current in choices else 0)
+        widget.currentIndexChanged.connect(lambda i: self._set(name, choices[i]))
+        return widget
+
+    def _file(self, name, pattern):
+        widget = Gui.UiLoader().createWidget("Gui::FileChooser")
+        widget.setProperty("filter", pattern)
+        widget.setProperty("fileName", getattr(self.obj, name))
+        widget.connect(
+            widget,
+            QtCore.SIGNAL("fileNameSelected(const QString &)"),
+            lambda path: self._set(name, str(path)),
+        )
+        return widget
+
+
+class FrameField(QtGui.QWidget):
+    """X, Y, Z and A, B, C (KUKA's: about z, y, x) of a frame."""
+
+    def __init__(self, placement, changed):
+        super().__init__()
+        grid = QtGui.QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(4)
+        grid.setColumnStretch(1, 1)
+        grid.setColumnStretch(3, 1)
+        angles = placement.Rotation.toEuler()
+        self.fields = []
+        for i, (name, value) in enumerate(zip("XYZABC", (*placement.Base, *angles))):
+            field = quantity_field(Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
+            field.setMinimumWidth(MINIMUM_WIDTH // 2)
+            # Without its buttons a narrow panel shows the number whole, from its sign on.
+            field.setProperty("buttonSymbols", 2)
+            field.findChild(QtGui.QLineEdit).setCursorPosition(0)
+            field.setObjectName(name)
+            field.setToolTip(name)
+            field.connect(field, QtCore.SIGNAL("valueChanged(double)"), self._changed)
+            grid.addWidget(QtGui.QLabel(name), i % 3, 2 * (i // 3))
+            grid.addWidget(field, i % 3, 2 * (i // 3) + 1)
+            self.fields.append(field)
+        self.notify = changed
+
+    def _changed(self, *_):
+        x, y, z, a, b, c = (float(field.property("rawValue")) for field in self.fields)
+        self.notify(Placement(Vector(x, y, z), Rotation(a, b, c)))

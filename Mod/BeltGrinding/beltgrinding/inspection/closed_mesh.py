@@ -1,0 +1,114 @@
+"""The ground part as one closed mesh: STL, PLY and 3MF for those who measure with other tools."""
+
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from ..base.files import write_whole
+from ..engine import InputError, core
+from ..job import workpiece
+from ..job.tolerances import colour_scale
+
+DEFLECTION = 0.05  # mm, chord error on faces that are not ground
+SUFFIXES = (".stl", ".ply", ".3mf")
+STANDING = ("design", "ground", "missed", "border")  # the values of GroundMesh.standing
+
+# Open Packaging Conventions: the two parts that lead to a 3MF package's model.
+_CONTENT_TYPES = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" '
+    'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" '
+    'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>\n'
+)
+_RELATIONSHIPS = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
+    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n'
+)
+
+
+def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
+    """core.GroundMesh of a ``simulation.result.Result``: the whole part, its sampled faces displaced by the heights (``ground`` False: as designed).
+
+    Arrays, mm, work frame: ``vertices`` (n, 3), ``triangles`` (m, 3), ``faces`` (m,) from 0,
+    ``deviation`` (n,) NaN on faces that are not ground, ``standing`` (n,) an index into
+    ``STANDING``. On ground faces the vertices lie as close as the samples; elsewhere the chord
+    error is ``deflection_mm``. ``report()`` tells if it is closed. Raises InputError.
+    """
+    design = result.job["design"]
+    return core.ground_mesh(
+        workpiece.read_design(design),
+        result.field,
+        ground,
+        deflection_mm,
+        flip_normals=design["flip_normals"],
+        context=context,
+    )
+
+
+def file_bytes(mesh, suffix, scale=None):
+    """The mesh as a file: suffix ".stl" (binary), ".ply" (binary) or ".3mf". scale: (lower, upper,
+    limit) mm of the deviation's colours, for PLY and 3MF. Raises InputError for another suffix.
+    """
+    if suffix == ".stl":
+        return mesh.stl()
+    if suffix == ".ply":
+        return mesh.ply(scale)
+    if suffix != ".3mf":
+        raise InputError(f"a mesh is written as {', '.join(SUFFIXES)}, not as '{suffix}'")
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as package:
+        package.writestr("[Content_Types].xml", _CONTENT_TYPES)
+        package.writestr("_rels/.rels", _RELATIONSHIPS)
+        package.writestr("3D/3dmodel.model", mesh.model_3mf(scale))
+    return data.getvalue()
+
+
+def write(mesh, path, scale=None):
+    """Writes ``file_bytes``, whole or not at all. Raises InputError."""
+    path = Path(path)
+    data = file_bytes(mesh, path.suffix.lower(), scale)
+    try:
+        write_whole(path, data)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def export(result, path, ground=True, deflection_mm=DEFLECTION, context=None):
+    """``ground_mesh`` into a file; returns its ``summary``."""
+    path = Path(path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"{path}: a mesh is written as {', '.join(SUFFIXES)}")
+    mesh = ground_mesh(result, ground, deflection_mm, context)
+    write(mesh, path, colour_scale(result.job))
+    return summary(mesh)
+
+
+def summary(mesh):
+    """Figures of a mesh, mm, mm2, mm3."""
+    report = mesh.report()
+    ground, design = report["ground"], report["design"]
+    return {
+        "vertices": len(mesh.vertices),
+        "triangles": len(mesh.triangles),
+        "closed": ground["closed"],
+        "border_edges": ground["border_edges"],
+        "non_manifold_edges": ground["non_manifold_edges"],
+        "components": ground["components"],
+        "euler_characteristic": ground["euler"],
+        "volume_mm3": ground["volume"] if ground["closed"] else None,
+        "design_volume_mm3": design["volume"] if design["closed"] else None,
+        "samples_volume_mm3": report["expected_volume"],
+        "area_mm2": ground["area"],
+        "turned_triangles": report["flipped"],
+        "slid_vertices": report["slid"],
+        "missed_vertices": report["missed"],
+        "defective_samples": report["defective"],
+        "ground_vertices": int(np.count_nonzero(mesh.standing == STANDING.index("ground"))),
+        "warnings": report["warnings"],
+    }

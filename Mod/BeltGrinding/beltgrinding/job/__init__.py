@@ -1,0 +1,1 @@
+"""A job as plain data: loaded, checked, and turned into what the engine takes."""

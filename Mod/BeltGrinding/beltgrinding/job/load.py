@@ -1,0 +1,55 @@
+"""A whole job as plain data, and how it is run. No FreeCAD in here.
+
+The format is Resources/schema/job.schema.json; every default stands there and nowhere else.
+"""
+
+from pathlib import Path
+
+from ..base import schemas
+from ..engine import InputError
+from ..presets import robot as robots
+from . import bodies as job_bodies
+from .tolerances import check_zones
+
+
+def schema():
+    """The JSON Schema of a job, as a dict."""
+    return schemas.schema("job")
+
+
+def load(path):
+    """Reads and validates a job file; its paths come back absolute. Raises InputError."""
+    path = Path(path)
+    job = schemas.read_json(path)
+    try:
+        return validate(job, path.resolve().parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def validate(job, folder="."):
+    """A copy of ``job`` with all defaults filled in and paths absolute (relative to ``folder``).
+
+    Raises InputError naming the key that is unknown, missing or wrong.
+    """
+    job = schemas.checked(job, schema(), "job")
+    for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
+        if "file" in holder:
+            holder["file"] = str(Path(folder, holder["file"]).resolve())
+    compliance = job["belt_machine"]["compliance"]
+    if compliance["surrogate_file"]:
+        compliance["surrogate_file"] = str(Path(folder, compliance["surrogate_file"]).resolve())
+    elif compliance["model"] == "surrogate":
+        raise InputError("belt_machine.compliance: a surrogate needs the key 'surrogate_file'")
+    stock = job["stock"]
+    if stock["kind"] == "mesh" and "file" not in stock:
+        raise InputError("stock: a mesh stock needs the key 'file'")
+    if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
+        raise InputError("stock: a solid stock needs exactly one of 'file' or 'brep'")
+    job_bodies.validate(job["cell"]["bodies"])
+    robots.validate(job["robot"])
+    lower, upper = job["inspection"]["tolerance_mm"]
+    if lower > upper:
+        raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
+    check_zones(job["inspection"]["zones"], job["design"]["faces"])
+    return job

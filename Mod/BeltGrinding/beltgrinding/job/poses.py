@@ -1,0 +1,89 @@
+"""Poses of a job's programs: as arrays for the simulator, as lists for the job file."""
+
+import numpy as np
+
+from ..base import frames
+from ..engine import InputError
+
+DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
+
+
+def program_name(job, index):
+    """How a job's program is called in messages."""
+    program = job["programs"][index]
+    return program.get("name") or program.get("file", f"programs[{index}]")
+
+
+def list_poses(arrays):
+    """Arrays (as ``program_arrays`` gives them) as the job file's list of poses."""
+    turns = frames.to_quaternions(arrays["frames"][:, :3, :3])
+    rows = zip(
+        arrays["frames"][:, :3, 3].tolist(),
+        turns.tolist(),
+        arrays["feeds"].tolist(),
+        arrays["forces"].tolist(),
+        arrays["rapid"].tolist(),
+        arrays["lines"].tolist(),
+        arrays["zones"].tolist(),
+    )
+    poses = []
+    for (x, y, z), (qw, qx, qy, qz), feed, force, rapid, line, zone in rows:
+        pose = {"x_mm": x, "y_mm": y, "z_mm": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz}
+        pose.update(feed_mm_s=feed, rapid=rapid, line=line)
+        if force >= 0:
+            pose["force_N"] = force
+        if zone >= 0:
+            pose["zone_mm"] = zone
+        poses.append(pose)
+    return poses
+
+
+def listed_poses(poses, where):
+    """Arrays of a program that is given pose by pose. Raises InputError."""
+    values = np.array(
+        [[p[k] for k in ("x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz")] for p in poses],
+        dtype=float,
+    ).reshape(-1, 7)
+    try:
+        matrices = frames.from_quaternions(values[:, :3], values[:, 3:])
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+    return {
+        "frames": matrices,
+        "feeds": np.array([p.get("feed_mm_s", DEFAULT_FEED) for p in poses], dtype=float),
+        "forces": np.array([p.get("force_N", -1.0) for p in poses], dtype=float),
+        "rapid": np.array([p.get("rapid", False) for p in poses], dtype=bool),
+        "lines": np.array([p.get("line", 0) for p in poses], dtype=int),
+        "zones": np.array([p.get("zone_mm", -1.0) for p in poses], dtype=float),
+    }
+
+
+def program_arrays(program, where, warnings, pose_of=None):
+    """dict(frames, feeds, forces, rapid, lines, zones) of a job's program, overrides applied.
+    ``pose_of``: of joint angles, as in ``Program.path_arrays``.
+    """
+    problems = []
+    if "poses" in program:
+        arrays = listed_poses(program["poses"], where)
+    else:
+        from ..programs.program import ProgramError
+        from ..programs.registry import read_program
+
+        try:
+            read = read_program(program["file"])
+            problems = [str(problem) for problem in read.problems]
+            arrays = read.path_arrays(DEFAULT_FEED, pose_of)
+        except ProgramError as error:
+            raise InputError(str(error)) from None
+    warnings += problems
+    count = len(arrays["frames"])
+    if count < 2:
+        raise InputError(
+            f"{where}: the program has {count} Cartesian targets; two at least make a path"
+            + (f" ({problems[0]})" if problems else "")
+        )
+    if "force_N" in program:
+        arrays["forces"] = np.full(count, float(program["force_N"]))
+    if "feed_mm_s" in program:
+        arrays["feeds"] = np.full(count, float(program["feed_mm_s"]))
+    return arrays

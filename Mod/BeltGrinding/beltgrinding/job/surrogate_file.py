@@ -1,0 +1,148 @@
+"""The files of surrogates of the contact and of their databases, numpy archives both; a surrogate as the engine takes it."""
+
+import hashlib
+import io
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from ..base.files import write_whole
+from ..engine import InputError
+
+LEAST_CONTACTS = 20
+WHEEL = (  # what a surrogate holds for: keys of a contact's wheel
+    "outer_radius_mm",
+    "width_mm",
+    "crown_radius_mm",
+    "rim_thickness_mm",
+    "youngs_modulus_MPa",
+    "poissons_ratio",
+    "belt_tension_N_per_mm",
+    "belt_bending_N_mm",
+)
+
+DATABASE = {"gap": 3, "coverage": 3, "pressure": 3, "approach": 1, "force": 1, "ds": 0}
+REGRESSION = ("vectors", "coefficients", "mean", "deviation", "rho", "gamma", "scale")
+
+
+def arguments(path, wheel):
+    """The surrogate of a file as ``core`` takes a compliance. ``wheel``: the one that it is asked
+    for, keys of ``WHEEL``. Raises InputError if it was trained for another.
+    """
+    surrogate, digest = load(path)
+    if wheel["profile_mm"]:
+        raise InputError(f"{path}: a surrogate knows no profiled wheels; choose another model")
+    for key in WHEEL:
+        trained, asked = surrogate["wheel"][key], float(wheel[key])
+        if not np.isclose(trained, asked, rtol=1e-6, atol=1e-9):
+            raise InputError(
+                f"{path}: this surrogate was trained for a wheel with {key} = {trained:g}, not "
+                f"{asked:g}; train another one (beltgrind surrogate)"
+            )
+    error = surrogate["report"].get("held_out_L1_mean", float("nan"))
+    name = (
+        f"surrogate: support-vector regression, {len(surrogate['coefficients'])} vectors, "
+        f"held-out error {100 * error:.1f} % (L1), file {digest[:16]}"
+    )
+    return core_arguments(surrogate, name)
+
+
+def core_arguments(surrogate, name):
+    return {
+        "model": "surrogate",
+        "name": name,
+        "cell": float(surrogate["cell"]),
+        "rim_thickness": surrogate["wheel"]["rim_thickness_mm"],
+        "regression": {key: surrogate[key] for key in REGRESSION},
+    }
+
+
+def save(surrogate, path):
+    """Writes a surrogate. Raises InputError."""
+    arrays = {key: np.asarray(surrogate[key]) for key in (*REGRESSION, "cell")}
+    _write(path, arrays, {"wheel": surrogate["wheel"], "report": surrogate["report"]})
+
+
+def load(path):
+    """(surrogate, SHA-256 of its file). Raises InputError."""
+    content, arrays, about = _read(path, (*REGRESSION, "cell"))
+    _check_wheel(path, about)
+    for key in ("rho", "gamma", "scale", "cell"):
+        if arrays[key].ndim != 0:
+            raise InputError(f"{path}: '{key}' is no single number")
+        arrays[key] = float(arrays[key])
+    report = about.get("report")
+    surrogate = {
+        **arrays,
+        "wheel": about["wheel"],
+        "report": report if isinstance(report, dict) else {},
+    }
+    return surrogate, hashlib.sha256(content).hexdigest()
+
+
+def save_database(database, path):
+    """Writes a database. Raises InputError."""
+    about = {key: database[key] for key in ("wheel", "source", "seconds")}
+    _write(path, {key: np.asarray(database[key]) for key in DATABASE}, about)
+
+
+def load_database(path):
+    """A database from its file. Raises InputError naming what is missing or does not fit."""
+    _, arrays, about = _read(path, DATABASE)
+    _check_wheel(path, about)
+    shape = arrays["gap"].shape
+    for key, dimensions in DATABASE.items():
+        if (
+            arrays[key].ndim != dimensions
+            or arrays[key].shape != shape[: 3 if dimensions == 3 else dimensions]
+        ):
+            raise InputError(f"{path}: '{key}' has the shape {arrays[key].shape}")
+        if key != "gap" and not np.isfinite(arrays[key]).all():
+            raise InputError(f"{path}: '{key}' holds a value that is not finite")
+    if len(arrays["force"]) < LEAST_CONTACTS:
+        raise InputError(f"{path}: a database needs at least {LEAST_CONTACTS} contacts")
+    return {
+        **arrays,
+        "wheel": about["wheel"],
+        "source": str(about.get("source", "its own")),
+        "seconds": float(about.get("seconds", 0.0)),
+    }
+
+
+def _check_wheel(path, about):
+    wheel = about.get("wheel")
+    if not isinstance(wheel, dict) or not all(
+        isinstance(wheel.get(key), (int, float)) for key in WHEEL
+    ):
+        raise InputError(f"{path}: 'about' does not say the wheel: {', '.join(WHEEL)}")
+
+
+def _write(path, arrays, about):
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, about=np.array(json.dumps(about)), **arrays)
+    try:
+        write_whole(Path(path), buffer.getvalue())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def _read(path, names):
+    """(bytes, arrays by name, about) of an archive."""
+    try:
+        content = Path(path).read_bytes()
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: np.array(archive[name]) for name in names}
+            about = json.loads(str(archive["about"]))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except KeyError as error:
+        raise InputError(f"{path}: {error.args[0]}") from None
+    except (ValueError, zipfile.BadZipFile, EOFError, AttributeError, NotImplementedError):
+        raise InputError(f"{path}: this is no archive of a surrogate or of its database") from None
+    if not all(array.dtype.kind in "fiu" for array in arrays.values()) or not isinstance(
+        about, dict
+    ):
+        raise InputError(f"{path}: this is no archive of a surrogate or of its database")
+    return content, {name: array.astype(float) for name, array in arrays.items()}, about

@@ -1,0 +1,34 @@
+"""How objects are added to a document: whole, or not at all."""
+
+from .job_data import child
+from .properties import set_by_name
+
+
+def make_child(job, proxy, name, label, properties):
+    """The job's child of a kind, made where it is missing, with properties set."""
+    found = child(job, proxy)
+    if found is not None:
+        set_by_name(found, properties)
+        return found
+    found = job.Document.addObject("App::FeaturePython", name)
+    with removed_on_error(found):
+        proxy(found)
+        found.Label = label
+        set_by_name(found, properties)
+        job.addObject(found)
+    return found
+
+
+class removed_on_error:
+    """Removes a new object from its document if the block fails."""
+
+    def __init__(self, obj):
+        self.document, self.name = obj.Document, obj.Name
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is not None and self.document.getObject(self.name) is not None:
+            self.document.removeObject(self.name)
+        return False

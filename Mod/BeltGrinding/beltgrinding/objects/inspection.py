@@ -1,0 +1,115 @@
+"""Adds what a job's result is looked at by: deviation, verdict, sections, the ground part, a scan.
+Offered by ``api``.
+"""
+
+from ..engine import InputError
+from . import (
+    deviation as deviations,
+    ground_mesh,
+    job_data,
+    part_scan,
+    section as sections,
+    verdict as verdicts,
+)
+from .creation import removed_on_error
+from .job_data import child
+from .properties import set_by_name
+from .simulation import simulated
+
+
+def make_deviation(job):
+    """Adds the coloured deviation of the job's simulation, or returns the one that is there."""
+    return _follower(job, deviations.Deviation, "Mesh::FeaturePython", "Deviation")
+
+
+def make_verdict(job):
+    """Adds the verdict on the job's simulation, or returns the one that is there. It follows the
+    result and the job's tolerances.
+    """
+    return _follower(job, verdicts.Verdict, "App::FeaturePython", "Verdict")
+
+
+def _follower(job, proxy, kind, name):
+    """The job's child that shows its result and follows it, made where it is missing."""
+    simulation = simulated(job)
+    found = child(job, proxy)
+    if found is None:
+        found = job.Document.addObject(kind, name)
+        with removed_on_error(found):
+            proxy(found)
+            found.Simulation = simulation
+            job.addObject(found)
+            found.Proxy.update(found)
+    job.Document.recompute()
+    return found
+
+
+def set_zones(job, zones):
+    """Gives a job tolerance zones: a list of dicts as the key inspection.zones of a job file, faces
+    numbered from 1 (docs/verification.md).
+    """
+    job_data.set_zones(job, zones)
+    job.Document.recompute()
+
+
+def make_section(job, point=None, normal=None, start=None, end=None, **properties):
+    """Adds a cross-section of the job's simulation: by the plane through ``point`` with ``normal``, or
+    along the surface from ``start`` to ``end`` (mm, the document's frame). Without any of them: across
+    the longest side of the surface, in its middle. Raises InputError where there is nothing to cut.
+    """
+    simulation = simulated(job)
+    field = sections.field_of(simulation)
+    if field is None:
+        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+    if (point is None) != (normal is None) or (start is None) != (end is None):
+        raise InputError("a section needs a point and a normal, or a start and an end")
+    found = job.Document.addObject("App::FeaturePython", "Section")
+    with removed_on_error(found):
+        sections.Section(found)
+        found.Label = "Cross-section"
+        found.Simulation = simulation
+        found.Point, found.Normal = sections.first_plane(field)
+        if point is not None:
+            found.Point, found.Normal = tuple(point), tuple(normal)
+        if start is not None:
+            found.Start, found.End, found.Cut = tuple(start), tuple(end), sections.LINE
+        set_by_name(found, properties)
+        job.addObject(found)
+        found.Proxy.update(found)
+        if found.Problem:
+            raise InputError(found.Problem)
+    job.Document.recompute()
+    return found
+
+
+def make_ground_mesh(job, **properties):
+    """Adds the ground part as one closed Mesh object, or makes the one that is there anew. Raises
+    InputError where the result is missing or out of date.
+    """
+    simulation = simulated(job)
+    found = child(job, ground_mesh.GroundMesh)
+    if found is not None:
+        set_by_name(found, properties)
+        ground_mesh.make(found)
+        return found
+    found = job.Document.addObject("Mesh::FeaturePython", "GroundPart")
+    with removed_on_error(found):
+        ground_mesh.GroundMesh(found)
+        found.Label = "Ground part"
+        found.Simulation = simulation
+        job.addObject(found)
+        set_by_name(found, properties)
+        ground_mesh.make(found)
+    job.Document.recompute()
+    return found
+
+
+def compare_scan(job, path, **options):
+    """Aligns a scan of the ground part and keeps its heights with the Simulation; returns the figures.
+    ``options``: of ``scan.compare`` (unit_mm, start, pairs, datum_faces, fixed, ...).
+    """
+    simulation = simulated(job)
+    figures = part_scan.compare(simulation, job, path, **options)
+    simulation.touch()
+    job.Document.recompute()
+    return figures

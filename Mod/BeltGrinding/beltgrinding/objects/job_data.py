@@ -1,0 +1,170 @@
+"""The settings of a job in the document, its children, and the faces that it grinds."""
+
+import json
+
+import Part
+
+from ..engine import InputError
+from ..job import tolerances
+from .geometry import placed_shape
+from .properties import Key, to_job
+from .proxy import type_of
+
+KEYS = (
+    Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
+    Key("Spacing", "Length", "Sampling", "sampling.spacing_mm"),
+    Key("Depth", "Length", "Sampling", "sampling.depth_mm"),
+    Key("ToleranceLower", "Distance", "Tolerance", "inspection.tolerance_mm.0"),
+    Key("ToleranceUpper", "Distance", "Tolerance", "inspection.tolerance_mm.1"),
+    Key("ColourLimit", "Length", "Tolerance", "inspection.colour_limit_mm"),
+    Key("Zones", "JSON", "Tolerance", "inspection.zones"),
+    Key("Law", "Enumeration", "Law", "law.model"),
+    Key("LawCoefficient", "Float", "Law", "law.coefficient_mm2_per_N"),
+    Key("PressureThreshold", "Pressure", "Law", "law.pressure_threshold_MPa"),
+    Key("PressureExponent", "Float", "Law", "law.pressure_exponent"),
+    Key("ReferencePressure", "Pressure", "Law", "law.reference_pressure_MPa"),
+    Key("SaturationPressure", "Pressure", "Law", "law.saturation_pressure_MPa"),
+    Key("SpeedExponent", "Float", "Law", "law.speed_exponent"),
+    Key("ReferenceSpeed", "Speed", "Law", "law.reference_speed_m_s", 1000.0),
+    Key("FeedExponent", "Float", "Law", "law.feed_exponent"),
+    Key("ReferenceFeed", "Speed", "Law", "law.reference_feed_mm_s"),
+    Key("LandShare", "Float", "Law", "law.land_share"),
+    Key("PressureCurve", "VectorList", "Law", "law.pressure_curve"),
+    Key("SpeedCurve", "VectorList", "Law", "law.speed_curve"),
+    Key("FeedCurve", "VectorList", "Law", "law.feed_curve"),
+    Key("LandCurve", "VectorList", "Law", "law.land_curve"),
+    Key("HeatLimit", "Float", "Law", "law.heat_limit_MPa_m_s"),
+    Key("PressureLimit", "Pressure", "Law", "law.pressure_limit_MPa"),
+    Key("Calibration", "JSON", "Law", "law.calibration"),
+    Key("WearModel", "Enumeration", "Wear", "law.wear.model"),
+    Key("WearVariable", "Enumeration", "Wear", "law.wear.variable"),
+    Key("WearScale", "Float", "Wear", "law.wear.scale"),
+    Key("WearRest", "Float", "Wear", "law.wear.rest"),
+    Key("WearFirstShare", "Float", "Wear", "law.wear.first_share"),
+    Key("WearFirstScale", "Float", "Wear", "law.wear.first_scale"),
+    Key("WearCurve", "VectorList", "Wear", "law.wear.curve"),
+    Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
+    Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),
+    Key("OrientationJump", "Angle", "Steps", "simulation.orientation_jump_deg"),
+    Key("TiltLimit", "Angle", "Steps", "simulation.tilt_limit_deg"),
+    Key("Timing", "Enumeration", "Timing", "simulation.timing"),
+    Key("PathAcceleration", "Acceleration", "Timing", "simulation.path_acceleration_mm_s2"),
+    Key("AngularAcceleration", "Float", "Timing", "simulation.angular_acceleration_deg_s2"),
+    Key("RotationSpeed", "Float", "Timing", "simulation.rotation_speed_deg_s"),
+    Key("DefaultZone", "Length", "Timing", "simulation.default_zone_mm"),
+)
+
+
+def children(job, proxy):
+    """The job's children of a proxy class, in the tree's order."""
+    return [obj for obj in job.Group if type_of(obj) == proxy.TYPE]
+
+
+def child(job, proxy):
+    """The job's first child of a proxy class, or None."""
+    return next(iter(children(job, proxy)), None)
+
+
+def required(job, proxy, what):
+    """The job's child of a proxy class. Raises InputError."""
+    found = child(job, proxy)
+    if found is None:
+        raise InputError(f"{job.Label} has no {what}; add one")
+    return found
+
+
+def inspection(job):
+    """The part of a job under 'inspection'."""
+    data = {}
+    to_job(job, KEYS, data)
+    return data["inspection"]
+
+
+def zones(job):
+    """The tolerance zones of a job, as its key inspection.zones has them."""
+    return inspection(job)["zones"]
+
+
+def set_zones(job, found):
+    """Gives a job tolerance zones. Raises InputError, and leaves the old ones, for wrong ones."""
+    from ..base import schemas
+
+    rule = schemas.schema("job")["properties"]["inspection"]["properties"]["zones"]
+    found = schemas.checked(list(found), rule, "zones")
+    tolerances.check_zones(found, design(job)[1])
+    job.Zones = json.dumps(found) if found else ""
+
+
+def design(job):
+    """(shape, numbers of its faces from 1) in the document's coordinates. Raises InputError.
+
+    Several objects become one compound, whose faces are numbered through.
+    """
+    return shape_of(job.DesignFaces, job.Label)
+
+
+def shape_of(links, label):
+    """(shape, numbers of its faces from 1) of a list of (object, face names), as ``design`` gives
+    them; ``label`` stands for its owner. Raises InputError.
+    """
+    if not links:
+        raise InputError(f"{label}: no faces are chosen; select faces and add them to the job")
+    shapes, numbers, offset = [], [], 0
+    for obj, subs in _by_object(links):
+        shape = placed_shape(obj)
+        count = len(shape.Faces)
+        if count == 0:
+            raise InputError(f"{label}: {obj.Label} has no faces")
+        for number in _face_numbers(label, obj, subs, count):
+            if number + offset not in numbers:
+                numbers.append(number + offset)
+        shapes.append(shape)
+        offset += count
+    return (shapes[0] if len(shapes) == 1 else Part.Compound(shapes)), sorted(numbers)
+
+
+def face_numbers(job, obj, subs):
+    """Numbers from 1, as ``design`` has them, of faces of one of the job's objects; none of another
+    object. Raises InputError.
+    """
+    offset = 0
+    for one, _ in _by_object(job.DesignFaces):
+        count = len(one.Shape.Faces)
+        if one == obj:
+            return [number + offset for number in _face_numbers(job.Label, obj, subs, count)]
+        offset += count
+    return []
+
+
+def face_name(job, index):
+    """Object.FaceN of the face that ``design`` numbers ``index`` + 1, '' if the job no longer has
+    it."""
+    for obj, _ in _by_object(job.DesignFaces):
+        count = len(obj.Shape.Faces)
+        if index < count:
+            return f"{obj.Label}.Face{index + 1}"
+        index -= count
+    return ""
+
+
+def _by_object(links):
+    merged = {}
+    for obj, subs in links:
+        merged.setdefault(obj, []).extend([subs] if isinstance(subs, str) else subs)
+    return merged.items()
+
+
+def _face_numbers(label, obj, subs, count):
+    names = [sub.rpartition(".")[2] for sub in subs]
+    if not any(names):
+        return range(1, count + 1)
+    numbers = []
+    for name in names:
+        if not (name.startswith("Face") and name[4:].isdigit()):
+            raise InputError(f"{label}: {obj.Label}.{name or '(all)'} is no face; choose faces")
+        if not 1 <= int(name[4:]) <= count:
+            raise InputError(
+                f"{label}: {obj.Label} has no {name}; it has {count} faces. Choose them again"
+            )
+        numbers.append(int(name[4:]))
+    return numbers

@@ -1,0 +1,124 @@
+"""All that a job's result depends on: as plain data, as a fingerprint, as paths of the wheel."""
+
+import hashlib
+import json
+import tempfile
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job import engine_input, load as jobs
+from ..job.poses import list_poses
+from . import bodies
+from .belt_machine import BeltMachine
+from .geometry import faces_digest
+from .job_data import KEYS, child, children, design, required
+from .properties import to_job
+from .robot_path import RobotPath
+from .stock import Stock
+
+
+def without_geometry(job):
+    """The job's settings, without shapes, meshes and poses."""
+    data = {"schema": 1}
+    to_job(job, KEYS, data)
+    data.update(required(job, BeltMachine, "belt machine").Proxy.to_job(child(job, BeltMachine)))
+    return data
+
+
+def _paths(job):
+    paths = children(job, RobotPath)
+    if not paths:
+        raise InputError(f"{job.Label} has no robot program; import one")
+    return paths
+
+
+def _overrides(path):
+    """A program's keys that replace its own feeds and forces."""
+    keys = {}
+    if path.ForceOverride.Value > 0:
+        keys["force_N"] = path.ForceOverride.getValueAs("N").Value
+    if path.FeedOverride.Value > 0:
+        keys["feed_mm_s"] = path.FeedOverride.Value
+    return keys
+
+
+def fingerprint(job):
+    """Hash of all that the simulation's result depends on; not of the tolerance, nor of what the
+    belt has done since.
+    """
+    data = without_geometry(job)
+    data["belt_machine"].pop("belt", None)
+    del data["inspection"]
+    stock = required(job, Stock, "stock")
+    data["stock"] = stock.Proxy.settings(stock)
+    data["stock"]["digest"] = stock.Proxy.digest(stock)
+    shape, data["design"]["faces"] = design(job)
+    chosen = set(data["design"]["faces"])
+    data["design"]["digest"] = faces_digest(f for i, f in enumerate(shape.Faces, 1) if i in chosen)
+    data["cell"]["bodies"] = bodies.digest(child(job, BeltMachine))
+    data["programs"] = [
+        {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
+    ]
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def to_data(job, folder):
+    """The whole job as validated plain data; a mesh stock is written to ``folder``.
+
+    Raises InputError naming the object and what is wrong with it.
+    """
+    data = without_geometry(job)
+    shape, data["design"]["faces"] = design(job)
+    data["design"]["brep"] = shape.exportBrepToString()
+    stock = required(job, Stock, "stock")
+    data["stock"] = stock.Proxy.to_job(stock, folder)
+    data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), folder)
+    paths = _paths(job)
+    data["programs"] = [{"poses": []} for _ in paths]
+    # The poses come from properties that hold nothing but numbers, and they may be many.
+    data = jobs.validate(data, folder)
+    for program, path in zip(data["programs"], paths):
+        program.update(_overrides(path))
+        program["name"] = path.Label
+        program["poses"] = list_poses(path.Proxy.arrays(path))
+        program["unresolved"] = len(path.Problems)
+        if len(program["poses"]) < 2:
+            raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
+    return data
+
+
+def inputs(data):
+    """What of a job's plain data the result depends on: no tolerance, no names and places of files."""
+    data = {key: value for key, value in data.items() if key != "inspection"}
+    data["stock"] = _without_file(data["stock"])
+    placed = [_without_file(body) for body in data["cell"].get("bodies", [])]
+    data["cell"] = {**data["cell"], "bodies": placed}
+    return data
+
+
+def _without_file(data):
+    return {key: value for key, value in data.items() if key != "file"}
+
+
+def tool_paths(job):
+    """core.ToolPath of every program, one after the other as they are run. Raises InputError."""
+    data = without_geometry(job)
+    machine = child(job, BeltMachine)
+    cell = machine.Proxy.cell(machine)
+    paths = []
+    for path in _paths(job):
+        arrays = dict(path.Proxy.arrays(path))
+        keys = _overrides(path)
+        for name, key in (("feeds", "feed_mm_s"), ("forces", "force_N")):
+            if key in keys:
+                arrays[name] = np.full(len(arrays["lines"]), keys[key])
+        paths.append(
+            core.ToolPath(**arrays, **cell, time_law=engine_input.time_law(data["simulation"]))
+        )
+    return paths
+
+
+def scratch_folder():
+    """A folder for a mesh stock, removed when the object dies."""
+    return tempfile.TemporaryDirectory(prefix="beltgrinding-")

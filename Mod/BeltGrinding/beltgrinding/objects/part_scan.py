@@ -1,0 +1,67 @@
+"""A scan of the ground part beside a Simulation's prediction."""
+
+import json
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+from ..engine import InputError, core
+from ..scan import comparison as scan
+from . import job_inputs
+from .properties import Output, add_outputs
+
+OUTPUTS = (
+    Output("ScanFile", "String", "Scan", "the scan of the ground part that was compared"),
+    Output("ScanShare", "Float", "Scan", "share of the area that the scan covers, percent"),
+    Output("ScanResidual", "Distance", "Scan", "root mean square of the alignment"),
+    Output("MeasuredMean", "Distance", "Scan", "of the scan's height over the design"),
+    Output("DifferenceMean", "Distance", "Scan", "measured less predicted height"),
+    Output("DifferenceRms", "Distance", "Scan", "root mean square of that"),
+    Output("ScanFigures", "String", "Scan", "all figures of the comparison, as JSON", True),
+)
+
+
+def prepare(simulation, job):
+    """What ``scan.compare`` takes for a result, from the document. Raises InputError."""
+    if simulation.OutOfDate or job_inputs.fingerprint(job) != simulation.Fingerprint:
+        raise InputError(f"{simulation.Label} is out of date; simulate again")
+    with job_inputs.scratch_folder() as folder:
+        data = job_inputs.to_data(job, folder)
+    if "brep" not in data["design"]:
+        raise InputError(f"{job.Label}: its design has no shape")
+    return SimpleNamespace(field=simulation.Proxy.field(simulation), job=data)
+
+
+def store(simulation, result, figures):
+    """Keeps what ``scan.compare`` gave in the Simulation object."""
+    attributes = core.HeightField.from_hdf5(simulation.HeightField)[1]
+    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
+        path = Path(folder, "heightfield.h5")
+        result.field.write_hdf5(str(path), attributes)
+        simulation.HeightField = str(path)
+    add_outputs(simulation, OUTPUTS)
+    simulation.ScanFile = figures["file"]
+    simulation.ScanShare = 100.0 * figures["measured_area_share"]
+    alignment = figures["alignment"]
+    simulation.ScanResidual = alignment["rms_mm"] if alignment else 0.0
+    simulation.MeasuredMean = figures["measured_mm"]["mean"]
+    simulation.DifferenceMean = figures["difference_mm"]["mean"]
+    simulation.DifferenceRms = figures["difference_mm"]["rms"]
+    simulation.ScanFigures = json.dumps(figures, allow_nan=False)
+
+
+def forget(simulation):
+    """Another result: what was measured belongs to the old one."""
+    if getattr(simulation, "ScanFigures", ""):
+        simulation.ScanFile = simulation.ScanFigures = ""
+        for name in ("ScanShare", "ScanResidual", "MeasuredMean"):
+            setattr(simulation, name, 0.0)
+        simulation.DifferenceMean = simulation.DifferenceRms = 0.0
+
+
+def compare(simulation, job, path, **options):
+    """``scan.compare`` on the document; returns its figures."""
+    result = prepare(simulation, job)
+    figures = scan.compare(result, path, **options)
+    store(simulation, result, figures)
+    return figures

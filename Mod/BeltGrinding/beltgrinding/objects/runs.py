@@ -1,0 +1,51 @@
+"""Grinds a job here and now, and keeps results in its Simulation. Offered by ``api``."""
+
+from ..simulation import convergence, run as runs
+from ..simulation.result import Result
+from . import job_inputs, simulation as results
+from .job_data import child
+
+
+def simulate(job, context=None, write_to=None):
+    """Grinds the job here and now; returns its Simulation object. ``write_to``: a folder for the
+    files that ``beltgrind run`` writes.
+    """
+    with job_inputs.scratch_folder() as folder:
+        result = runs.run(job_inputs.to_data(job, folder), context)
+    if write_to is not None:
+        result.write(write_to)
+    return store_result(job, result, job_inputs.fingerprint(job))
+
+
+def store_result(job, result, fingerprint):
+    """Puts a ``job.Result`` into the job's Simulation and returns that. ``fingerprint``: of the
+    inputs that the run had (``job_object.fingerprint``); the job marks others as out of date.
+    """
+    simulation = child(job, results.Simulation)
+    if simulation is None:
+        simulation = job.Document.addObject("App::FeaturePython", "Simulation")
+        results.Simulation(simulation)
+        job.addObject(simulation)
+    results.store(simulation, result, fingerprint)
+    simulation.touch()
+    job.Document.recompute()
+    return simulation
+
+
+def import_result(job, folder):
+    """Brings back what ``beltgrind run`` wrote to ``folder`` for this job. A result of other inputs
+    is marked out of date.
+    """
+    result = Result.read(folder)
+    with job_inputs.scratch_folder() as scratch:
+        same = job_inputs.inputs(job_inputs.to_data(job, scratch)) == job_inputs.inputs(result.job)
+    return store_result(job, result, job_inputs.fingerprint(job) if same else "other inputs")
+
+
+def check_settings(job, context=None):
+    """Runs the job coarser, as given and finer, here and now; keeps result and answer in its
+    Simulation, which it returns. See ``beltgrinding.converge``.
+    """
+    with job_inputs.scratch_folder() as folder:
+        result = convergence.converge(job_inputs.to_data(job, folder), context)
+    return store_result(job, result, job_inputs.fingerprint(job))

@@ -1,0 +1,292 @@
+"""Presets of contact wheels, belts, materials and robots: plain data, every number with its unit and
+its source (Resources/presets, and the user's own files; presets.schema.json).
+"""
+
+import copy
+import difflib
+import json
+import os
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from ..base import schemas
+from ..base.resources import resources
+from ..engine import InputError
+from . import robot_model
+from .rubber import cite, modulus, shore_to_modulus, spread_text
+
+__all__ = [
+    "apply",
+    "belts",
+    "materials",
+    "problems",
+    "robots",
+    "settings",
+    "shore_to_modulus",
+    "wheels",
+]
+
+KINDS = ("wheels", "belts", "materials", "robots")
+LABELS = {
+    "shore_a": "hardness",
+    "youngs_modulus": "Young's modulus",
+    "poissons_ratio": "Poisson's ratio",
+    "belt_speed": "belt speed",
+    "belt_speed_roughing": "belt speed, roughing",
+    "belt_speed_polishing": "belt speed, polishing",
+    "belt_speed_offhand": "belt speed, offhand",
+}
+# The job's key for a preset's number, and its value for the number's 1.
+JOB_KEYS = {
+    "diameter": ("belt_machine.wheel.radius_mm", 0.5),
+    "width": ("belt_machine.wheel.width_mm", 1.0),
+    "rim_thickness": ("belt_machine.compliance.rim_thickness_mm", 1.0),
+    "youngs_modulus": ("belt_machine.compliance.youngs_modulus_MPa", 1.0),
+    "poissons_ratio": ("belt_machine.compliance.poissons_ratio", 1.0),
+    "land_share": ("law.land_share", 1.0),
+    "tension": ("belt_machine.compliance.belt_tension_N_per_mm", 1.0),
+    "bending_stiffness": ("belt_machine.compliance.belt_bending_N_mm", 1.0),
+    "belt_speed": ("belt_machine.belt_speed_m_s", 1.0),
+    "heat_limit": ("law.heat_limit_MPa_m_s", 1.0),
+}
+
+
+class Library(NamedTuple):
+    """All presets by kind, and what is wrong with the files (InputError each)."""
+
+    wheels: list
+    belts: list
+    materials: list
+    robots: list
+    problems: list
+
+
+def user_folder():
+    """Where the user's own files (*.json) are looked for: FreeCAD's folder for user data when it
+    runs inside FreeCAD, else that of the command line's settings.
+    """
+    freecad = sys.modules.get("FreeCAD")
+    if freecad is not None:
+        return Path(freecad.getUserAppDataDir(), "BeltGrinding", "presets")
+    settings_folder = os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config"
+    return Path(settings_folder, "beltgrinding", "presets")
+
+
+def library():
+    """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
+    found = Library([], [], [], [], [])
+    rules = schemas.schema("presets")
+    files = [
+        *sorted((resources() / "presets").glob("*.json")),
+        *sorted(user_folder().glob("*.json")),
+    ]
+    for path in files:
+        try:
+            _read(path, rules, found)
+        except InputError as error:
+            found.problems.append(error)
+    return found
+
+
+def _read(path, rules, found):
+    data = schemas.read_json(path)
+    if "formulas" in data and path.parent == user_folder():
+        raise InputError(f"{path}: formulas: a formula is a part of the program, not a preset")
+    bad = set()  # (kind, index)
+    for where, sentence in schemas.problems(data, rules, "the file"):
+        if len(where) < 2 or where[0] not in KINDS:
+            raise InputError(f"{path}: {sentence}")
+        if tuple(where[:2]) not in bad:
+            found.problems.append(InputError(f"{path}: {sentence}"))
+        bad.add(tuple(where[:2]))
+    for kind in KINDS:
+        records = getattr(found, kind)
+        for index, record in enumerate(data.get(kind, [])):
+            if (kind, index) in bad:
+                continue
+            try:
+                if any(record["id"] == other["id"] for other in records):
+                    raise InputError(f"id: there is a preset '{record['id']}' already")
+                records.append(_with_sources(record, data["sources"]))
+            except InputError as error:
+                found.problems.append(InputError(f"{path}: {kind}.{index}.{error}"))
+
+
+def _with_sources(record, sources):
+    """A copy of the preset with the sources themselves in place of their keys."""
+    record = copy.deepcopy(record)
+    if "model" in record:
+        if record["source"] not in sources:
+            raise InputError(f"source: '{record['source']}' is not among the file's sources")
+        record["source"] = sources[record["source"]]
+        record["model"] = robot_model.checked_model(record["model"])
+        return record
+    for key, number in numbers(record).items():
+        if number["source"] not in sources:
+            raise InputError(f"{key}.source: '{number['source']}' is not among the file's sources")
+        number["source"] = sources[number["source"]]
+        if "range" in number and number["range"][0] > number["range"][1]:
+            raise InputError(f"{key}.range: {number['range'][0]} is above {number['range'][1]}")
+    if "shore_a" in record and "youngs_modulus" not in record:
+        try:
+            modulus(middle(record["shore_a"]))
+        except InputError as error:
+            raise InputError(f"shore_a: {error}") from None
+    return record
+
+
+def wheels():
+    """Presets of contact wheels: dict(id, name, and numbers: diameter, width, rim_thickness,
+    shore_a, youngs_modulus, poissons_ratio, land_share, each where it is known). A number: dict(value
+    or range, unit, source, and where, given, note if there are any).
+    """
+    return library().wheels
+
+
+def belts():
+    """Presets of belts: as ``wheels``, with grain, grit, grain_size, tension, bending_stiffness."""
+    return library().belts
+
+
+def materials():
+    """Presets of workpiece materials: as ``wheels``, with belt_speed, belt_speed_roughing,
+    belt_speed_polishing, belt_speed_offhand, heat_limit.
+    """
+    return library().materials
+
+
+def robots():
+    """Presets of robots: dict(id, name, source, model as a job's robot.model; where, text)."""
+    return library().robots
+
+
+def problems():
+    """What is wrong with the files of presets: a list of InputError naming file and key."""
+    return library().problems
+
+
+def numbers(preset):
+    """The numbers of a preset, by name."""
+    return {key: value for key, value in preset.items() if isinstance(value, dict)}
+
+
+def middle(number):
+    """A number's value, or the middle of its range."""
+    return number["value"] if "value" in number else sum(number["range"]) / 2.0
+
+
+def settings(wheel=None, belt=None, material=None):
+    """{dotted key of a job: value} of what the presets say; each an id or a preset. Only keys that
+    jobs have; the modulus follows from the hardness unless the preset gives it. Raises InputError.
+    """
+    found, known = {}, schemas.schema("job")
+    for kind, preset in zip(KINDS, (wheel, belt, material)):
+        if preset is None:
+            continue
+        if isinstance(preset, str):
+            preset = find(kind, preset)
+        for name, number in numbers(preset).items():
+            if name in JOB_KEYS:
+                key, factor = JOB_KEYS[name]
+                found[key] = factor * middle(number)
+        if "shore_a" in preset and "youngs_modulus" not in preset:
+            found[JOB_KEYS["youngs_modulus"][0]] = modulus(middle(preset["shore_a"]))
+    return {key: value for key, value in found.items() if _is_known(key, known)}
+
+
+def _is_known(key, rules):
+    for part in key.split("."):
+        rules = rules.get("properties", {}).get(part)
+        if rules is None:
+            return False
+    return True
+
+
+def apply(job, wheel=None, belt=None, material=None):
+    """A copy of the job (a dict) with what the presets say put in. Raises InputError."""
+    job = copy.deepcopy(job)
+    for key, value in settings(wheel, belt, material).items():
+        *path, last = key.split(".")
+        node = job
+        for part in path:
+            node = node.setdefault(part, {})
+        node[last] = value
+    return job
+
+
+def find(kind, name):
+    """The preset of an id. Raises InputError, also naming files that could not be read."""
+    found = library()
+    known = {preset["id"]: preset for preset in getattr(found, kind)}
+    if name in known:
+        return known[name]
+    near = difflib.get_close_matches(name, known, 1)
+    hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
+    broken = "".join(f" ({problem})" for problem in found.problems)
+    raise InputError(f"presets: no '{name}' among the {kind}; {hint}{broken}")
+
+
+def number_text(number):
+    """Such as "30 to 40 m/s"."""
+    span = number["range"] if "range" in number else [number["value"]]
+    unit = "" if number["unit"] in ("1", "grit") else " " + number["unit"]
+    return " to ".join(f"{value:g}" for value in span) + unit
+
+
+def label(name):
+    """What a number is called in lists."""
+    return LABELS.get(name, name.replace("_", " "))
+
+
+def source_text(number):
+    """The source of a number in one line."""
+    return cite(number["source"], number.get("where"))
+
+
+def describe(preset):
+    """One line for each thing that the preset says, with its source."""
+    lines = [preset["text"]] if "text" in preset else []
+    if "model" in preset:
+        return [cite(preset["source"], preset.get("where")), *lines]
+    for name, number in numbers(preset).items():
+        lines.append(f"{label(name)} {number_text(number)}: {source_text(number)}")
+    return lines
+
+
+def table(kind, presets):
+    """The presets of a kind as a text table with sources."""
+    rows = [("id", "preset", "number", "value", "source")]
+    for preset in presets:
+        start = (preset["id"], preset["name"])
+        if "model" in preset:
+            length = robot_model.arm(preset["model"]).length
+            source = cite(preset["source"], preset.get("where"))
+            rows.append((*start, "upper arm and forearm", f"{length:.0f} mm", source))
+            continue
+        for name, number in numbers(preset).items():
+            rows.append((*start, label(name), number_text(number), source_text(number)))
+            start = ("", "")
+            if name == "shore_a" and "youngs_modulus" not in preset:
+                rows.append(
+                    ("", "", "modulus", spread_text(middle(number)).split(": ")[1], "from it")
+                )
+        if "text" in preset:
+            rows.append((*start, "", "", preset["text"]))
+    widths = [max(len(row[i]) for row in rows) for i in range(4)]
+    lines = ["  ".join(f"{cell:{width}}" for cell, width in zip(row, (*widths, 0))) for row in rows]
+    return "\n".join([kind.upper(), *(line.rstrip() for line in lines)])
+
+
+def print_list(kind=None, as_json=False):
+    """Prints the presets of one kind, or of all. Raises InputError for files that are wrong, after
+    the good ones are printed.
+    """
+    found = library()
+    chosen = {one: getattr(found, one) for one in ([kind] if kind else KINDS)}
+    if as_json:
+        print(json.dumps(chosen, indent=2, ensure_ascii=False))
+    else:
+        print("\n\n".join(table(one, presets) for one, presets in chosen.items()))
+    if found.problems:
+        raise InputError("; ".join(str(problem) for problem in found.problems))

@@ -1,0 +1,73 @@
+"""The robot of a job, its key ``robot`` (job.schema.json): a preset, or a model of its own.
+
+Joint angles are in degrees; frames are 4 x 4 in mm.
+"""
+
+import numpy as np
+
+from ..base import frames, schemas
+from ..engine import InputError
+from . import library
+from .robot_model import JOINTS, arm, robot_rules, validate_model
+
+
+def checked(robot):
+    """A copy of a job's ``robot`` with all defaults. Raises InputError naming the key."""
+    robot = schemas.checked(robot, robot_rules(), "robot")
+    validate(robot)
+    return robot
+
+
+def validate(robot):
+    """Raises InputError for what the schema cannot say of a robot with all its defaults."""
+    model = robot["model"]
+    if robot["preset"] and model["joints"]:
+        raise InputError("robot: give a preset or a model with joints, not both")
+    if len(robot["start_joints_deg"]) not in (0, JOINTS):
+        raise InputError(
+            f"robot.start_joints_deg: {len(robot['start_joints_deg'])} angles; give six, or none"
+        )
+    if robot["preset"]:
+        load_preset(robot["preset"])
+    validate_model(model)
+
+
+def load_preset(name):
+    """The model (a job's robot.model) of a preset's id. Raises InputError."""
+    return library.find("robots", name)["model"]
+
+
+def given(robot):
+    """Whether a job's robot (with defaults) is one, whose reach is to be checked."""
+    return bool(robot["preset"] or robot["model"]["joints"])
+
+
+def name(robot):
+    """How the robot is called; "" for none."""
+    return robot["preset"] or ("own model" if robot["model"]["joints"] else "")
+
+
+def arm_of(robot):
+    """core.RobotArm of a job's robot with its defaults, None if it is none. Raises InputError."""
+    if not given(robot):
+        return None
+    return arm(load_preset(robot["preset"]) if robot["preset"] else robot["model"])
+
+
+def robot_frame(robot, key):
+    """(4, 4), mm: the transform under a key of a job's robot. Raises InputError."""
+    try:
+        return frames.from_data(robot.get(key))
+    except ValueError as error:
+        raise InputError(f"robot.{key}: {error}") from None
+
+
+def pose_function(robot):
+    """A function that gives the pose (4, 4) in the frame of the programs of six joint angles in
+    degrees; None if the job's robot is none. Raises InputError.
+    """
+    of = arm_of(robot)
+    if of is None:
+        return None
+    base, tool = robot_frame(robot, "base_from_robot"), robot_frame(robot, "flange_from_tcp")
+    return lambda joints_deg: base @ of.forward(np.radians(joints_deg)) @ tool

@@ -1,0 +1,1 @@
+"""Changes written back into robot programs: one module a family of languages."""

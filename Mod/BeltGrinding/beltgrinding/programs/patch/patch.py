@@ -1,0 +1,335 @@
+"""Writes changed speeds, forces and offsets back into a robot program: nothing else changes.
+
+The original's bytes stay but for the edits. What is written has been read again before: exactly the
+named motions differ, by what was asked, or nothing is written.
+"""
+
+import csv
+import io
+import math
+import tempfile
+from bisect import bisect_right
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from ..program import ProgramError
+from ..registry import read_program
+from .text import SMALL, Shift, Source, Work
+
+COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
+MAX_STEP = 1000.0  # mm; a larger offset is a mistake
+MAX_SPEED = 10_000.0  # mm/s
+MAX_FORCE = 10_000.0  # N
+UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
+
+
+def _language(name, suffix):
+    """The module that edits a language: ``edit(source, work)``; ``suffix`` in lower case."""
+    if name == "URScript" and suffix != ".script":  # script inside of a container
+        name = f"{name} ({suffix})"
+    if name == "KUKA KRL":
+        from . import krl as module
+    elif name == "ABB RAPID":
+        from . import rapid as module
+    elif name == "URScript":
+        from . import urscript as module
+    elif name in ("Fanuc TP", "Yaskawa INFORM"):
+        from . import taught as module
+    elif name in ("G-code", "APT"):
+        from . import milling as module
+    elif name == "CSV":
+        from . import csv as module
+    else:
+        raise ProgramError(f"programs in {name} cannot be written back yet; change them by hand")
+    return module
+
+
+def read_changes(path):
+    """List of changes, a dict each, from a CSV with the columns ``index`` or ``line``, and any of
+    ``COLUMNS``; an empty field changes nothing. Raises ProgramError naming the line."""
+    name = Path(path).name
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise ProgramError(f"{path}: is not UTF-8 text") from None
+    except OSError as error:
+        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+    lines = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise ProgramError(f"{name}: the file is empty; it needs the columns index or line")
+    delimiter = max(",;\t", key=lines[0][1].count)
+    try:
+        rows = [next(csv.reader(io.StringIO(t), delimiter=delimiter)) for _, t in lines]
+    except csv.Error as error:
+        raise ProgramError(f"{name}: is no sound CSV: {error}") from None
+    columns = [column.strip() for column in rows[0]]
+    known = ("index", "line", *COLUMNS)
+    for column in columns:
+        if column not in known:
+            raise ProgramError(f"{name}: unknown column '{column}'; known are {', '.join(known)}")
+    if ("index" in columns) == ("line" in columns) or len(set(columns)) != len(columns):
+        raise ProgramError(f"{name}: it needs each column once, and either index or line")
+    changes = []
+    for (number, _), row in zip(lines[1:], rows[1:]):
+        if len(row) != len(columns):
+            raise ProgramError(f"{name}:{number}: {len(row)} values in {len(columns)} columns")
+        given = {key: value.strip() for key, value in zip(columns, row) if value.strip()}
+        try:
+            change = {
+                key: int(value) if key in ("index", "line") else float(value)
+                for key, value in given.items()
+            }
+        except ValueError as error:
+            raise ProgramError(f"{name}:{number}: {error}") from None
+        if not {"index", "line"} & change.keys():
+            raise ProgramError(f"{name}:{number}: it names no motion")
+        changes.append({**change, "where": f"{name}:{number}"})
+    return changes
+
+
+def patch(path, changes, output):
+    """Writes the program in ``path`` to ``output`` with the changes, and nothing else changed.
+
+    changes: a CSV file (``read_changes``) or a list of dicts with the same keys: ``index`` (as in
+    the table of poses, from 0) or ``line`` (all motions of that line), ``speed_mm_s``, ``force_N``,
+    ``dx_mm``, ``dy_mm``, ``dz_mm`` along the axes of the motion's base and ``tool_dz_mm`` along the
+    tool's z.
+
+    Returns a list of dicts, one for each changed motion: index, line, and speed_mm_s, force_N,
+    offset_mm as read back from what was written. Raises ProgramError, and writes nothing, where a
+    change is not possible without another one.
+    """
+    path, output = Path(path), Path(output)
+    if isinstance(changes, (str, Path)):
+        changes = read_changes(changes)
+    program = read_program(path)
+    module = _language(program.language, path.suffix.lower())
+    data = path.read_bytes()
+    source = module.source(data) if hasattr(module, "source") else Source(data)
+    work = _work(program, changes, source, module)
+    module.edit(source, work)
+    try:
+        written = source.result()
+    except ValueError as error:
+        raise ProgramError(f"{path.name}: {error}; give the changes one by one") from None
+    beside = _data_file(path) if program.language == "KUKA KRL" else None
+    with tempfile.TemporaryDirectory() as folder:
+        if beside:
+            (Path(folder) / beside.name).write_bytes(beside.read_bytes())
+        copy = Path(folder) / path.name
+        copy.write_bytes(written)
+        again = read_program(copy)
+    report = _verify(program, again, work, source, module)
+    _write(output, written, beside, path)
+    return report
+
+
+def _data_file(path):
+    stem = path.stem.lower()
+    found = [p for p in path.parent.glob("*") if p.suffix.lower() == ".dat"]
+    return next((p for p in sorted(found) if p.stem.lower() == stem), None)
+
+
+def _write(output, written, beside, path):
+    from ...base.files import write_whole
+
+    if output.suffix.lower() != path.suffix.lower():
+        raise ProgramError(f"{output}: the written program must end in {path.suffix}")
+    if beside:  # a module's poses lie in its data list: one without the other is worth nothing
+        copy = output.with_suffix(beside.suffix)
+        if not copy.exists():
+            write_whole(copy, beside.read_bytes())
+        elif copy.read_bytes() != beside.read_bytes():
+            raise ProgramError(f"{copy}: is there already and differs from {beside.name}")
+    write_whole(output, written)
+
+
+def _work(program, changes, source, module):
+    """The changes sorted by statements. Raises ProgramError where they are not possible."""
+    motions = program.motions
+    lines = {}
+    before, ended = [], -1
+    for i, motion in enumerate(motions):
+        lines.setdefault(motion.line, []).append(i)
+        before.append(ended)
+        ended = ended if motion.aux else i
+    named = {}
+    for change in changes:
+        _merge(named, change, program, lines)
+    if not any(named.values()):
+        raise ProgramError(f"{program.file}: no change is asked for")
+    work = Work(program, steps=np.zeros((len(motions), 3)), lines=lines, before=before)
+    for line in sorted({motions[i].line for i in named}):
+        for key, found in (("speed_mm_s", work.speeds), ("force_N", work.forces)):
+            value = _agreed(work, line, [i for i in lines[line] if not motions[i].aux], named, key)
+            if value is not None and not _has(work, line, key, value):
+                found[line] = value
+        _shifts(work, line, named, source, module)
+    return work
+
+
+def _merge(named, change, program, lines):
+    where = change.get("where", program.file)
+    motions = program.motions
+    values = {key: float(change[key]) for key in COLUMNS if change.get(key) is not None}
+    for key, value in values.items():
+        most = {"speed_mm_s": MAX_SPEED, "force_N": MAX_FORCE}.get(key, MAX_STEP)
+        least = -MAX_STEP if key.startswith(("d", "t")) else 0.0
+        if not least <= value <= most or (key == "speed_mm_s" and value == 0.0):
+            raise ProgramError(f"{where}: {key} is {value:g}; it must be {least:g} to {most:g}")
+    if change.get("line") is not None:
+        members = lines.get(change["line"], [])
+        if not members:
+            raise ProgramError(f"{where}: no motion is in line {change['line']} of {program.file}")
+        # An arc's auxiliary point has a place of its own, and the speed of its end.
+        members = [(i, values) for i in members]
+    else:
+        i = change.get("index")
+        if i is None or not 0 <= i < len(motions):
+            raise ProgramError(
+                f"{where}: there is no motion {i}; {program.file} has 0 to {len(motions) - 1}"
+            )
+        members = [(i, values)]
+        if motions[i].aux:
+            common = {k: v for k, v in values.items() if k in ("speed_mm_s", "force_N")}
+            own = {k: v for k, v in values.items() if k not in common}
+            members = [(i, own)]
+            if common:
+                end = next(
+                    (k for k in range(i, len(motions)) if not motions[k].aux), len(motions) - 1
+                )
+                members.append((end, common))
+    for i, given in members:
+        for key, value in given.items():
+            if motions[i].aux and key in ("speed_mm_s", "force_N"):
+                continue
+            if named.setdefault(i, {}).setdefault(key, value) != value:
+                raise ProgramError(f"{where}: motion {i} is given two values of {key}")
+
+
+def _agreed(work, line, members, named, key):
+    """The value all motions of a statement are given; None: none of them any."""
+    values = {named.get(i, {}).get(key) for i in members}
+    if values == {None} or not members:
+        return None
+    if len(values) > 1:
+        numbers = ", ".join(map(str, members[:10])) + (", ..." if len(members) > 10 else "")
+        raise work.refuse(
+            line,
+            f"this line is run through several times (motions {numbers}); a change of {key} "
+            "changes all of them: name all with the same value",
+        )
+    motion = work.program.motions[members[0]]
+    if motion.pose is None:
+        raise work.refuse(line, f"motion {members[0]} has no pose that is known; it is not changed")
+    if key == "speed_mm_s" and motion.kind == "PTP" and motion.speed_mm_s is None:
+        raise work.refuse(line, f"motion {members[0]} is a {motion.kind} without a path speed")
+    return values.pop()
+
+
+def _has(work, line, key, value):
+    """Whether all motions of a line have the value already: nothing is to be written then."""
+    ends = [work.program.motions[i] for i in work.lines[line]]
+    return all(getattr(m, key) == value for m in ends)
+
+
+def _shifts(work, line, named, source, module):
+    """The displacements of a statement's targets."""
+    motions, keys = work.program.motions, COLUMNS[2:]
+    targets = {}
+    for i in work.lines[line]:
+        derived = module.derived(source, line)
+        if not motions[i].aux or not derived:
+            second = not derived and not motions[i].aux and i > 0 and motions[i - 1].aux
+            targets.setdefault(int(second), []).append(i)
+        elif set(keys) & named.get(i, {}).keys() and not set(keys) & named.get(i + 1, {}).keys():
+            raise work.refuse(line, f"motion {i} follows from taught points; offset those")
+    for target, members in targets.items():
+        given = {tuple(named.get(i, {}).get(key, 0.0) for key in keys) for i in members}
+        if given == {(0.0,) * 4}:
+            continue
+        if len(given) > 1:
+            numbers = ", ".join(map(str, members[:10])) + (", ..." if len(members) > 10 else "")
+            raise work.refuse(
+                line,
+                f"this line is run through several times (motions {numbers}); an offset moves all "
+                "of them: name all with the same offset",
+            )
+        *base, tool_z = given.pop()
+        shift = Shift(np.array(base), tool_z, members)
+        for i in members:
+            if motions[i].pose is None:
+                raise work.refuse(line, f"motion {i} has no pose that is known; it is not moved")
+            work.steps[i] = shift.base + tool_z * motions[i].pose[:3, 2]
+        work.shifts.setdefault(line, {})[target] = shift
+
+
+def _verify(program, again, work, source, module):
+    """Compares what was written with what was asked for. Raises ProgramError."""
+    old, new = program.motions, again.motions
+    problems = Counter(problem.message for problem in again.problems)
+    before = Counter(problem.message for problem in program.problems)
+    # A speed that was not known may be now.
+    edited = {bisect_right(source.starts, begin) for begin, _, _ in source.edits}
+    solved = Counter(p.message for p in program.problems if p.line in edited)
+    if len(old) != len(new) or problems - before or before - solved - problems:
+        raise ProgramError(
+            f"{program.file}: the changed program does not read like the original; it is not written"
+        )
+    free = getattr(module, "TURN_IS_FREE", False)
+    report = []
+    for i, (a, b) in enumerate(zip(old, new)):
+        speed, force = work.speeds.get(a.line), work.forces.get(a.line)
+        step = work.steps[i]
+        _same_words(i, a, b)
+        speed = a.speed_mm_s if speed is None else speed
+        rounding = module.rounding_mm_s(source, a.line) if a.line in work.speeds else 0.0
+        _close(i, a, "speed", speed, b.speed_mm_s, rounding, work)
+        _close(i, a, "force", a.force_N if force is None else force, b.force_N, 0.0, work)
+        if (a.pose is None) != (b.pose is None):
+            raise _other(i, a, "its pose")
+        shifted = bool(step.any())
+        if a.pose is not None and not (a.aux and module.derived(source, a.line)):
+            rounding = module.ROUNDING_MM if shifted else 0.0
+            error = np.abs(b.pose[:3, 3] - a.pose[:3, 3] - step).max()
+            if error > rounding + UNCHANGED * (1.0 + np.abs(a.pose[:3, 3]).max()):
+                reason = "" if shifted else "; is it relative to one that is moved?"
+                raise _other(i, a, f"its place, by {error:.4g} mm more than asked{reason}")
+            columns = slice(2, 3) if free else slice(0, 3)
+            turn = np.abs(b.pose[:3, columns] - a.pose[:3, columns]).max()
+            if turn > (1e-6 if shifted else UNCHANGED):
+                raise _other(i, a, "its orientation")
+        if a.line in work.speeds or a.line in work.forces or shifted:
+            moved = None if b.pose is None else (b.pose[:3, 3] - a.pose[:3, 3]).tolist()
+            row = {"index": i, "line": a.line, "speed_mm_s": b.speed_mm_s, "force_N": b.force_N}
+            report.append({**row, "offset_mm": moved})
+    return report
+
+
+def _same_words(i, a, b):
+    for key in ("kind", "tool", "base", "aux"):
+        if getattr(a, key) != getattr(b, key):
+            raise _other(i, a, f"its {key}")
+
+
+def _close(i, motion, what, asked, found, rounding, work):
+    if asked is None or found is None:
+        if asked is not found:
+            raise _other(i, motion, f"its {what}")
+    elif not math.isclose(asked, found, rel_tol=1e-7, abs_tol=rounding + SMALL):
+        named = motion.line in (work.speeds if what == "speed" else work.forces)
+        more = f" ({found:.6g} in place of {asked:.6g})" if named else ""
+        raise _other(i, motion, f"its {what}{more}")
+
+
+def _other(i, motion, what):
+    return ProgramError(
+        f"{motion.file}:{motion.line}: the change would alter motion {i} otherwise than asked: "
+        f"{what}; nothing is written"
+    )

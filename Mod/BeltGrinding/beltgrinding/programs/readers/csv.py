@@ -1,0 +1,126 @@
+"""Poses from a CSV file: one row a pose, columns named in the first row (docs/programs.md)."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ...base import frames
+from ..program import MAX_COORDINATE, Motion, Problem, Program, ProgramError, name_of
+
+POSITION = ("x_mm", "y_mm", "z_mm")
+QUATERNION = ("qw", "qx", "qy", "qz")
+ANGLES = ("a_deg", "b_deg", "c_deg")
+OPTIONAL = ("feed_mm_s", "force_N", "zone_mm", "motion")
+MOTIONS = ("LIN", "PTP")
+
+
+def read(path):
+    """The Program in a CSV file. Raises ProgramError naming file and line."""
+    name = name_of(path)
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise ProgramError(f"{path}: is not UTF-8 text; save the table as CSV, UTF-8") from None
+    except OSError as error:
+        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+    lines = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise ProgramError(f"{name}: the file is empty; it needs a row of column names and poses")
+    number, head = lines[0]
+    delimiter = max(",;\t", key=head.count)
+    columns = [column.strip() for column in head.split(delimiter)]
+    _check(columns, name, number)
+    program = Program("CSV", name)
+    try:
+        rows = list(csv.reader((line for _, line in lines[1:]), delimiter=delimiter, strict=True))
+    except csv.Error as error:
+        raise ProgramError(f"{name}: is no sound CSV: {error}") from None
+    if len(rows) != len(lines) - 1:
+        raise ProgramError(f"{name}: a quoted field runs over several lines")
+    for (number, _), row in zip(lines[1:], rows):
+        if len(row) != len(columns):
+            raise ProgramError(
+                f"{name}:{number}: {len(row)} values in {len(columns)} columns; "
+                "use a point as the decimal mark"
+            )
+        program.motions.append(_motion(dict(zip(columns, row)), name, number))
+    if not text.endswith(("\n", "\r")):
+        message = "the last line has no end; a number in it may be cut off"
+        program.problems.append(Problem(name, lines[-1][0], message))
+    if "qw" in columns:
+        _turn(program.motions)
+    return program
+
+
+def _turn(motions):
+    """Poses of all motions at once: one by one they would take most of the time."""
+    values = np.array([motion.pose for motion in motions], dtype=float).reshape(-1, 7)
+    try:
+        poses = frames.from_quaternions(values[:, :3], values[:, 3:])
+    except ValueError:
+        for motion, row in zip(motions, values):  # which one it is
+            try:
+                frames.from_quaternion(row[:3], row[3:])
+            except ValueError as error:
+                raise ProgramError(f"{motion.file}:{motion.line}: {error}") from None
+        raise
+    for motion, pose in zip(motions, poses):
+        motion.pose = pose
+
+
+def _check(columns, name, number):
+    for group in (POSITION, QUATERNION if "qw" in columns else ANGLES):
+        for column in group:
+            if column not in columns:
+                raise ProgramError(
+                    f"{name}:{number}: the column {column} is missing; a pose needs "
+                    f"{', '.join(POSITION)} and {', '.join(QUATERNION)} or {', '.join(ANGLES)}"
+                )
+    known = {*POSITION, *QUATERNION, *ANGLES, *OPTIONAL}
+    for column in columns:
+        if column not in known:
+            raise ProgramError(
+                f"{name}:{number}: unknown column '{column}'; known are {', '.join(sorted(known))}"
+            )
+    if len(set(columns)) != len(columns):
+        raise ProgramError(f"{name}:{number}: a column occurs twice")
+
+
+def _motion(row, name, line):
+    def number(column):
+        try:
+            value = float(row[column])
+        except ValueError:
+            raise ProgramError(
+                f"{name}:{line}: {column} is '{row[column].strip()}', no number"
+            ) from None
+        if not math.isfinite(value):
+            raise ProgramError(f"{name}:{line}: {column} is not finite")
+        if abs(value) > MAX_COORDINATE:
+            raise ProgramError(f"{name}:{line}: {column} is {value:g}, out of all bounds")
+        return value
+
+    def optional(column, least):
+        if not row.get(column, "").strip():
+            return None
+        value = number(column)
+        if value < least or (column == "feed_mm_s" and value == 0.0):
+            raise ProgramError(f"{name}:{line}: {column} is {value:g}; it must be positive")
+        return value
+
+    position = [number(column) for column in POSITION]
+    if "qw" in row:
+        pose = [*position, *(number(column) for column in QUATERNION)]  # _turn makes a pose of it
+    else:
+        pose = frames.from_abc(position, [number(column) for column in ANGLES])
+    kind = row.get("motion", "").strip().upper() or "LIN"
+    if kind not in MOTIONS:
+        raise ProgramError(f"{name}:{line}: motion is '{kind}'; use {' or '.join(MOTIONS)}")
+    feed, force, zone = (optional(c, 0.0) for c in ("feed_mm_s", "force_N", "zone_mm"))
+    return Motion(kind, pose, line, name, feed, force, zone_mm=zone)

@@ -1,0 +1,69 @@
+"""The /POS section of a Fanuc TP program: P[n]{ GP1: UF, UT, CONFIG, X .. R or J1 .. };"""
+
+import re
+
+from ...program import ProgramError
+from ..taught import value_of
+
+COMPONENTS = ("X", "Y", "Z", "W", "P", "R")
+UNITS = dict(zip(COMPONENTS, ("mm", "mm", "mm", "deg", "deg", "deg")))
+BLOCK = re.compile(r"P\[(\d{1,6})(?:\s*:[^\]\n]*)?\]\s*\{([^{}]*)\}\s*;")
+CONFIG = re.compile(r"CONFIG\s*:\s*'[^'\n]*'")
+ITEM = re.compile(r"\s*([A-Z]{1,2}\d*)\s*[=:]\s*([^\s,=:]+)\s*(mm|deg)?\s*$")
+BLANK = re.compile(r"\s*")
+
+
+def positions_of(lines, line, file, problem):
+    """{n: (components or None, UF, UT)} or {n: why it is unknown}: components X, Y, Z in mm and
+    W, P, R in degrees, None for a joint position; UF, UT None for those selected. ``line`` is the
+    number of the first line. Raises ProgramError; ``problem(line, message)`` takes notes."""
+    text, at, positions, noted = "\n".join(lines), 0, {}, False
+    while True:
+        begin = BLANK.match(text, at).end()
+        line += text.count("\n", at, begin)
+        if begin == len(text):
+            return positions
+        match = BLOCK.match(text, begin)
+        if not match:
+            raise ProgramError(f"{file}:{line}: a position P[n]{{ ... }}; is expected here")
+        n = int(match.group(1))
+        if n in positions:
+            raise ProgramError(f"{file}:{line}: P[{n}] occurs twice")
+        groups = re.split(r"\bGP(\d+)\s*:", CONFIG.sub("", match.group(2)))
+        if groups[0].strip() or "1" not in groups[1::2]:
+            raise ProgramError(f"{file}:{line}: P[{n}] has no group GP1")
+        if len(groups) > 3 and not noted:
+            noted = True
+            problem(line, "other motion groups than GP1 are ignored")
+        positions[n] = _position(groups[2 * groups[1::2].index("1") + 2], n, file, line)
+        line += text.count("\n", begin, match.end())
+        at = match.end()
+
+
+def _position(body, n, file, line):
+    values = {}
+    for item in re.split(r"[,\n]", body):
+        if not item.strip():
+            continue
+        match = ITEM.match(item)
+        if not match or match.group(1) in values:
+            raise ProgramError(f"{file}:{line}: '{item.strip()}' in P[{n}] is not understood")
+        name, value, unit = match.groups()
+        if UNITS.get(name, unit) != unit:
+            raise ProgramError(f"{file}:{line}: {name} of P[{n}] is not in {UNITS[name]}")
+        values[name] = value
+    joints = "J1" in values
+    components = []
+    for name in [k for k in values if re.fullmatch(r"J\d", k)] if joints else COMPONENTS:
+        if name not in values:
+            raise ProgramError(f"{file}:{line}: P[{n}] has no {name}")
+        if set(values[name]) == {"*"}:
+            return "is not taught"
+        components.append(value_of(values[name], f"{name} of P[{n}]", file, line))
+    selected = []
+    for name in ("UF", "UT"):
+        frame = values.get(name, "F")
+        if not re.fullmatch(r"F|\d{1,3}", frame, re.ASCII):
+            raise ProgramError(f"{file}:{line}: {name} of P[{n}] is '{frame}', no frame number")
+        selected.append(None if frame == "F" else int(frame))
+    return (None if joints else components, *selected)

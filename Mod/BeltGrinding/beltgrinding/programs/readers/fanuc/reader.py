@@ -1,0 +1,415 @@
+"""Reads Fanuc TP programs as text (.ls): /MN statements and /POS positions.
+
+Poses are those of the tool frame UT in the user frame UF; W, P, R turn about the fixed X, Y, Z
+(Rz(R) Ry(P) Rx(W)). What only the controller can know is a Problem.
+"""
+
+import re
+
+import numpy as np
+
+from ...program import LOOPED, MAX_UNROLLED, Motion, ProgramError, work_of
+from ..taught import DIGITS, Unknown, lines_of, pose_of
+from .positions import positions_of
+from .registers import INDEX, Registers
+
+KINDS = {"J": "PTP", "L": "LIN", "C": "CIRC", "A": "A", "S": "SPL"}
+MOTION = re.compile(rf"([JLCAS])\s+(PR|P)\s*{INDEX}\s*(.*)$")
+TARGET = re.compile(rf"\s*(PR|P)\s*{INDEX}\s*(.*)$")
+SPEED = re.compile(
+    rf"({DIGITS}|R{INDEX})\s*(mm/sec|cm/min|inch/min|deg/sec|msec|sec|%)(?=\s|$)\s*(.*)$"
+)
+MM_PER_S = {"mm/sec": 1.0, "cm/min": 10.0 / 60.0, "inch/min": 25.4 / 60.0}
+SECONDS = {"sec": 1.0, "msec": 1e-3}
+# Options that move the target, or end the motion before it.
+SHIFTS = re.compile(r"\b(Tool_Offset|Offset|VOFFSET|Search|TrackPR|Skip|VR\[)", re.IGNORECASE)
+HARMLESS = re.compile(
+    r"(DO|DI|RO|RI|GO|GI|AO|AI|SO|UO|UI|WO|WI|F|M|SR|AR|TIMER|PAYLOAD|OVERRIDE|WAIT|PAUSE|MESSAGE|"
+    r"UALM|LOCK|UNLOCK|COL|RSR|MONITOR|JOINT_MAX_SPEED|LINEAR_MAX_SPEED|TC_ONLINE|STOP_TRACKING|"
+    r"PULSE|ERROR_PROG|RESUME_PROG|MAINT_PROG|CLEAR_RESUME_PROG|STRLEN|\$\w+|WELD|ARC|PREG)\b",
+    re.IGNORECASE,
+)
+JUMP = re.compile(rf"JMP\s+LBL\s*{INDEX}$")
+FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(.+?)\s+(TO|DOWNTO)\s+(.+)$")
+
+
+def zone_of(rest):
+    """mm by the termination type in a motion's additions: FINE stops; CD is the distance from the
+    corner, CR its radius (the same where the path turns by 90 degrees); CNT is a share of the speed
+    and no length, so its zone is not known, of CNT0 neither: nearly a stop without being one.
+    """
+    match = re.search(r"\b(?:(FINE)|C[DR]\s*(\d{1,4}))(?=\s|$)", rest)
+    if not match:
+        return None
+    return 0.0 if match.group(1) else float(match.group(2))
+
+
+def read(path):
+    """The Program of a .ls file. Raises ProgramError when it cannot be read."""
+    reader = _Reader(path)
+    reader.load(lines_of(path, "TP"))
+    reader.follow()
+    reader.close_arc()
+    return reader.program
+
+
+class _Reader(Registers):
+    """Follows a TP program from top to bottom with the registers it can know."""
+
+    def __init__(self, path):
+        super().__init__("Fanuc TP", path)
+        self.statements = []  # (line, text)
+        self.positions = {}
+        self.uframe = self.utool = None
+        self.here = None  # (components, base) of the current pose, None: unknown
+        self.missing = set()
+
+    def error(self, line, message):
+        return ProgramError(f"{self.file}:{line}: {message}")
+
+    # The file
+
+    def load(self, lines):
+        """Splits the file into statements and positions."""
+        section, begin, ended = "", None, False
+        for number, text in enumerate(lines, 1):
+            head = text.strip()
+            mark = re.match(r"/(?:PROG|ATTR|APPL|MN|POS|END)\b", head)
+            if mark:
+                section = mark.group(0)
+                if section == "/END":
+                    ended = True
+                    break
+                begin = number if section == "/POS" else begin
+            elif section == "/MN" and head:
+                self.line_of_mn(number, head)
+        if not self.statements and begin is None:
+            raise ProgramError(f"{self.file}: is no TP program (it has neither /MN nor /POS)")
+        if self.statements and not self.statements[-1][2]:
+            self.unended(self.statements[-1])
+        if not ended:
+            self.problem(len(lines), "the file ends without /END; it may be cut")
+        if begin is not None:
+            end = number - 1 if ended else len(lines)
+            self.positions = positions_of(lines[begin:end], begin + 1, self.file, self.problem)
+
+    def line_of_mn(self, number, head):
+        match = re.match(r"(\d*)\s*:(.*)$", head)
+        if not match:
+            if head.strip("-; "):
+                self.problem(number, f"'{head[:40]}' is no statement; it is left out")
+                self.statements.append((number, "?", True))
+            return
+        text = match.group(2).strip()
+        ended = text.endswith(";")
+        text = text[:-1].rstrip() if ended else text
+        if not match.group(1) and self.statements and not self.statements[-1][2]:
+            line, before, _ = self.statements[-1]
+            self.statements[-1] = (line, f"{before} {text}", ended)
+            return
+        if self.statements and not self.statements[-1][2]:
+            self.unended(self.statements[-1])
+        self.statements.append((number, text, ended))
+
+    def unended(self, statement):
+        if not statement[1].startswith(("!", "/", "-")):
+            raise self.error(statement[0], "the statement does not end with ';'")
+
+    # The statements
+
+    def follow(self):
+        """Executes the statements; every label is passed once in each state of the registers."""
+        labels, closing, opened, ifs = {}, {}, [], []
+        self.ends, self.elses = {}, {}
+        for k, (line, text, _) in enumerate(self.statements):
+            match = re.match(rf"LBL\s*{INDEX}", text)
+            if match and re.match(r"\d+", match.group(1)):
+                labels.setdefault(int(re.match(r"\d{1,6}", match.group(1)).group(0)), k)
+            if re.match(r"FOR\b", text):
+                opened.append(k)
+            elif text == "ENDFOR" and opened:
+                closing[opened.pop()] = k
+            if re.match(r"IF\b.*\bTHEN$", text):
+                ifs.append([k])
+            elif text == "ELSE" and ifs:
+                self.elses[ifs[-1][0]] = k
+                ifs[-1].append(k)
+            elif text == "ENDIF" and ifs:
+                self.ends.update(dict.fromkeys(ifs.pop(), k))
+        self.labels, self.closing, self.loops = labels, closing, {}
+        self.opening = {end: begin for begin, end in closing.items()}
+        jumps = {
+            int(n) for s in self.statements for n in re.findall(r"JMP\s+LBL\[(\d{1,6})\b", s[1])
+        }
+        targets = {k for n, k in labels.items() if n in jumps}
+        work = sum(work_of(text) for _, text, _ in self.statements) + 5 * len(self.positions)
+        seen, rounds, at = set(), -LOOPED * work, 0
+        while at is not None and at < len(self.statements):
+            line, text, _ = self.statements[at]
+            rounds += work_of(text)
+            if rounds > MAX_UNROLLED:
+                raise self.error(line, "the program is too long")
+            if at in targets:
+                rounds += len(self.registers) // 10
+                state = (at, frozenset(self.registers.items()))
+                if state in seen:
+                    self.problem(line, "an endless loop is followed once")
+                    return
+                seen.add(state)
+            try:
+                at = self.statement(at, line, text)
+            except Unknown as unknown:
+                self.problem(line, f"{text[:30]} is left out: {unknown}")
+                self.here = None
+                self.gap(line)
+                at += 1
+
+    def statement(self, at, line, text):
+        """Executes one statement; the index of the next, None at the end."""
+        match = MOTION.match(text)
+        if match:
+            self.motion(line, *match.groups())
+            return at + 1
+        if not text or text.startswith(("!", "//", "--", "LBL", "ENDIF")):
+            return at + 1
+        word = re.match(r"\w*", text).group(0)
+        if word in ("IF", "SELECT", "ELSE", "JMP", "FOR", "ENDFOR"):
+            return getattr(self, f"do_{word.lower()}")(at, line, text)
+        if word in ("END", "ABORT"):
+            return None
+        match = re.match(rf"(UFRAME_NUM|UTOOL_NUM|R{INDEX})(?:\[[^\]]*\])?\s*=\s*(.*)$", text)
+        if match:
+            self.assign(line, match.group(1), match.group(3))
+        elif word in ("CALL", "RUN"):
+            self.call(line, text)
+        elif word in ("UFRAME", "UTOOL"):
+            self.problem(line, "a frame is set at run time; poses stay those in it")
+        elif re.match(r"P\s*\[|[A-Z]\s+PR?\s*\[", text) or text == "?":
+            if text != "?":
+                self.problem(line, f"'{text[:40]}' is not understood; it is left out")
+            self.here = None
+            self.gap(line)
+        elif not HARMLESS.match(text) and not re.match(r"PR\s*\[", text):
+            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+        return at + 1
+
+    def assign(self, line, name, text):
+        try:
+            value = self.number(text)
+        except Unknown as unknown:
+            value = None
+            if name.startswith("U"):
+                self.problem(line, f"{name} is not known: {unknown}; each position tells its own")
+        if name == "UFRAME_NUM":
+            self.uframe = None if value is None else int(value)
+        elif name == "UTOOL_NUM":
+            self.utool = None if value is None else int(value)
+        else:
+            self.forget([(0, f"{name}=", True)])
+            if value is not None:
+                try:
+                    self.registers[self.index(name[2:-1])] = value
+                except Unknown:
+                    self.registers.clear()
+
+    def call(self, line, text):
+        name = re.sub(r"^(CALL|RUN)\s*", "", text).split("(")[0].strip()
+        if name not in self.missing:
+            self.missing.add(name)
+            self.problem(line, f"{name} is not in this file; motions in it are left out")
+        # It may move the robot, change registers and select frames.
+        self.here = self.uframe = self.utool = None
+        self.registers.clear()
+
+    def forget(self, statements):
+        """What statements assign that may or may not run is unknown afterwards."""
+        for _, text, _ in statements:
+            for found in re.findall(rf"\bR{INDEX}\s*=", text):
+                try:
+                    self.registers.pop(self.index(found), None)
+                except Unknown:
+                    self.registers.clear()
+            if "CALL" in text or "RUN" in text:
+                self.registers.clear()
+            if "_NUM" in text:
+                self.uframe = self.utool = None
+
+    def leave_out(self, line, begin, end, message):
+        """Passes over statements that may or may not run."""
+        body = self.statements[begin:end]
+        self.forget(body)
+        if any(MOTION.match(text) for _, text, _ in body):
+            self.problem(
+                line, f"{message}; motions up to line {self.statements[end - 1][0]} left out"
+            )
+            self.here = None
+            self.gap(line)
+        return end
+
+    def do_if(self, at, line, text):
+        then = re.match(r"IF\s*(.*?)\s*\bTHEN$", text)
+        split = re.match(r"IF\s*((?:[^,\[(]|\[[^\]]*\]|\((?:[^()]|\([^()]*\))*\))*),(.*)$", text)
+        if not then and (not split or split.group(2).lstrip().startswith("IF")):
+            raise Unknown("it is not understood")
+        end = self.after_if(at) if then else at + 1
+        try:
+            known = self.condition((then or split).group(1))
+        except Unknown as unknown:
+            if then:
+                return self.leave_out(line, at + 1, end, f"IF is decided at run time ({unknown})")
+            return self.maybe(at, line, [split.group(2).strip()])
+        if then:
+            return at + 1 if known else self.after_if(at, "ELSE")
+        return self.statement(at, line, split.group(2).strip()) if known else at + 1
+
+    def after_if(self, at, stop="ENDIF"):
+        """Index after the ENDIF (or ELSE) of the IF or ELSE at ``at``."""
+        end = self.ends.get(at, len(self.statements) - 1)
+        return (self.elses.get(at, end) if stop == "ELSE" else end) + 1
+
+    def do_else(self, at, line, text):
+        return at + 1 if text != "ELSE" else self.after_if(at)
+
+    def do_select(self, at, line, text):
+        branches = [text]
+        for _, other, _ in self.statements[at + 1 :]:
+            if not re.match(r"=|ELSE,", other):
+                break
+            branches.append(other)
+        actions = [branch.partition(",")[2].strip() for branch in branches]
+        return max(self.maybe(at, line, actions), at + len(branches))
+
+    def maybe(self, at, line, actions):
+        """Actions of which none or one runs: what a jump passes over is left out."""
+        furthest = at + 1
+        for action in actions:
+            match = JUMP.match(action)
+            if match:
+                target = self.labels.get(self.index(match.group(1)), -1)
+                furthest = max(furthest, target)
+                if target <= at:
+                    self.problem(line, "a jump back is decided at run time; it is followed once")
+            elif action.startswith(("CALL", "RUN")):
+                self.call(line, action)
+            else:
+                self.forget([(line, action, True)])
+                if MOTION.match(action):
+                    raise Unknown("it is decided at run time")
+        return self.leave_out(line, at + 1, furthest, "a jump is decided at run time")
+
+    def do_jmp(self, at, line, text):
+        match = JUMP.match(text)
+        try:
+            return self.labels[self.index(match.group(1))]
+        except (AttributeError, KeyError, Unknown):
+            self.problem(line, f"'{text}' leads nowhere known; what follows is left out")
+            return None
+
+    def do_for(self, at, line, text):
+        match, end = FOR.match(text), self.closing.get(at)
+        if end is None:
+            raise Unknown("FOR has no ENDFOR")
+        try:
+            if not match:
+                raise Unknown("it is not understood")
+            n, first, last = self.index(match[1]), self.number(match[2]), self.number(match[4])
+        except Unknown as unknown:
+            return self.leave_out(line, at + 1, end + 1, f"FOR has no static bounds ({unknown})")
+        step = 1 if match[3] == "TO" else -1
+        self.registers[n] = first
+        self.loops[at] = [n, last, step]
+        return at + 1 if step * (last - first) >= 0 else end + 1
+
+    def do_endfor(self, at, line, text):
+        begin = self.opening.get(at)
+        if begin not in self.loops:
+            return at + 1
+        n, last, step = self.loops[begin]
+        if n not in self.registers:
+            self.problem(line, f"the counter R[{n}] is changed in its loop; it is followed once")
+        elif step * (last - self.registers[n]) >= 1:
+            self.registers[n] += step
+            return begin + 1
+        del self.loops[begin]
+        return at + 1
+
+    # The motions
+
+    def motion(self, line, kind, register, index, rest):
+        targets = [(register, index)]
+        if kind == "C":
+            match = TARGET.match(rest)
+            if not match:
+                raise Unknown("its end point is missing")
+            targets.append(match.groups()[:2])
+            rest = match.group(3)
+        if SHIFTS.search(rest):
+            raise Unknown(f"what {SHIFTS.search(rest).group(1)} does is known at run time only")
+        motions = [
+            self.target(line, KINDS[kind], *target, re.search(r"\bINC\b", rest))
+            for target in targets
+        ]
+        before = self.here
+        for motion, components in motions:
+            motion.aux = motion is not motions[-1][0]
+            self.here = components and (components, motion.base)
+        if motions[-1][0].kind != "PTP":
+            speed = self.speed(line, kind, rest, before)
+            for motion, _ in motions:
+                motion.speed_mm_s = speed
+        for motion, _ in motions:
+            motion.zone_mm = zone_of(rest)
+        for motion, _ in motions:
+            (self.add_arc_point if kind == "A" else self.add)(motion)
+
+    def target(self, line, kind, register, index, incremental):
+        """(Motion, components) of one position. Raises Unknown."""
+        if register == "PR":
+            raise Unknown(f"PR[{index}] is a position register of the controller")
+        n = self.index(index)
+        position = self.positions.get(n)
+        if position is None:
+            raise Unknown(f"P[{n}] is not in /POS")
+        if isinstance(position, str):
+            raise Unknown(f"P[{n}] {position}")
+        components, uf, ut = position
+        names = []
+        for what, own, current in (("UFRAME", uf, self.uframe), ("UTOOL", ut, self.utool)):
+            if None not in (own, current) and own != current:
+                raise Unknown(f"P[{n}] is taught in {what} {own}, selected is {what} {current}")
+            own = current if own is None else own
+            names.append("" if own is None else f"{what} {own}")
+        motion = Motion(kind, None, line, self.file, tool=names[1], base=names[0])
+        if components is None:
+            if kind != "PTP":
+                raise Unknown(f"P[{n}] is a joint position")
+            return motion, None
+        if incremental:
+            if self.here is None or self.here[1] != motion.base or any(components[3:]):
+                raise Unknown("INC adds to a pose that is not known, or turns")
+            components = [*np.add(self.here[0][:3], components[:3]), *self.here[0][3:]]
+        motion.pose = pose_of(components)
+        return motion, components
+
+    def speed(self, line, kind, rest, before):
+        """mm/s of a path motion, None (and a Problem) when it is not known."""
+        match = SPEED.match(rest)
+        try:
+            if not match:
+                raise Unknown(f"'{rest[:30]}' names none")
+            value, unit = self.number(match.group(1)), match.group(3)
+            if value <= 0.0:
+                raise Unknown("it is not positive")
+            if unit in MM_PER_S:
+                return value * MM_PER_S[unit]
+            length = 0.0
+            if unit in SECONDS and kind == "L" and before and self.here[1] == before[1]:
+                length = float(np.linalg.norm(np.subtract(self.here[0][:3], before[0][:3])))
+            if length == 0.0:
+                raise Unknown(f"{match.group(1)}{unit} tells no path speed")
+            if value < 1e-6:
+                raise Unknown(f"{match.group(1)}{unit} is too short a time")
+            return length / (value * SECONDS[unit])
+        except Unknown as unknown:
+            self.problem(line, f"the path speed is not known: {unknown}")
+            return None

@@ -1,0 +1,232 @@
+"""Values of KUKA KRL: numbers, aggregates and static expressions over them."""
+
+import math
+import re
+
+from ....base.frames import from_abc, to_abc
+
+TOKEN = re.compile(
+    r"""\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
+        |(?P<string>"[^"]*")
+        |(?P<enum>\#\w+)
+        |(?P<name>\$?[A-Za-z_][\w$]*(?:\.[A-Za-z_]\w*)*)
+        |(?P<op><=|>=|<>|==|[-+*/:(){}\[\],=<>']))""",
+    re.VERBOSE,
+)
+FRAME = ("x", "y", "z", "a", "b", "c")
+FUNCTIONS = {
+    "sin": lambda v: math.sin(math.radians(v)),
+    "cos": lambda v: math.cos(math.radians(v)),
+    "tan": lambda v: math.tan(math.radians(v)),
+    "acos": lambda v: math.degrees(math.acos(v)),
+    "atan2": lambda y, x: math.degrees(math.atan2(y, x)),
+    "sqrt": math.sqrt,
+    "abs": abs,
+}
+MAX_DEPTH = 50
+MAX_LENGTH = 1e12  # mm; products of frames stay finite
+
+
+class Unknown(Exception):
+    """An expression that cannot be evaluated here; says why."""
+
+
+def tokens(text):
+    """List of (kind, text) of a statement. Raises Unknown on anything that is no token."""
+    result, at = [], 0
+    text = text.rstrip()
+    while at < len(text):
+        match = TOKEN.match(text, at)
+        if not match:
+            raise Unknown(f"cannot read '{text[at:].strip()[:30]}'")
+        result.append((match.lastgroup, match.group(match.lastgroup)))
+        at = match.end()
+    return result
+
+
+def frame_of(value):
+    """4 x 4 of an aggregate with all six components."""
+    missing = [name for name in FRAME if name not in value]
+    if missing:
+        raise Unknown(f"the frame has no {', '.join(missing).upper()}")
+    x, y, z, a, b, c = (number(value[k]) for k in FRAME)
+    if max(abs(x), abs(y), abs(z)) > MAX_LENGTH:
+        raise Unknown("the frame is out of all bounds")
+    return from_abc((x, y, z), (a, b, c))
+
+
+def components_of(frame):
+    """Aggregate of a 4 x 4."""
+    return dict(zip(FRAME, [*map(float, frame[:3, 3]), *to_abc(frame)]))
+
+
+class Reader:
+    """Recursive descent over the tokens of one statement; ``lookup(name, indices)`` gives the
+    value of a variable or raises Unknown."""
+
+    def __init__(self, text, lookup):
+        self.tokens = tokens(text)
+        self.at = 0
+        self.depth = 0
+        self.lookup = lookup
+
+    def peek(self):
+        return self.tokens[self.at][1] if self.at < len(self.tokens) else None
+
+    def next(self):
+        if self.at >= len(self.tokens):
+            raise Unknown("the line ends too early")
+        self.at += 1
+        return self.tokens[self.at - 1]
+
+    def accept(self, text):
+        if self.peek() == text:
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, text):
+        if not self.accept(text):
+            raise Unknown(f"'{text}' expected, not '{self.peek() or 'the end of the line'}'")
+
+    def expression(self):
+        """comparison of sums"""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise Unknown("the expression is nested too deeply")
+        left = self.sum()
+        operator = self.peek()
+        if operator in ("==", "<>", "<", ">", "<=", ">="):
+            self.at += 1
+            right = self.sum()
+            same = {"==": left == right, "<>": left != right}
+            if operator in same:
+                left = same[operator]
+            else:
+                left, right = number(left), number(right)
+                left = {
+                    "<": left < right,
+                    ">": left > right,
+                    "<=": left <= right,
+                    ">=": left >= right,
+                }[operator]
+        self.depth -= 1
+        return left
+
+    def sum(self):
+        value = self.product()
+        while self.peek() in ("+", "-"):
+            sign = 1 if self.next()[1] == "+" else -1
+            value = number(value) + sign * number(self.product())
+        return value
+
+    def product(self):
+        value = self.geometric()
+        while self.peek() in ("*", "/"):
+            if self.next()[1] == "*":
+                value = number(value) * number(self.geometric())
+            else:
+                divisor = number(self.geometric())
+                if divisor == 0:
+                    raise Unknown("division by zero")
+                value = number(value) / divisor
+        return value
+
+    def geometric(self):
+        """The geometric operator: a frame followed by a frame in it."""
+        value = self.unary()
+        while self.accept(":"):
+            right = self.unary()
+            if not isinstance(value, dict) or not isinstance(right, dict):
+                raise Unknown("the operator ':' needs two frames")
+            value = components_of(frame_of(value) @ frame_of(right))
+        return value
+
+    def unary(self):
+        if self.accept("-"):
+            return -number(self.unary_once())
+        if self.accept("+"):
+            return number(self.unary_once())
+        return self.primary()
+
+    def unary_once(self):
+        if self.peek() in ("-", "+"):
+            raise Unknown("two signs in a row")
+        return self.primary()
+
+    def primary(self):
+        kind, text = self.next()
+        if kind == "number":
+            value = float(text)
+            if not math.isfinite(value):
+                raise Unknown(f"{text} is too large a number")
+            return value
+        if kind in ("string", "enum"):
+            return text
+        if text == "(":
+            value = self.expression()
+            self.expect(")")
+            return value
+        if text == "{":
+            return self.aggregate()
+        if kind != "name":
+            raise Unknown(f"a value expected, not '{text}'")
+        name = text.lower()
+        if name in ("true", "false"):
+            return name == "true"
+        if self.peek() == "(":
+            return self.call(name, text)
+        return self.lookup(name, self.indices())
+
+    def indices(self):
+        result = []
+        if self.accept("["):
+            if self.accept("]"):
+                return ()
+            result.append(int(number(self.expression())))
+            while self.accept(","):
+                result.append(int(number(self.expression())))
+            self.expect("]")
+        return tuple(result)
+
+    def call(self, name, text):
+        if name not in FUNCTIONS:
+            raise Unknown(f"the function {text} is known to the controller only")
+        self.expect("(")
+        arguments = [number(self.expression())]
+        while self.accept(","):
+            arguments.append(number(self.expression()))
+        self.expect(")")
+        try:
+            return float(FUNCTIONS[name](*arguments))
+        except (TypeError, ValueError, OverflowError):
+            raise Unknown(f"{text} cannot be evaluated for {arguments}") from None
+
+    def aggregate(self):
+        """{[TYPE:] name value, ...}; names in lower case."""
+        result = {}
+        if self.at + 1 < len(self.tokens) and self.tokens[self.at + 1][1] == ":":
+            self.at += 2
+        if self.accept("}"):
+            return result
+        while True:
+            kind, name = self.next()
+            if kind != "name":
+                raise Unknown(f"a component's name expected, not '{name}'")
+            self.indices()
+            name = name.lower()
+            if name in result:
+                raise Unknown(f"the component {name.upper()} occurs twice")
+            result[name] = self.expression()
+            if self.accept("}"):
+                return result
+            self.expect(",")
+
+
+def number(value):
+    """``value`` if it is a number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise Unknown("a number expected")
+    if not math.isfinite(value):
+        raise Unknown("the number is not finite")
+    return value

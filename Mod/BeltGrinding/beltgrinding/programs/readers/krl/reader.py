@@ -1,0 +1,494 @@
+"""Reads KUKA KRL: a module's .src with the .dat beside it.
+
+Poses are those of $TOOL in $BASE; A, B, C turn about Z, Y', X'' (Rz(A) Ry(B) Rx(C)), as in KUKA's
+System Software operating manuals. What only the controller can know is a Problem.
+"""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ...program import (
+    LOOPED,
+    MAX_COORDINATE,
+    MAX_UNROLLED,
+    Motion,
+    Problem,
+    Program,
+    ProgramError,
+    bytes_of,
+    joint_angles,
+    name_of,
+    work_of,
+)
+from .expression import FRAME, Reader, Unknown, components_of, frame_of, number
+
+MAX_MOTIONS = 1_000_000
+MAX_CALLS = 20
+MAX_NESTING = 60
+MAX_SPEED = 1e6  # m/s; beyond, the file is damaged
+MOTION = re.compile(
+    r"^(PTP_REL|LIN_REL|CIRC_REL|SPTP_REL|SLIN_REL|SPTP|SLIN|SCIRC|SPL|PTP|LIN|CIRC)\b\s*(.*)$",
+    re.IGNORECASE,
+)
+ASSIGN = re.compile(
+    r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:(\w+)\s+)?([$\w.]+)\s*(\[[^\]]*\])?\s*=(?!=)(.*)$", re.I
+)
+FOR = re.compile(r"^FOR\s+(\w+)\s*=\s*(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE)
+CALL = re.compile(r"^([A-Za-z_]\w*)\s*\((.*)\)$")
+SPEED = re.compile(r"(?:\$VEL\.CP\s*=|SVEL_CP\s*\()\s*([^,)\s]+)", re.IGNORECASE)
+SETS_SPEED = re.compile(r"\$VEL(?:\.CP)?\s*=|BAS\s*\(\s*#(?:CP_PARAMS|VEL_CP)\b", re.IGNORECASE)
+APPROXIMATION = re.compile(r"\bC_(?:DIS|SPL|VEL|ORI|PTP)\b", re.IGNORECASE)
+OPENING = {
+    "for": "endfor",
+    "if": "endif",
+    "while": "endwhile",
+    "loop": "endloop",
+    "repeat": "until",
+    "switch": "endswitch",
+}
+# Words that begin a statement without a motion and without a value that a path depends on.
+QUIET = set(
+    "decl int real bool char frame pos e3pos e6pos axis e3axis e6axis fdat ldat pdat struc enum "
+    "global ext extp extfct extfctp signal ini import wait halt interrupt trigger continue brake "
+    "resume pulse anin anout cwrite cread copen cclose endspline time_block const_vel defdat "
+    "enddat channel sread swrite on confirm".split()
+)
+LABEL = re.compile(r"\w+\s*:(?!=)|[{}()\]]*$")
+HARMLESS = {"bas", "msgquit", "ir_stopm", "varstate", "msgnotify"}
+
+
+def read(path):
+    """The Program of a .src file. Raises ProgramError when it cannot be read at all."""
+    path = Path(path)
+    interpreter = _Interpreter(name_of(path))
+    data = (
+        next(
+            (
+                p
+                for p in sorted(path.parent.glob("*"))
+                if p.stem.lower() == path.stem.lower() and p.suffix.lower() == ".dat"
+            ),
+            None,
+        )
+        if path.parent.is_dir()
+        else None
+    )
+    if data is not None:
+        interpreter.read_data(_statements(data), name_of(data))
+    try:
+        interpreter.run(_statements(path))
+    except RecursionError:
+        raise ProgramError(f"{path.name}: calls and blocks are nested too deeply") from None
+    return interpreter.program
+
+
+def _statements(path):
+    """(line number, statement) without comments, folds and header lines."""
+    raw = bytes_of(path, "KRL")
+    result = []
+    for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
+        text = re.sub(r'("[^"]*")|;.*', lambda m: m.group(1) or "", text).strip()
+        if text and not text.startswith("&"):
+            result.append((line, text))
+    return result
+
+
+def _word(text):
+    match = re.match(r"\w+", text)
+    return match.group(0).lower() if match else ""
+
+
+class _Leave(Exception):
+    """EXIT of a loop, or RETURN from a routine; the word says which."""
+
+
+class _Interpreter:
+    """Follows a program from top to bottom with the values it can know."""
+
+    def __init__(self, name):
+        self.program = Program("KUKA KRL", name)
+        self.file = name
+        self.values = {}
+        self.here = None  # components of the current pose, None: unknown
+        self.speed = self.around = None  # around: before the spline block
+        self.spline = False  # within a SPLINE block
+        self.routines = {}
+        self.calls = self.depth = 0
+        self.rounds = 0  # units of work; below 0: what the files allow
+        self.missing = set()
+
+    def problem(self, line, message):
+        self.program.problems.append(Problem(self.file, line, message))
+
+    def lookup(self, name, indices):
+        if name == "$nullframe":
+            return dict.fromkeys(FRAME, 0.0)
+        if (name, indices) in self.values:
+            return self.values[name, indices]
+        head, _, component = name.rpartition(".")
+        inner = self.values.get((head, ()))
+        if isinstance(inner, dict) and component in inner:
+            return inner[component]
+        index = f"[{','.join(map(str, indices))}]" if indices else ""
+        raise Unknown(f"{name.upper()}{index} has no value that this file or its .dat gives")
+
+    def evaluate(self, text):
+        reader = Reader(text, self.lookup)
+        value = reader.expression()
+        if reader.peek() is not None:
+            raise Unknown(f"'{reader.peek()}' is not understood there")
+        return value
+
+    def assign(self, match, line):
+        _, name, index, text = match.groups()
+        name = name.lower()
+        try:
+            indices = ()
+            if index and index.strip("[] "):
+                indices = tuple(int(number(self.evaluate(i))) for i in index[1:-1].split(","))
+        except Unknown as unknown:
+            self.problem(line, f"the index of {name.upper()} is not known: {unknown}")
+            return
+        try:
+            value = self.evaluate(text)
+        except Unknown as unknown:
+            # Not known from here on: whoever uses it reports it.
+            self.values.pop((name, indices), None)
+            if name in ("$vel.cp", "$base", "$tool"):
+                self.problem(line, f"{name.upper()} is not known: {unknown}")
+                self.speed = None if name == "$vel.cp" else self.speed
+            return
+        self.values[name, indices] = value
+        head, _, component = name.rpartition(".")
+        if head and isinstance(self.values.get((head, ())), dict):
+            self.values[head, ()][component] = value
+        if name == "$vel.cp":
+            self.set_speed(value, line)
+        elif name == "$vel" and isinstance(value, dict) and "cp" in value:
+            self.set_speed(value["cp"], line)
+
+    def set_speed(self, metres_per_second, line):
+        if isinstance(metres_per_second, float) and 0 < metres_per_second < MAX_SPEED:
+            self.speed = 1000.0 * metres_per_second
+        else:
+            self.problem(line, "the path speed is no sensible number; the last one stays")
+
+    def read_data(self, statements, name):
+        own, self.file = self.file, name
+        for line, text in statements:
+            self.rounds -= LOOPED * work_of(text)
+            match = ASSIGN.match(text)
+            if match:
+                self.assign(match, line)
+        self.file = own
+
+    def run(self, statements):
+        body, name = [], None
+        order = []
+        for line, text in statements:
+            self.rounds -= LOOPED * work_of(text)
+            word = _word(text)
+            if word in ("def", "deffct") or text.lower().startswith("global def"):
+                match = re.search(r"(\w+)\s*\(", text)
+                name, body = (match.group(1).lower() if match else f"?{line}"), []
+                self.routines[name] = body
+                order.append(body)
+            elif word in ("end", "endfct"):
+                name = None
+            elif name is not None:
+                body.append((line, text))
+            elif not order:  # an excerpt without its DEF
+                name, body = "", [(line, text)]
+                order.append(body)
+        if order:
+            self.routine(order[0])
+        if name:
+            self.problem(statements[-1][0], "the routine has no END; the file may be cut off")
+
+    def routine(self, statements):
+        try:
+            self.block(statements)
+        except _Leave as leave:
+            if leave.args[0] != "return":
+                self.problem(leave.args[1], "EXIT is in no loop; what follows it is left out")
+
+    def tick(self, line, work):
+        self.rounds += work
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError(f"{self.file}:{line}: the program is too long")
+
+    def block(self, statements):
+        at = 0
+        while at < len(statements):
+            line, text = statements[at]
+            self.tick(line, work_of(text))
+            word = _word(text)
+            if word in OPENING:
+                end = self.closing(statements, at, word)
+                if end is None:
+                    self.problem(line, f"{word.upper()} has no {OPENING[word].upper()}")
+                    return
+                if self.depth >= MAX_NESTING:
+                    raise ProgramError(f"{self.file}:{line}: blocks are nested too deeply")
+                self.depth += 1
+                try:
+                    self.structure(word, line, text, statements[at + 1 : end])
+                finally:
+                    self.depth -= 1
+                at = end + 1
+                continue
+            self.statement(line, text, word)
+            at += 1
+
+    @staticmethod
+    def closing(statements, at, word):
+        depth = 0
+        for k in range(at, len(statements)):
+            other = _word(statements[k][1])
+            depth += (other == word) - (other == OPENING[word])
+            if depth == 0:
+                return k
+        return None
+
+    def structure(self, word, line, text, body):
+        if word == "for":
+            self.loop(line, text, body)
+        elif word == "if":
+            self.branch(line, text, body)
+        elif word == "loop":
+            self.skipped(line, "an endless LOOP is followed once", body)
+            self.within(body)
+        else:
+            self.skipped(
+                line, f"{word.upper()} is decided at run time; its motions are left out", body
+            )
+            self.forget(body)
+
+    def within(self, body):
+        """Runs a loop's statements; False after EXIT."""
+        try:
+            self.block(body)
+        except _Leave as leave:
+            if leave.args[0] != "exit":
+                raise
+            return False
+        return True
+
+    def skipped(self, line, message, body):
+        if any(MOTION.match(text) for _, text in body):
+            self.problem(line, message)
+
+    def forget(self, body):
+        """What a block assigns that may or may not run is unknown afterwards."""
+        for line, text in body:
+            match = ASSIGN.match(text)
+            if match:
+                name = match.group(2).lower()
+                for key in [k for k in self.values if k[0] == name]:
+                    del self.values[key]
+            if SETS_SPEED.match(text) and self.speed is not None:
+                self.problem(line, "the path speed is not known after this; the default is used")
+                self.speed = None
+            if not match and MOTION.match(text):
+                self.here = None
+
+    def branch(self, line, text, body):
+        depth, split = 0, len(body)
+        for k, (_, other) in enumerate(body):
+            word = _word(other)
+            depth += (word == "if") - (word == "endif")
+            if word == "else" and depth == 0:
+                split = k
+        condition = re.sub(r"(?i)^IF\b|\bTHEN\s*$", "", text)
+        try:
+            known = self.evaluate(condition)
+            if not isinstance(known, bool):
+                raise Unknown("the condition is no truth value")
+        except Unknown as unknown:
+            self.skipped(
+                line, f"IF is decided at run time ({unknown}); its motions are left out", body
+            )
+            self.forget(body)
+            return
+        self.block(body[:split] if known else body[split + 1 :])
+
+    def loop(self, line, text, body):
+        match = FOR.match(text)
+        try:
+            if not match:
+                raise Unknown("it is not understood")
+            name = match.group(1).lower()
+            first, last = (int(number(self.evaluate(match.group(k)))) for k in (2, 3))
+            step = int(number(self.evaluate(match.group(4)))) if match.group(4) else 1
+            if step == 0:
+                raise Unknown("its STEP is 0")
+        except Unknown as unknown:
+            self.skipped(
+                line, f"FOR has no static bounds ({unknown}); its motions are left out", body
+            )
+            self.forget(body)
+            return
+        for value in range(first, last + (1 if step > 0 else -1), step):
+            self.tick(line, 1)
+            self.values[name, ()] = float(value)
+            if not self.within(body):
+                break
+
+    def statement(self, line, text, word):
+        motion = MOTION.match(text)
+        if motion:
+            self.motion(line, motion.group(1).upper(), motion.group(2))
+            return
+        if word == "spline":
+            self.around, self.spline = self.speed, True
+            found = SPEED.search(text)
+            if found:
+                self.speed_text(found.group(1), line)
+            return
+        if word == "endspline":  # WITH holds within the block
+            self.speed, self.spline = self.around, False
+            if self.program.motions:  # its own word rounds the block's last corner
+                self.program.motions[-1].zone_mm = self.zone(text)
+            return
+        match = ASSIGN.match(text)
+        if (
+            match
+            and word not in ("trigger", "wait", "interrupt", "global", "decl")
+            or (match and word in ("global", "decl") and "=" in text and "when" not in text.lower())
+        ):
+            self.assign(match, line)
+            return
+        call = CALL.match(text)
+        if call:
+            self.call(line, call.group(1).lower(), call.group(2))
+        elif word in ("return", "exit"):
+            raise _Leave(word, line)
+        elif word not in QUIET and not LABEL.match(text) and text[:40] not in self.missing:
+            self.missing.add(text[:40])
+            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+            self.speed = None if word == "bas" else self.speed
+
+    def speed_text(self, text, line):
+        try:
+            self.set_speed(self.evaluate(text), line)
+        except Unknown as unknown:
+            self.problem(line, f"the path speed is not known: {unknown}; the last one stays")
+
+    def call(self, line, name, arguments):
+        if name == "bas":
+            what, _, value = arguments.partition(",")
+            if what.strip().lower() in ("#cp_params", "#vel_cp"):
+                self.speed_text(value, line)
+                distance = self.values.get(("ldat_act", ()), {}).get("apo_dist")
+                if isinstance(distance, float):  # what BAS makes of an inline form's CONT
+                    self.values["$apo.cdis", ()] = distance
+        elif name in self.routines and not arguments.strip():
+            if self.calls >= MAX_CALLS:
+                self.problem(line, f"{name} calls itself too deeply; its motions are left out")
+                return
+            self.tick(line, 1)
+            self.calls += 1
+            self.routine(self.routines[name])
+            self.calls -= 1
+        elif name not in HARMLESS and name not in self.missing:
+            self.missing.add(name)
+            self.problem(line, f"{name}() is not in this file; motions in it are left out")
+            self.here = None
+
+    def motion(self, line, kind, text, whole=None):
+        """``whole``: the statement with what stands behind WITH."""
+        whole = whole or text
+        try:
+            text, *options = re.split(r"(?i)\bWITH\b", text, maxsplit=1)
+            own = SPEED.search(options[0]) if options else None
+            if own:
+                self.own_speed(line, kind, text, own.group(1), whole)
+                return
+            reader = Reader(text, self.lookup)
+            targets = [reader.expression()]
+            if "CIRC" in kind:
+                reader.expect(",")
+                targets.append(reader.expression())
+            rest = [t for _, t in reader.tokens[reader.at :]]
+            zone = math.inf if self.spline else self.zone(whole)
+            for aux, target in [(True, t) for t in targets[:-1]] + [(False, targets[-1])]:
+                self.target(line, kind, target, aux, [t.lower() for t in rest])
+                self.program.motions[-1].zone_mm = zone
+        except Unknown as unknown:
+            self.problem(line, f"{kind} is left out: {unknown}")
+            self.here = None
+            # The path beyond must not be joined over the gap as if nothing were missing.
+            self.program.motions.append(Motion("PTP", None, line, self.file))
+
+    def own_speed(self, line, kind, text, speed, whole):
+        """A motion with a speed of its own."""
+        before = self.speed
+        self.speed_text(speed, line)
+        self.motion(line, kind, text, whole)
+        self.speed = before
+
+    def target(self, line, kind, target, aux, rest):
+        if not isinstance(target, dict):
+            raise Unknown("its target is no pose")
+        simple = {"SPTP": "PTP", "SLIN": "LIN", "SCIRC": "CIRC"}.get(
+            kind.replace("_REL", ""), kind.replace("_REL", "")
+        )
+        motion = Motion(simple, None, line, self.file, aux=aux)
+        motion.tool, motion.base = (self.named_frame(n) for n in ("$tool", "$base"))
+        if any(f"a{k}" in target for k in range(1, 7)):
+            if simple != "PTP":
+                raise Unknown("its target is a joint position")
+            self.here = None
+            motion.joints_deg = joint_angles([target.get(f"a{k}") for k in range(1, 7)])
+            self.program.motions.append(motion)
+            return
+        given = {name: number(target[name]) for name in FRAME if name in target}
+        if not given:
+            raise Unknown("its target names no component of a pose")
+        components = given if kind.endswith("_REL") else {**(self.here or {}), **given}
+        if kind.endswith("_REL"):
+            components = self.relative(given, rest)
+        elif aux and self.here is None:
+            components = {**dict.fromkeys("abc", 0.0), **given}
+        missing = [name.upper() for name in FRAME if name not in components]
+        if missing:
+            raise Unknown(f"{', '.join(missing)} is not given, and the pose before is not known")
+        motion.pose = frame_of(components)
+        if np.abs(motion.pose[:3, 3]).max() > MAX_COORDINATE:
+            raise Unknown("the position is out of all bounds")
+        motion.speed_mm_s = None if simple == "PTP" else self.speed
+        if not aux:
+            self.here = components
+        self.program.motions.append(motion)
+
+    def zone(self, text):
+        """mm by the approximation in a statement: without one the robot stops; C_DIS and C_SPL
+        begin at $APO.CDIS; the others (C_VEL, C_ORI, C_PTP) name no length: not known.
+        """
+        words = {word.lower() for word in APPROXIMATION.findall(text)}
+        if not words:
+            return 0.0
+        if words & {"c_dis", "c_spl"} and "$apo" not in text.lower():  # WITH $APO: not followed
+            distance = self.values.get(("$apo.cdis", ()))
+            if distance is None and isinstance(self.values.get(("$apo", ())), dict):
+                distance = self.values["$apo", ()].get("cdis")
+            known = isinstance(distance, float) and math.isfinite(distance)
+            return max(0.0, distance) if known else None
+        return None
+
+    def relative(self, given, rest):
+        if self.here is None:
+            raise Unknown("it is relative to a pose that is not known")
+        if "#tool" in rest:
+            step = {**dict.fromkeys(FRAME, 0.0), **given}
+            return components_of(frame_of(self.here) @ frame_of(step))
+        return {name: self.here[name] + given.get(name, 0.0) for name in FRAME}
+
+    def named_frame(self, name):
+        value = self.values.get((name, ()))
+        if not isinstance(value, dict):
+            return ""
+        return " ".join(f"{k.upper()} {v:g}" for k, v in value.items() if isinstance(v, float))

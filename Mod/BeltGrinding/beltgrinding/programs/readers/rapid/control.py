@@ -1,0 +1,188 @@
+"""How a RAPID program runs through blocks: branches, loops, jumps, each as far as it is static."""
+
+import re
+
+from ...program import MAX_UNROLLED, ProgramError, work_of
+from . import data
+from .calls import HARMLESS, Jump
+from .data import Unknown, number
+from .expression import Reader, arguments, text_after, tokens, truth
+from .motion import MotionRunner, spec_of
+from .text import Node
+
+MAX_MOTIONS = 1_000_000
+FOR = re.compile(
+    r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
+)
+TARGET = re.compile(r"\s*(\w+)\s*(?:\{[^}]*\}\s*|\.\s*\w+\s*)*:=")
+
+
+class Control(MotionRunner):
+    """Runs blocks of statements; ``statement(node)`` is what a language's reader adds."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.routines = {}  # (node, parameters, body) by name
+        self.rounds = 0  # units of work; below 0: what the file allows
+        self.line = 1
+
+    def tick(self, line, rounds=1):
+        self.line = line
+        self.rounds += rounds
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError(f"{self.file}:{line}: the program is too long")
+
+    def block(self, nodes):
+        at = 0
+        while at < len(nodes):
+            node = nodes[at]
+            self.tick(node.line, work_of(node.text) + 2 * node.text.count("("))
+            at += 1
+            try:
+                self.statement(node)
+            except Jump as jump:
+                label = next(
+                    (k for k, n in enumerate(nodes) if n.word == "label" and n.text == jump.label),
+                    None,
+                )
+                if label is None:
+                    raise
+                if label >= at:
+                    at = label
+                else:
+                    self.problem(jump.line, f"GOTO {jump.label} jumps back; it is followed once")
+
+    def copy(self, value, line):
+        """A copy of data; large data counts as many statements."""
+        result = data.copied(value)
+        if isinstance(value, list):
+            self.tick(line, len(value) // 8)
+            for part in value:
+                if isinstance(part, list):
+                    self.tick(line, len(part) // 8)
+        return result
+
+    def skip(self, nodes, line, message):
+        """Leaves out statements that may or may not run: what they change is unknown then."""
+        moves, stack, entered = False, list(nodes), set()
+        while stack:
+            node = stack.pop()
+            self.tick(line)
+            stack += node.body or []
+            words = [w.lower() for w in re.findall(r"\w+", node.text)]
+            target = TARGET.match(node.text)
+            if target:
+                self.forget(target.group(1).lower())
+            elif node.word not in HARMLESS:
+                specs = [spec for spec in map(spec_of, words) if spec]
+                for word in words[1:] if not specs or specs[0][2] else []:  # a search writes
+                    self.forget(word)
+            found = words if node.word == "if;" else words[:1]
+            if {"pdispset", "pdispon", "pdispoff"} & set(found):
+                self.displacement = False
+            for routine in set(found) & self.routines.keys() - entered:
+                entered.add(routine)
+                stack += self.routines[routine][2]
+            moves = moves or any(spec_of(w) is not None or w in self.routines for w in found)
+        if moves:
+            self.problem(line, message)
+            self.gap(line)
+
+    def if_(self, node):
+        branches = [(node.line, re.sub(r"(?i)^IF\b", "", node.text), [])]
+        for inner in node.body:
+            if inner.word in ("elseif", "else"):
+                condition = "TRUE" if inner.word == "else" else inner.text[6:]
+                branches.append((inner.line, condition, []))
+            else:
+                branches[-1][2].append(inner)
+        for k, (line, condition, body) in enumerate(branches):
+            try:
+                known = truth(self.value(tokens(condition)))
+            except Unknown as unknown:
+                message = f"IF is decided at run time ({unknown}); its motions are left out"
+                self.skip([n for b in branches[k:] for n in b[2]], line, message)
+                return
+            if known:
+                self.block(body)
+                return
+
+    def short_if(self, node):
+        try:
+            row = tokens(node.text)
+            reader = Reader(row[1:], self)
+            known = truth(reader.expression())
+        except Unknown as unknown:
+            message = f"IF is decided at run time ({unknown}); its motion is left out"
+            self.skip([node], node.line, message)
+            return
+        rest = text_after(node.text, reader.at + 1)
+        word = re.match(r"\w+", rest)
+        if known and word:
+            self.statement(Node(node.line, word.group().lower(), rest))
+        elif not word:
+            self.problem(node.line, "IF has neither THEN nor a statement")
+
+    def for_(self, node):
+        match = FOR.match(" ".join(node.text.split()))
+        try:
+            if not match:
+                raise Unknown("it is not understood")
+            name = match.group(1).lower()
+            first, last = (int(number(self.value(tokens(match.group(k))))) for k in (2, 3))
+            step = 1 if last >= first else -1
+            if match.group(4):
+                step = int(number(self.value(tokens(match.group(4)))))
+            if step == 0:
+                raise Unknown("its STEP is 0")
+        except Unknown as unknown:
+            message = f"FOR has no static bounds ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+            return
+        scope = self.globals if self.locals is None else self.locals
+        before = scope.get(name)
+        for value in range(first, last + (1 if step > 0 else -1), step):
+            self.tick(node.line)
+            scope[name] = ["num", float(value)]
+            self.block(node.body)
+        scope.pop(name, None)  # the loop's variable ends with it
+        if before is not None:
+            scope[name] = before
+
+    def while_(self, node):
+        condition = re.sub(r"(?i)^WHILE\b", "", node.text)
+        if re.fullmatch(r"[\s(]*TRUE[\s)]*", condition, re.IGNORECASE):
+            self.problem(node.line, "an endless WHILE is followed once")
+            self.block(node.body)
+            return
+        try:
+            while truth(self.value(tokens(condition))):
+                self.tick(node.line)
+                self.block(node.body)
+        except Unknown as unknown:
+            message = f"WHILE is decided at run time ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+
+    def test_(self, node):
+        cases, otherwise, bodies = [], None, []
+        for inner in node.body:
+            if inner.word in ("case", "default"):
+                bodies.append([])
+                if inner.word == "case":
+                    cases.append((inner, bodies[-1]))
+                else:
+                    otherwise = bodies[-1]
+            elif bodies:
+                bodies[-1].append(inner)
+        try:
+            value = self.value(tokens(re.sub(r"(?i)^TEST\b", "", node.text)))
+            for inner, body in cases:
+                if any(value == self.value(row) for row in arguments(tokens(inner.text[4:]))[0]):
+                    break
+            else:
+                body = otherwise or []
+        except Unknown as unknown:
+            message = f"TEST is decided at run time ({unknown}); its motions are left out"
+            self.skip(node.body, node.line, message)
+            return
+        self.block(body)

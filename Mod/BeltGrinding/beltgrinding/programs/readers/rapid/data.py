@@ -1,0 +1,206 @@
+"""Data of ABB RAPID: record types, predefined values, and poses as RAPID writes them.
+
+A pose is [[x, y, z], [q1, q2, q3, q4]] in mm with q1 the real part, as in ABB's Technical
+reference manual, RAPID instructions, functions and data types.
+"""
+
+import math
+
+from ....base.frames import QUATERNION_TOLERANCE, from_quaternion, to_abc
+
+MAX_MM = 1e6  # a robot's world ends before; RAPID writes 9E9 for 'not given'
+MAX_ARRAY = 1_000_000
+
+
+class Unknown(Exception):
+    """An expression that cannot be evaluated here; says why."""
+
+
+RECORDS = {
+    "pos": {"x": "num", "y": "num", "z": "num"},
+    "orient": {f"q{k}": "num" for k in (1, 2, 3, 4)},
+    "pose": {"trans": "pos", "rot": "orient"},
+    "confdata": {"cf1": "num", "cf4": "num", "cf6": "num", "cfx": "num"},
+    "extjoint": {f"eax_{k}": "num" for k in "abcdef"},
+    "robjoint": {f"rax_{k}": "num" for k in range(1, 7)},
+    "robtarget": {"trans": "pos", "rot": "orient", "robconf": "confdata", "extax": "extjoint"},
+    "jointtarget": {"robax": "robjoint", "extax": "extjoint"},
+    "loaddata": {
+        "mass": "num",
+        "cog": "pos",
+        "aom": "orient",
+        "ix": "num",
+        "iy": "num",
+        "iz": "num",
+    },
+    "tooldata": {"robhold": "bool", "tframe": "pose", "tload": "loaddata"},
+    "wobjdata": {
+        "robhold": "bool",
+        "ufprog": "bool",
+        "ufmec": "string",
+        "uframe": "pose",
+        "oframe": "pose",
+    },
+    "speeddata": {"v_tcp": "num", "v_ori": "num", "v_leax": "num", "v_reax": "num"},
+    "zonedata": {
+        "finep": "bool",
+        "pzone_tcp": "num",
+        "pzone_ori": "num",
+        "pzone_eax": "num",
+        "zone_ori": "num",
+        "zone_leax": "num",
+        "zone_reax": "num",
+    },
+}
+SIMPLE = {"num": 0.0, "dnum": 0.0, "byte": 0.0, "bool": False, "string": ""}
+
+IDENTITY = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
+LOAD0 = [0.001, [0.0, 0.0, 0.001], [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0]
+# The manual's predefined speeds; vmax is the robot's own and therefore not among them.
+SPEEDS = (
+    *(5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800),
+    *(1000, 1500, 2000, 2500, 3000, 4000, 5000, 6000, 7000),
+)
+# pzone_tcp of the predefined zonedata, mm; the other zones follow from it as in the manual.
+ZONES = (0.3, *map(float, (1, 5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150, 200)))
+
+
+def zone(size):
+    """Predefined zonedata: z1 and below have one size for all, the others 1.5 for orientation."""
+    turn = size if size <= 1.0 else 8.0 if size == 5.0 else 1.5 * size
+    return [False, size, turn, turn, 0.1 * turn, turn, 0.1 * turn]
+
+
+PREDEFINED = {
+    "tool0": ("tooldata", [True, IDENTITY, LOAD0]),
+    "wobj0": ("wobjdata", [False, True, "", IDENTITY, IDENTITY]),
+    "load0": ("loaddata", LOAD0),
+    "pi": ("num", math.pi),
+    **{f"v{v}": ("speeddata", [float(v), 500.0, 5000.0, 1000.0]) for v in SPEEDS},
+    "fine": ("zonedata", [True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    **{f"z{int(size)}": ("zonedata", zone(size)) for size in ZONES},
+    **{f"reg{k}": ("num", 0.0) for k in range(1, 6)},
+}
+
+
+def initial(kind, records, depth=0):
+    """The value of declared data without one. Raises Unknown for the controller's own types."""
+    if kind in SIMPLE:
+        return SIMPLE[kind]
+    if kind not in records or depth > 10:
+        raise Unknown(f"data of the type {kind} is known to the controller only")
+    return [initial(inner, records, depth + 1) for inner in records[kind].values()]
+
+
+def array(dimensions, value):
+    """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
+    if min(dimensions) < 1 or math.prod(dimensions) * size(value) > MAX_ARRAY:
+        raise Unknown("the array's size is not sensible")
+    if len(dimensions) == 1:
+        return [copied(value) for _ in range(dimensions[0])]
+    return [array(dimensions[1:], value) for _ in range(dimensions[0])]
+
+
+def size(value):
+    """How many numbers, strings and truth values data holds."""
+    return sum(map(size, value)) if isinstance(value, list) else 1
+
+
+def copied(value):
+    return [copied(v) for v in value] if isinstance(value, list) else value
+
+
+def number(value):
+    """``value`` if it is a finite number; raises Unknown."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise Unknown("a number expected")
+    if not math.isfinite(value):
+        raise Unknown("the number is not finite")
+    return value
+
+
+def numbers(value, count, what):
+    """``value`` if it is a list of ``count`` finite numbers; raises Unknown."""
+    if not isinstance(value, list) or len(value) != count:
+        raise Unknown(f"{what} needs {count} numbers")
+    for v in value:
+        number(v)
+    return value
+
+
+def pose_of(value):
+    """[position, unit quaternion] of a robtarget or a pose. Raises Unknown."""
+    if not isinstance(value, list) or len(value) not in (2, 4):
+        raise Unknown("it is no position with an orientation")
+    position = numbers(value[0], 3, "a position")
+    if max(map(abs, position)) > MAX_MM:
+        raise Unknown(f"{max(position, key=abs):g} mm is no robot's position")
+    w, x, y, z = numbers(value[1], 4, "an orientation")
+    length = math.sqrt(w * w + x * x + y * y + z * z) if max(map(abs, value[1])) < 2 else math.inf
+    if abs(length - 1.0) > QUATERNION_TOLERANCE:
+        raise Unknown(f"the quaternion has length {length:.4g} instead of 1")
+    return [list(position), [w / length, x / length, y / length, z / length]]
+
+
+def is_joints(value):
+    """True for a jointtarget: six axes and the external ones, in degrees or mm."""
+    return (
+        isinstance(value, list)
+        and len(value) == 2
+        and all(isinstance(v, list) and len(v) == 6 for v in value)
+    )
+
+
+def turn(a, b):
+    """Product of two quaternions."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    ]
+
+
+def cross(a, b):
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+
+
+def rotated(quaternion, vector):
+    """A vector turned by a unit quaternion."""
+    w, axis = quaternion[0], quaternion[1:]
+    t = [2.0 * v for v in cross(axis, vector)]
+    c = cross(axis, t)
+    return [vector[k] + w * t[k] + c[k] for k in range(3)]
+
+
+def product(a, b):
+    """a_from_c of the poses a_from_b and b_from_c."""
+    step = rotated(a[1], b[0])
+    return [[a[0][k] + step[k] for k in range(3)], turn(a[1], b[1])]
+
+
+def inverse(pose):
+    """b_from_a of the pose a_from_b."""
+    back = [pose[1][0], *(-v for v in pose[1][1:])]
+    return [rotated(back, [-v for v in pose[0]]), back]
+
+
+def about(axis, degrees):
+    """The quaternion of a turn about one axis (0, 1, 2)."""
+    half = math.radians(degrees) / 2.0
+    result = [math.cos(half), 0.0, 0.0, 0.0]
+    result[1 + axis] = math.sin(half)
+    return result
+
+
+def components(pose):
+    """A pose in words: X Y Z in mm, A B C in degrees."""
+    frame = from_quaternion(*pose)
+    values = [*pose[0], *to_abc(frame)]
+    return " ".join(f"{k} {round(v, 6) + 0.0:g}" for k, v in zip("XYZABC", values))

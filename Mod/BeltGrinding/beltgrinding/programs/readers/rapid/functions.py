@@ -1,0 +1,67 @@
+"""Functions of ABB RAPID that need no controller; mm and degrees.
+
+They raise Unknown, or what a wrong number or kind of arguments raises in Python.
+"""
+
+import math
+
+from .data import about, inverse, number, numbers, pose_of, product, turn
+
+
+def _offs(point, x, y, z):
+    position = numbers(point[0], 3, "a position")
+    return [[p + number(d) for p, d in zip(position, (x, y, z))], *point[1:]]
+
+
+def _rel_tool(point, x, y, z, *, rx=0.0, ry=0.0, rz=0.0):
+    # The manual: first about x, then about the new y, then about the new z.
+    turns = turn(turn(about(0, number(rx)), about(1, number(ry))), about(2, number(rz)))
+    return [*product(pose_of(point), [[number(x), number(y), number(z)], turns]), *point[2:]]
+
+
+def _orient_zyx(z, y, x):
+    return turn(turn(about(2, number(z)), about(1, number(y))), about(0, number(x)))
+
+
+def _normalised(q):
+    length = math.sqrt(sum(v * v for v in numbers(q, 4, "an orient")))
+    return [v / length for v in q]
+
+
+def _distance(a, b):
+    return math.dist(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
+
+
+def _rounded(value, *, dec=0.0):
+    scale = 10.0 ** min(15, max(0, int(dec)))
+    return math.copysign(math.floor(abs(number(value)) * scale + 0.5) / scale, value)
+
+
+FUNCTIONS = {
+    "offs": _offs,
+    "reltool": _rel_tool,
+    "posemult": lambda a, b: product(pose_of(a), pose_of(b)),
+    "poseinv": lambda a: inverse(pose_of(a)),
+    "posevect": lambda a, v: product(pose_of(a), [numbers(v, 3, "a pos"), [1.0, 0.0, 0.0, 0.0]])[0],
+    "orientzyx": _orient_zyx,
+    "norient": _normalised,
+    "distance": _distance,
+    "vectmagn": lambda v: _distance(v, [0.0, 0.0, 0.0]),
+    "dotprod": lambda a, b: sum(
+        p * q for p, q in zip(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
+    ),
+    "abs": lambda v: abs(number(v)),
+    "sin": lambda v: math.sin(math.radians(number(v))),
+    "cos": lambda v: math.cos(math.radians(number(v))),
+    "tan": lambda v: math.tan(math.radians(number(v))),
+    "asin": lambda v: math.degrees(math.asin(number(v))),
+    "acos": lambda v: math.degrees(math.acos(number(v))),
+    "atan": lambda v: math.degrees(math.atan(number(v))),
+    "atan2": lambda y, x: math.degrees(math.atan2(number(y), number(x))),
+    "sqrt": lambda v: math.sqrt(number(v)),
+    "exp": lambda v: math.exp(number(v)),
+    "pow": lambda a, b: math.pow(number(a), number(b)),
+    "round": _rounded,
+    "trunc": lambda v: float(math.trunc(number(v))),
+    "dim": lambda a, k: float(len(a)) if k == 1 else float(len(a[0])),
+}

@@ -1,0 +1,343 @@
+"""What a RAPID program knows while it is followed: its data, where the robot is, its motions."""
+
+import functools
+import math
+import re
+
+import numpy as np
+
+from ....base.frames import from_quaternions
+from ...program import Motion, Problem, Program, joint_angles, name_of
+from . import data
+from .data import PREDEFINED, Unknown, copied, inverse, number, pose_of, product
+from .expression import Reader, arguments, tokens
+
+MAX_RESOLVING = 10  # constants defined by constants
+NAME = re.compile(
+    r"(?:(?P<search>search)|move|(?P<trigg>trigg)|(?P<arc>arc)|paint|(?P<disp>disp))"
+    r"(?P<kind>absj|j|l|c)(?:[1-9])?(?:do|ao|go|sync|start|end|(?P<ios>ios))?$"
+)
+KINDS = {"absj": "PTP", "j": "PTP", "l": "LIN", "c": "CIRC"}
+
+
+@functools.lru_cache(maxsize=4096)
+def spec_of(word):
+    """(kind, joint, search, arguments before the target, arguments from speed to tool) of a motion
+    instruction in lower case, None for any other."""
+    match = NAME.match(word)
+    if not match:
+        return None
+    to_tool = 3 if match["trigg"] and not match["ios"] or match["disp"] else 2
+    to_tool = 4 if match["arc"] else 1 if match["search"] else to_tool
+    before = 2 if match["search"] else 0
+    kind = match["kind"]
+    return KINDS[kind], kind == "absj", bool(match["search"]), before, to_tool
+
+
+class State:
+    """Data by name: [type, value (None: not known), the text of a value not asked for yet]."""
+
+    def __init__(self):
+        self.globals = {}
+        self.locals = None  # of the running routine
+        self.records = dict(data.RECORDS)
+        self.resolving = 0
+        self.constants = set()
+        self.reasons = {}  # why a value is not known
+        self.texts = {}  # frames in words; cleared when data changes
+
+    def value(self, row):
+        """The value of an expression's tokens. Raises Unknown."""
+        if len(row) == 1 and row[0][0] == "value":
+            return row[0][1]
+        return Reader(row, self).whole()
+
+    def entry(self, name):
+        if self.locals is not None and name in self.locals:
+            return self.locals[name]
+        return self.globals.get(name)
+
+    def variable(self, written):
+        """(value, type) of data. Raises Unknown."""
+        name = written.lower()
+        entry = self.entry(name)
+        if entry is None and name in PREDEFINED:
+            kind, value = PREDEFINED[name]
+            return value, kind
+        if entry is None:
+            raise Unknown(f"{written} is not declared in this file")
+        if len(entry) == 3:
+            self.resolve(entry, name)
+        if entry[1] is None:
+            why = self.reasons.get(name, "this file gives it no value")
+            raise Unknown(f"{written} is not known ({why})"[:200])
+        return entry[1], entry[0]
+
+    def resolve(self, entry, name):
+        if self.resolving >= MAX_RESOLVING:
+            raise Unknown(f"{name} is defined by too many constants")
+        text = entry.pop()
+        self.resolving += 1
+        try:
+            entry[1] = copied(self.value(tokens(text)))
+        except Unknown as unknown:
+            self.reasons[name] = str(unknown)
+        finally:
+            self.resolving -= 1
+
+    def component(self, kind, name):
+        """(index, type) of a record's component. Raises Unknown."""
+        names = self.records.get(kind, {})
+        if str(name).lower() not in names:
+            raise Unknown(f"{kind} has no component {name}")
+        return list(names).index(name.lower()), names[name.lower()]
+
+    def store(self, name, value):
+        entry = self.entry(name)
+        if entry is None:
+            entry = self.globals[name] = [PREDEFINED.get(name, ("",))[0], None]
+        entry[1:] = [value]
+        self.texts.clear()
+
+    def forget(self, name, why="it is assigned at run time"):
+        """Whoever uses the data from here on reports ``why``."""
+        entry = self.entry(name)
+        if name in self.constants and entry is self.globals.get(name):
+            return
+        self.reasons[name] = why
+        if entry is not None:
+            entry[1:] = [None]
+            self.texts.clear()
+        elif name in PREDEFINED and name.startswith("reg"):
+            self.globals[name] = ["num", None]
+
+
+class MotionRunner(State):
+    """Collects the motions of a program."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.file = name_of(path)
+        self.program = Program("ABB RAPID", self.file)
+        self.poses = []  # (motion, position, quaternion), made frames all at once
+        self.said = set()
+        self.override, self.most = 1.0, math.inf  # VelSet: factor, mm/s
+        self.displacement = None  # PDispSet; False: known to the controller only
+        self.here = None  # target, tool, work object; None: not known
+        self.written = {}  # names of tools and work objects as the program writes them
+
+    def problem(self, line, message, once=None):
+        """Says something once, however often a loop comes by."""
+        key = once or (line, message)
+        if key not in self.said:
+            self.said.add(key)
+            self.program.problems.append(Problem(self.file, line, message))
+
+    def forget_position(self):
+        self.here = None
+
+    def gap(self, line):
+        """The path beyond must not be joined over the gap as if nothing were missing."""
+        self.forget_position()
+        motions = self.program.motions
+        if not motions or (self.poses and self.poses[-1][0] is motions[-1]):
+            motions.append(Motion("PTP", None, line, self.file))
+
+    def finish(self):
+        """The Program with all poses."""
+        if self.poses:
+            positions, quaternions = (np.array([row[k] for row in self.poses]) for k in (1, 2))
+            frames = from_quaternions(positions, quaternions)
+            for (motion, _, _), frame in zip(self.poses, frames):
+                motion.pose = frame
+        return self.program
+
+    def motion(self, line, text, spec):
+        kind, joint, search, before, to_tool = spec
+        try:
+            row, options = arguments(tokens(text)[1:])
+            count = 2 if kind == "CIRC" else 1
+            speed_at = before + count
+            if len(row) <= speed_at + to_tool:
+                raise Unknown("it has too few arguments")
+            tool, wobj = self.frames_of(line, row[speed_at + to_tool], options.get("wobj"))
+            targets = [self.value(r) for r in row[before : before + count]]
+            if joint:
+                if not data.is_joints(targets[0]):
+                    raise Unknown("its target is no joint target")
+                self.speed(line, kind, row[speed_at], options, None)
+                self.forget_position()
+                motion = Motion(kind, None, line, self.file)
+                motion.joints_deg = joint_angles(targets[0][0])
+                self.add(motion, tool, wobj)
+                return
+            programmed = [pose_of(target) for target in targets]
+            poses = [self.displaced(pose) for pose in programmed]
+            length = None
+            if kind == "LIN" and self.here is not None and self.here[1:] == (tool, wobj):
+                length = math.dist(self.here[0][0], programmed[0][0])
+            speed = self.speed(line, kind, row[speed_at], options, length)
+            zone = 0.0 if search else self.zone(line, row[speed_at + to_tool - 1], options)
+            for k, pose in enumerate(poses):
+                motion = Motion(kind, None, line, self.file, speed, aux=k < count - 1)
+                motion.zone_mm = zone
+                self.add(motion, tool, wobj)
+                self.poses.append((motion, *pose))
+            self.here = ([*programmed[-1], *targets[-1][2:]], tool, wobj)
+            if search:
+                self.found(line, row[1], options)
+        except Unknown as unknown:
+            self.problem(line, f"{text.split()[0]} is left out: {unknown}")
+            self.gap(line)
+
+    def add(self, motion, tool, wobj):
+        motion.tool, motion.base = self.described(tool, 1), self.described(wobj, 3)
+        self.program.motions.append(motion)
+
+    def found(self, line, point, options):
+        """A search writes where it found something, and may stop there."""
+        if len(point) == 1:
+            self.forget(str(point[0][1]).lower())
+        if options.keys() & {"stop", "pstop", "sstop"}:
+            self.problem(line, "where the search stops is known at run time; its target is taken")
+            self.forget_position()
+
+    def displaced(self, pose):
+        if self.displacement is False:
+            raise Unknown("the program displacement is known to the controller only")
+        if self.displacement is None:
+            return pose
+        return pose_of(product(self.displacement, pose))
+
+    def speed(self, line, kind, row, options, length):
+        """mm/s of a motion; None: not known here."""
+        try:
+            if options.get("t"):
+                seconds = number(self.value(options["t"]))
+                if length and seconds > 0:
+                    return number(length / seconds)
+                raise Unknown("the length of the way that takes the time \\T is not known")
+            if options.get("v"):
+                speed = number(self.value(options["v"]))
+            elif len(row) == 1 and str(row[0][1]).lower() == "vmax" and self.entry("vmax") is None:
+                if kind != "PTP":
+                    self.problem(line, "vmax is the robot's own; the default speed is used", "vmax")
+                return None
+            else:
+                value = self.value(row)
+                if not isinstance(value, list) or len(value) != 4:
+                    raise Unknown("it is no speeddata")
+                speed = number(value[0])
+            speed = min(speed * self.override, self.most)
+            if speed > 0:
+                return speed
+            raise Unknown("it is not positive")
+        except Unknown as unknown:
+            if kind != "PTP":
+                what = f"the speed is not known: {unknown}; the default speed is used"
+                self.problem(line, what, what)
+            return None
+
+    def zone(self, line, row, options):
+        """mm of the zone around the target within which the corner is rounded; 0: stop point (fine,
+        \\Inpos); None: not known here."""
+        try:
+            if "inpos" in options:
+                return 0.0
+            if len(row) == 1 and row[0][0] == "name":
+                value = self.variable(row[0][1])[0]
+            else:
+                value = self.value(row)
+            if not isinstance(value, list) or len(value) != 7 or not isinstance(value[0], bool):
+                raise Unknown("it is no zonedata")
+            if value[0]:
+                return 0.0
+            size = number(self.value(options["z"])) if options.get("z") else number(value[1])
+            return max(0.0, size)
+        except Unknown as unknown:
+            what = f"the zone is not known: {unknown}"
+            self.problem(line, what, what)
+            return None
+
+    def frames_of(self, line, tool_row, wobj_row):
+        """Names of tool and work object, after a look whether they go together."""
+        names = []
+        for row, what in ((tool_row, "tool"), (wobj_row or (("name", "wobj0"),), "work object")):
+            if len(row) != 1 or row[0][0] != "name":
+                raise Unknown(f"its {what} is not given by a name")
+            names.append(row[0][1].lower())
+            self.written.setdefault(names[-1], row[0][1])
+        if (key := tuple(names)) not in self.said:
+            self.said.add(key)
+            holds = []
+            for name, kind in zip(names, ("tooldata", "wobjdata")):
+                try:
+                    holds.append(self.frame_data(self.written[name], kind)[0])
+                except Unknown as unknown:
+                    self.problem(line, f"{unknown}; the poses are kept as programmed", name)
+            if len(holds) == 2 and holds[0] is holds[1]:
+                who = "both are held" if holds[0] else "neither is held"
+                self.problem(line, f"{names[0]} and {names[1]}: {who} by the robot (robhold)")
+        return key
+
+    def frame_data(self, name, kind):
+        value, found = self.variable(name)
+        if found != kind or len(value) < 3 or not isinstance(value[0], bool):
+            raise Unknown(f"{name} is no {kind}")
+        return value
+
+    def described(self, name, at):
+        """A tool (at 1) or a work object (at 3) in words."""
+        if (name, at) not in self.texts:
+            text = self.written.get(name, name)
+            try:
+                value = self.frame_data(name, "tooldata" if at == 1 else "wobjdata")
+                pose = pose_of(value[at])
+                if at == 3:
+                    pose = pose_of(product(pose, pose_of(value[4])))
+                text = f"{text} {data.components(pose)}"
+                if value[0] == (at == 3):
+                    text += " held by the robot" if at == 3 else " fixed in the room"
+            except (Unknown, IndexError):
+                pass
+            self.texts[name, at] = text
+        return self.texts[name, at]
+
+    def position(self, options):
+        """The robtarget CRobT gives: the last one, in another tool or work object if asked for."""
+        if self.here is None:
+            raise Unknown("where the robot is then is not known")
+        target, tool, wobj = self.here
+        names = []
+        for key, own in (("tool", tool), ("wobj", wobj)):
+            row = options.get(key)
+            names.append(row[0][1].lower() if row and row[0][0] == "name" else own)
+        if names == [tool, wobj]:
+            return target
+        old, new = self.flange(tool, wobj), self.flange(*names)
+        if old[2] or new[2]:
+            raise Unknown("CRobT in another tool or work object than the part's in the robot")
+        flange = product(product(old[1], pose_of(target)), inverse(old[0]))
+        return [*product(product(inverse(new[1]), flange), new[0]), *target[2:]]
+
+    def flange(self, tool, wobj):
+        held, work = self.frame_data(tool, "tooldata"), self.frame_data(wobj, "wobjdata")
+        if len(work) != 5 or not work[1]:
+            raise Unknown(f"{wobj} is moved by a mechanical unit")
+        room = product(pose_of(work[3]), pose_of(work[4]))
+        return pose_of(held[1]), room, work[0] or not held[0]
+
+    def setting(self, line, word, text):
+        """VelSet percent, mm/s; PDispSet pose; PDispOn; PDispOff."""
+        try:
+            row = arguments(tokens(text)[1:])[0]
+            if word == "velset":
+                percent, most = (number(self.value(r)) for r in row)
+                self.override, self.most = percent / 100.0, most
+            elif word == "pdispset":
+                self.displacement = pose_of(self.value(row[0]))
+            else:
+                self.displacement = None if word == "pdispoff" else False
+        except (Unknown, ValueError, IndexError) as error:
+            self.displacement = False if word == "pdispset" else self.displacement
+            self.problem(line, f"{text.split()[0]} is not known: {error}")

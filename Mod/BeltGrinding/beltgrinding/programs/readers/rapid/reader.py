@@ -1,0 +1,296 @@
+"""Reads ABB RAPID modules: .mod, .prg, .modx, .sys.
+
+Poses are those of the tool in the work object (object frame), as programmed. PERS data has the
+value the module gives. What only the controller can know is a Problem.
+"""
+
+import re
+
+from ...program import LOOPED, ProgramError, work_of
+from . import data
+from .calls import CHANGING, HARMLESS, Exit, Jump, Return
+from .control import TARGET, Control
+from .data import Unknown, number
+from .expression import Reader, arguments, tokens
+from .motion import spec_of
+from .text import tree
+
+MAX_CALLS = 20
+DECLARATION = re.compile(
+    r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(\{[^}]*\})?\s*(?::=(.*))?$",
+    re.IGNORECASE | re.DOTALL,
+)
+ROUTINE = re.compile(r"(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
+PARAMETER = re.compile(r"(?:(INOUT|VAR|PERS)\s+)?(\w+)\s+(\w+)\s*(?:\{[^}]*\})?$", re.IGNORECASE)
+BLOCKS = ("if", "for", "while", "test")
+
+
+def read(path):
+    """The Program of a RAPID module. Raises ProgramError when it cannot be read at all."""
+    interpreter = _Interpreter(path)
+    try:
+        interpreter.run(tree(path))
+    except RecursionError:
+        where = f"{interpreter.file}:{interpreter.line}"
+        raise ProgramError(f"{where}: statements and values are nested too deeply") from None
+    return interpreter.finish()
+
+
+class _Interpreter(Control):
+    """Follows a program from PROC main on with the values it can know."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.calls = 0
+        self.missing = set()
+
+    def run(self, nodes):
+        stack = list(nodes)
+        while stack:
+            node = stack.pop()
+            stack += node.body or []
+            self.rounds -= LOOPED * (work_of(node.text) + 2 * node.text.count("("))
+        loose = self.module(nodes)
+        for name in list(self.globals):
+            try:
+                self.variable(name)
+            except Unknown:
+                pass  # whoever uses it reports it
+        starts = [self.routines["main"]] if "main" in self.routines else self.uncalled()
+        if loose and not self.routines:  # an excerpt without its PROC
+            starts = [(loose[0], [], loose)]
+        elif "main" not in self.routines and starts:
+            self.problem(
+                starts[0][0].line,
+                "there is no PROC main; the procedures nothing here calls are followed in turn",
+            )
+        try:
+            for head, parameters, body in starts:
+                self.forget_position()
+                self.locals = {name: [kind, None] for _, kind, name in parameters}
+                self.routine(head, body)
+        except Exit:
+            pass
+
+    def module(self, nodes):
+        """Declares a module's data and routines; returns statements outside of any routine."""
+        loose = []
+        for node in nodes:
+            if node.word == "module":
+                loose += self.module(node.body)
+            elif node.word == "record":
+                self.record(node)
+            elif node.word == "proc":
+                name, parameters = ROUTINE.match(node.text).groups()
+                handler = next(
+                    (k for k, n in enumerate(node.body) if n.word in ("error", "undo", "backward")),
+                    len(node.body),
+                )
+                self.routines[name.lower()] = (
+                    node,
+                    self.parameters(parameters),
+                    node.body[:handler],
+                )
+            elif node.word in ("func", "trap"):
+                continue  # evaluated, and interrupted by, on the controller only
+            elif DECLARATION.match(node.text):
+                self.declare(node, self.globals)
+            else:
+                loose.append(node)
+        return loose
+
+    def record(self, node):
+        parts = {}
+        for part in node.body:
+            words = part.text.lower().split()
+            if len(words) == 2:
+                parts[words[1]] = words[0]
+        self.records[node.text.split()[-1].lower()] = parts
+
+    def parameters(self, text):
+        """List of (by reference, type, name) of the required parameters."""
+        result = []
+        for part in text.split(","):
+            for piece in part.split("\\")[:1]:  # optional ones are never given here
+                match = PARAMETER.match(piece.strip())
+                if match:
+                    result.append((bool(match.group(1)), *(g.lower() for g in match.groups()[1:])))
+        return result
+
+    def uncalled(self):
+        called = set()
+
+        def visit(nodes):
+            stack = list(nodes)
+            while stack:
+                node = stack.pop()
+                stack += node.body or []
+                called.update(w.lower() for w in re.findall(r"\w+", node.text))
+
+        for _, _, body in self.routines.values():
+            visit(body)
+        return [r for name, r in self.routines.items() if name not in called] or list(
+            self.routines.values()
+        )[:1]
+
+    def declare(self, node, scope):
+        storage, kind, name, dimensions, text = DECLARATION.match(node.text).groups()
+        kind, name = kind.lower(), name.lower()
+        self.texts.clear()
+        scope[name] = [kind, None]
+        if storage.lower() == "const" and scope is self.globals:
+            self.constants.add(name)
+        if text is not None:
+            if not text.strip():
+                raise ProgramError(f"{self.file}:{node.line}: {name} is given no value")
+            scope[name].append(text)
+            return
+        try:
+            value = data.initial(kind, self.records)
+            if dimensions:
+                row = tokens(dimensions[1:-1])
+                sizes = [int(number(self.value(p))) for p in arguments(row)[0]]
+                value = self.copy(data.array(sizes, value), node.line)
+            # Persistent data without a value keeps what the controller last had.
+            scope[name][1] = None if storage.lower() == "pers" else value
+        except Unknown:
+            pass
+
+    def routine(self, node, body):
+        try:
+            self.block(body)
+        except Return:
+            pass
+        except Jump as jump:
+            self.problem(jump.line, f"GOTO {jump.label}: there is no such label to jump to")
+            self.gap(jump.line)
+
+    def statement(self, node):
+        spec = spec_of(node.word)
+        if spec is not None:
+            self.motion(node.line, node.text, spec)
+        elif node.word in BLOCKS:
+            getattr(self, node.word + "_")(node)
+        elif node.word == "if;":
+            self.short_if(node)
+        elif node.word == "label":
+            return
+        elif DECLARATION.match(node.text):
+            scope = self.globals if self.locals is None else self.locals
+            self.declare(node, scope)
+            try:
+                self.variable(DECLARATION.match(node.text).group(3).lower())
+            except Unknown:
+                pass  # whoever uses it reports it
+        elif TARGET.match(node.text):
+            self.assign(node)
+        else:
+            self.instruction(node)
+
+    def assign(self, node):
+        name = TARGET.match(node.text).group(1).lower()
+        try:
+            row = tokens(node.text)
+            at = row.index(("op", ":="))
+            value = self.copy(self.value(row[at + 1 :]), node.line)
+            if at == 1:
+                self.store(name, value)
+                return
+            holder, kind = self.variable(name)
+            if self.entry(name) is None:  # predefined: this program's own from here on
+                self.store(name, data.copied(holder))
+                holder = self.variable(name)[0]
+            reader, path = Reader(row[:at], self), []
+            reader.next()
+            while reader.peek() is not None:
+                if reader.accept("{"):
+                    path += [("element", i) for i in reader.indices()]
+                else:
+                    reader.expect(".")
+                    index, kind = self.component(kind, reader.next()[1])
+                    path.append(("component", index + 1))
+            for _, index in path[:-1]:
+                holder = holder[reader.element(holder, index, name)]
+            holder[reader.element(holder, path[-1][1], name)] = value
+            self.texts.clear()
+        except Unknown as unknown:
+            # Not known from here on: whoever uses it reports it.
+            self.forget(name, str(unknown))
+        except ValueError:
+            self.problem(node.line, f"the assignment to {name} is not understood")
+            self.forget(name)
+
+    def instruction(self, node):
+        word, line = node.word, node.line
+        if word == "goto":
+            raise Jump(node.text[4:].strip().lower(), line)
+        if word in ("return", "raise"):
+            raise Return
+        if word in ("exit", "exitcycle"):
+            raise Exit
+        if word in ("velset", "pdispset", "pdispon", "pdispoff"):
+            self.setting(line, word, node.text)
+            return
+        if word in self.routines:
+            self.call(node)
+            return
+        if word in ("incr", "decr", "add", "clear"):
+            self.count(node)
+            return
+        if word in CHANGING or word not in HARMLESS:
+            for name in re.findall(r"\w+", node.text)[1:]:
+                self.forget(name.lower())
+        if word not in HARMLESS and word not in CHANGING and word not in self.missing:
+            self.missing.add(word)
+            what = node.text.split("\n")[0][:30] if not word else re.match(r"\w+", node.text)[0]
+            self.problem(line, f"{what} is not in this file; motions in it are left out")
+            self.gap(line)
+
+    def count(self, node):
+        name = ""
+        try:
+            row = arguments(tokens(node.text)[1:])[0]
+            name = row[0][0][1].lower() if len(row[0]) == 1 else ""
+            before = number(self.variable(name)[0])
+            step = number(self.value(row[1])) if node.word == "add" else 1.0
+            change = {"incr": 1.0, "decr": -1.0, "add": step, "clear": -before}[node.word]
+            self.store(name, before + change)
+        except (Unknown, IndexError, AttributeError):
+            self.forget(name)
+
+    def call(self, node):
+        head, parameters, body = self.routines[node.word]
+        if self.calls >= MAX_CALLS:
+            self.problem(node.line, f"{node.word} calls itself too deeply; it is left out")
+            self.gap(node.line)
+            return
+        self.tick(node.line, 2)
+        own, inner, back = self.locals, {}, []
+        try:
+            row = tokens(node.text)[1:]
+            if row and row[0][1] == "(" and row[-1][1] == ")":
+                row = row[1:-1]  # not RAPID, yet found in programs
+            given = arguments(row)[0]
+        except Unknown:
+            given = []
+        for k, (by_reference, kind, name) in enumerate(parameters):
+            inner[name] = [kind, None]
+            try:
+                inner[name][1] = self.copy(self.value(given[k]), node.line)
+            except (Unknown, IndexError):
+                pass
+            if by_reference and k < len(given):
+                back.append((given[k], name))
+        self.calls, self.locals = self.calls + 1, inner
+        self.texts.clear()
+        try:
+            self.routine(head, body)
+        finally:
+            self.calls, self.locals = self.calls - 1, own
+            self.texts.clear()
+        for row, name in back:
+            value = inner[name][1]
+            if len(row) == 1 and value is not None:
+                self.store(str(row[0][1]).lower(), value)
+            else:
+                self.forget(str(row[0][1]).lower())

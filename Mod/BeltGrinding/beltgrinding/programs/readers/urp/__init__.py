@@ -1,0 +1,1 @@
+"""PolyScope programs (.urp) of Universal Robots."""

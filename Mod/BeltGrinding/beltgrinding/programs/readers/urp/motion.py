@@ -1,0 +1,203 @@
+"""The motions of a PolyScope program: its waypoints and arcs with their features, tools and speeds."""
+
+import re
+
+from ...program import Motion, Problem, Program
+from ..urscript.expression import Unknown
+from ..urscript.reader import Interpreter
+from .position import NOWHERE, NUMBER, Positions
+
+KINDS = {"MoveJ": "PTP", "MoveL": "LIN", "MoveP": "LIN"}
+BASE, TOOL = "Joint_0_name", "Joint_6_name"  # PolyScope's own names of its two features
+STEP = re.compile(r"([A-Za-z_][\w.-]*)(?:\[([0-9]{1,7})\])?")
+
+
+class Waypoints:
+    """Collects the motions of a program; they get their poses all at once."""
+
+    def __init__(self, name, root):
+        self.program = Program("UR PolyScope", name)
+        self.file, self.root, self.line = name, root, 1
+        self.positions = Positions()
+        self.script = Interpreter(name)  # script nodes share its variables
+        self.said, self.indices = set(), {}
+        self.tool, self.tools = "", {}
+
+    def problem(self, line, message):
+        if (line, message) not in self.said:
+            self.said.add((line, message))
+            self.program.problems.append(Problem(self.file, line, message))
+
+    def gap(self, line):
+        """The path beyond must not be joined over what is left out as if nothing were missing."""
+        self.program.motions.append(Motion("PTP", None, line, self.file))
+
+    def target(self, element):
+        """What an element stands for: itself, or what its reference leads to (as XStream writes
+        them: a path of '..' and tag[n] from the element). Raises Unknown."""
+        for _ in range(10):
+            path = element.get("reference")
+            if path is None:
+                return element
+            at = element
+            for step in path.split("/")[:200]:
+                match = STEP.fullmatch(step)
+                if step == ".." and at is not None:
+                    at = at.parent
+                elif match and at is not None:
+                    found = self.tagged(at).get(match[1], ())
+                    n = int(match[2] or 1)
+                    at = found[n - 1] if 1 <= n <= len(found) else None
+            if at is None or at is element:
+                break
+            element = at
+        raise Unknown(f"its reference '{(element.get('reference') or '')[:60]}' leads nowhere")
+
+    def tagged(self, element):
+        """Children by tag."""
+        if id(element) not in self.indices:
+            index = {}
+            for child in element.children:
+                index.setdefault(child.tag, []).append(child)
+            self.indices[id(element)] = index
+        return self.indices[id(element)]
+
+    def place(self, waypoint, motion, positions, name="", in_base=False):
+        """Hands a waypoint's position on; returns the pose of its feature, which is called
+        ``name``; None where the pose is not known. Raises Unknown."""
+        kind = waypoint.get("type", "Fixed")
+        if kind != "Fixed":
+            raise Unknown(f"the waypoint's position is {kind[:20].lower()}, known at run time")
+        holder = waypoint.find("position")
+        if holder is None:
+            raise Unknown("the waypoint has no position; it was not taught yet")
+        position = self.target(holder)
+        feature = self.part(waypoint, "BaseToFeature") or NOWHERE
+        inner = self.part(waypoint, "poseInFeatureCoordinates")
+        pose = position.get("pose")
+        if pose is not None:  # PolyScope 3
+            pose = positions.six(pose, "the pose")
+            if inner is not None and not in_base:
+                positions.taught.append((motion, pose, inner, name))
+                return positions.taught  # the feature follows when all poses are made
+            positions.poses.append((motion, pose, NOWHERE if in_base else feature))
+            return feature
+        angles = position.find("JointAngles")
+        text = angles.get("angles") if angles is not None else position.get("joints")
+        joints = positions.six(text, "the joint angles")
+        kinematics = position.find("Kinematics")
+        if kinematics is None:
+            kinematics = self.root.find("kinematics")
+        else:
+            kinematics = self.target(kinematics)
+        arm = positions.arm(kinematics)
+        tcp = self.part(position, "TCPOffset")
+        if arm is None or tcp is None:
+            motion.kind = "PTP"
+            return None
+        positions.joints.append((motion, joints, arm, tcp, NOWHERE if in_base else feature))
+        return feature
+
+    def part(self, element, tag):
+        """The six numbers of a child's pose, None where there is no such child."""
+        child = element.find(tag)
+        return (
+            None
+            if child is None
+            else self.positions.six(self.target(child).get("pose"), f"the {tag}")
+        )
+
+    def waypoint(self, node, move, aux=False, arc=False):
+        """One motion; whether its pose is known."""
+        line, node = node.line, self.target(node)
+        if move is None:
+            raise Unknown("the waypoint is in no Move")
+        kind = "CIRC" if arc else KINDS.get(move.get("motionType", ""))
+        if kind is None:
+            raise Unknown(f"the motion '{move.get('motionType', '')[:20]}' is not known")
+        name = self.feature(move)
+        motion = Motion(kind, None, line, self.file, aux=aux)
+        feature = self.place(node, motion, self.positions, name)
+        motion.tool = self.tcp(node, move)
+        if feature is None:
+            self.problem(
+                line,
+                f"{node.get('name', 'the waypoint')[:60]}: joint angles only; the file holds no "
+                "kinematics of the arm that would give its pose",
+            )
+            motion.aux = False
+        else:
+            if feature is not self.positions.taught:
+                motion.base = self.positions.described(name, feature)
+            motion.speed_mm_s = self.speed(line, node, move, kind)
+        self.script.here = None
+        self.program.motions.append(motion)
+        return feature is not None
+
+    def circle(self, node, move):
+        """Two waypoints: on the way and the end."""
+        if any("fixed" in value.lower() for value in node.attributes.values()):
+            raise Unknown(
+                "the tool turns with the arc; only unconstrained orientation is supported"
+            )
+        points = [w for w in _below(node) if w.find("position") is not None or w.tag == "Waypoint"]
+        if len(points) != 2:
+            raise Unknown(f"the arc has {len(points)} points instead of two")
+        positions = self.positions
+        lists = self.program.motions, positions.joints, positions.poses, positions.taught
+        before = [len(kept) for kept in lists]
+        known = False
+        try:
+            via = self.waypoint(points[0], move, aux=True, arc=True)
+            known = self.waypoint(points[1], move, arc=True) and via
+        finally:
+            if not known:  # half an arc is none
+                for kept, length in zip(lists, before):
+                    del kept[length:]
+        if not known:
+            raise Unknown("where its points are is not known")
+
+    def feature(self, move):
+        """Name of the move's feature, '' for the base. Raises Unknown for the tool."""
+        holder = move.find("feature")
+        if holder is None:
+            return ""
+        name = self.target(holder).get("referencedName", "")
+        if name == TOOL:
+            raise Unknown("the move's feature is the tool, which moves with the robot")
+        return "" if name == BASE else name
+
+    def tcp(self, node, move):
+        holder = move.find("tcp")
+        name = self.tool if holder is None else self.target(holder).get("referencedName", "")
+        position = node.find("position")
+        offset = self.part(self.target(position), "TCPOffset") if position is not None else None
+        if (name, offset) not in self.tools:
+            text = "" if offset is None else "p[" + ", ".join(f"{v:g}" for v in offset) + "]"
+            self.tools[name, offset] = f"{name} {text}".strip()
+        return self.tools[name, offset]
+
+    def speed(self, line, node, move, kind):
+        """mm/s of a path; None for a joint motion or where it is not known."""
+        if kind == "PTP":
+            return None
+        own = node.find("motionParameters")
+        own = own.attributes if own is not None else {}
+        if own.get("time") not in (None, "", "0", "0.0"):
+            self.problem(line, "its time is given; the path speed is not known")
+            return None
+        text = own.get("cartesianSpeed") or move.get("speed", "")
+        if not NUMBER.fullmatch(text.strip()) or not 0.0 < float(text) < 100.0:
+            self.problem(line, f"the path speed '{text[:20]}' is not understood")
+            return None
+        return 1000.0 * float(text)
+
+
+def _below(element):
+    found = []
+    for child in element.children:
+        if child.tag == "children":
+            found += child.children
+        elif child.tag not in ("motionParameters", "feature", "tcp"):
+            found.append(child)
+    return found

@@ -1,0 +1,358 @@
+"""Reads Stäubli VAL3: a program (.pgx) with the data (.dtx) and the other programs beside it.
+
+Poses are those of the tool in the point's frame, as programmed; ``base`` names that frame and gives
+its pose in the world through the chain of frames. ``val3_data`` says how x, y, z, rx, ry, rz are
+meant. Data have the values the .dtx gives. A motion's speed is the mdesc's tvel; vel is a share of
+the joints' speed and no path speed. What only the controller can know is a Problem. A .dtx without
+a program gives its points as PTP targets, over which nothing is ground.
+"""
+
+from pathlib import Path
+
+from ...program import Motion, ProgramError
+from . import data
+from .control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Break, Control
+from .data import Array, Missing, Record, Unknown, number, six
+from .expression import split
+from .project import Project, routines
+from .state import PER_VALUE, State
+
+MAX_CALLS = 20
+KINDS = {"movej": "PTP", "movel": "LIN", "movec": "CIRC"}
+
+
+def read(path):
+    """The Program of a .pgx, or of a .dtx. Raises ProgramError when it cannot be read at all."""
+    path = Path(path)
+    interpreter = None
+    try:
+        if path.suffix.lower() == ".dtx":
+            beside = path.with_suffix(".pgx")
+            if not beside.is_file():
+                return _points(path)
+            path = beside
+        interpreter = _Interpreter(Project(path))
+        interpreter.run()
+    except RecursionError:
+        where = f"{interpreter.file}:{interpreter.line}" if interpreter else path.name
+        raise ProgramError(f"{where}: values or calls are nested too deeply") from None
+    except OSError as error:
+        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+    return interpreter.finish()
+
+
+def _points(path):
+    state = State(Project(path))
+    state.globals = state.project.data()
+    state.project.project()
+    for file, line, message in state.project.notes:
+        state.file = file
+        state.problem(line, message)
+    state.file = path.name
+    state.problem(
+        1, "there is no program of this name beside it; its points are given as PTP targets"
+    )
+    for name, array in state.globals.items():
+        keys = array.items if isinstance(array.items, dict) else range(len(array.items or ()))
+        if data.POSED.get(array.kind) != "point":
+            continue
+        for key in keys if not isinstance(array.items, Missing) else ():
+            if array.items[key] is None:  # never taught
+                continue
+            line = getattr(array.items[key], "line", 1)
+            try:
+                point = state.item(array, key if isinstance(key, str) else float(key), name)
+                row = six(point.get("trsf"))
+            except Unknown as unknown:
+                state.problem(line, f"{name}[{key}] is left out: {unknown}")
+                state.gap(line)
+                continue
+            motion = Motion("PTP", None, line, path.name)
+            motion.base = state.described(point.father, "world")
+            state.program.motions.append(motion)
+            state.rows.append((motion, row))
+    return state.finish()
+
+
+class _Return(Exception):
+    """The program ends here."""
+
+
+class _Interpreter(Control):
+    """Follows a program from begin to end with the values it can know."""
+
+    def __init__(self, project):
+        super().__init__(project)
+        self.calls = 0
+
+    def run(self):
+        # The program itself first: what is wrong with it is the more important message.
+        name = self.project.path.stem
+        found = self.project.routine(name) if self.project.path.is_file() else None
+        if found is None:
+            every = routines(self.project.path)
+            self.project.routines.update({r.name: r for r in every})
+            found = self.project.routines.get(name) or every[0]
+        self.globals = self.project.data()
+        given = [a.items for a in self.globals.values() if not isinstance(a.items, Missing)]
+        self.rounds -= PER_VALUE * sum(sum(v is not None for v in values) for values in given)
+        self.project.project()
+        for file, line, message in self.project.notes:
+            self.file = file
+            self.problem(line, message)
+        self.file = found.file
+        scope = {
+            name: Array(kind, Missing(f"{name} is a parameter that the caller gives"))
+            for name, kind, _ in found.parameters
+        }
+        self.routine(found, scope)
+        self.file = found.file
+        if not self.rows:
+            moves = any(MOVES.search(n.text) for n in _every(found.body))
+            why = (
+                "what its motions depend on is not known here"
+                if moves or self.program.motions
+                else ("it commands no motion (movej, movel, movec)")
+            )
+            self.problem(found.line, f"the program {found.name} gives no pose: {why}")
+
+    def routine(self, routine, scope):
+        for name, kind, size in routine.local_data:
+            items = [None] * size if 0 < size <= data.MAX_SIZE else Missing(f"{name} has no size")
+            scope[name] = Array(kind, items)
+            self.rounds += size // 8
+        self.rounds -= routine.work
+        routine.work = 0  # a second call is work beyond what the file has
+        outer = self.file, self.scope
+        self.file, self.scope = routine.file, scope
+        try:
+            self.block(routine.body)
+        except _Return:
+            pass
+        except Break as end:
+            self.problem(
+                end.line, "break leaves no switch; what follows in the program is left out"
+            )
+            self.gap(end.line)
+        finally:
+            self.file, self.scope = outer
+
+    def statement(self, node):
+        word = node.word
+        if node.body is not None:
+            getattr(self, word + "_")(node)
+            return
+        match = MOTION.match(node.text)
+        if match:
+            self.motion(node, *match.groups())
+        elif word == "call":
+            self.call(node)
+        elif word == "return":
+            raise _Return
+        elif word == "break":
+            raise Break(node.line)
+        elif word == "taskcreate" or word == "taskcreatesync":
+            self.problem(node.line, "a task runs beside the program; open the task's own program")
+            self.gap(node.line)
+        elif match := ASSIGN.match(node.text):
+            self.assignment(node, *match.groups())
+        else:
+            self.instruction(node)
+
+    def motion(self, node, target, word, text):
+        try:
+            if word not in KINDS:
+                raise Unknown("this motion is decided at run time, or is not known")
+            row = split(text)
+            count = 2 if word == "movec" else 1
+            if len(row) != count + 2:
+                raise Unknown(f"it has {len(row)} arguments instead of {count + 2}")
+            targets = [self.value(part) for part in row[:count]]
+            self.move(node.line, KINDS[word], targets, row[count], row[count + 1])
+        except Unknown as unknown:
+            self.problem(node.line, f"{word} is left out: {unknown}")
+            self.gap(node.line)
+        if target:
+            self.unknown(target, "it numbers a motion at run time")
+
+    def move(self, line, kind, targets, tool, mdesc):
+        end = targets[-1]
+        if (
+            isinstance(end, list) and kind == "PTP"
+        ):  # {..} without a type: joints, as many as it has
+            end = data.as_kind("jointRs" if len(end) == 4 else "joint", end)
+        if isinstance(end, Record) and end.kind == "joint":
+            if kind != "PTP":
+                raise Unknown("its target is a joint position")
+            for name in end.fields:
+                number(end.get(name))
+            motion = Motion("PTP", None, line, self.file, tool=self.tool(line, tool))
+            self.program.motions.append(motion)
+            self.frame = None
+            return
+        rows = []
+        for point in targets:
+            if not isinstance(point, Record) or point.kind != "point":
+                raise Unknown("its target is no point")
+            row = six(point.get("trsf"))
+            if isinstance(point.father, Missing):
+                raise Unknown(point.father.why)
+            if point.father is None and not any(row):
+                raise Unknown("the point has no value: it was not taught, or the .dtx is not whole")
+            if isinstance(getattr(end, "father", None), Missing):
+                raise Unknown(end.father.why)
+            if point.father is not end.father:  # an arc's point in another frame
+                home = data.in_world(end.father) if end.father else (0.0,) * 6
+                row = data.product(data.inverse(home), data.in_world(point))
+            rows.append(row)
+        base, held = self.described(end.father, "world"), self.tool(line, tool)
+        if kind != "PTP" and self.frame is not None and self.frame[0] is not end.father:
+            before = self.described(self.frame[0], "world")
+            message = f"the frame changes from {before} to {base}; each pose stays in its own"
+            self.problem(line, message, "the frame changes")  # once is enough
+        speed = self.speed(line, kind, mdesc)
+        for k, row in enumerate(rows):
+            motion = Motion(kind, None, line, self.file, speed, tool=held, base=base)
+            motion.aux = k < len(rows) - 1
+            self.program.motions.append(motion)
+            self.rows.append((motion, row))
+        self.frame = (end.father,)
+
+    def tool(self, line, text):
+        try:
+            value = self.value(text)
+            if not isinstance(value, Record) or value.kind != "tool":
+                raise Unknown("it is no tool")
+            return self.described(value, "flange")
+        except Unknown as unknown:
+            self.problem(line, f"the tool {text[:40]} is not known: {unknown}", ("tool", text))
+            return text[:40]
+
+    def speed(self, line, kind, text):
+        """mm/s; None for a joint motion or where no path speed is set."""
+        if kind == "PTP":
+            return None
+        try:
+            value = self.value(text)
+            if not isinstance(value, Record) or value.kind != "mdesc":
+                raise Unknown(f"{text[:40]} is no mdesc")
+            speed = number(value.get("tvel"))
+            if speed <= 0:
+                raise Unknown("tvel is not positive")
+            if speed < data.NO_LIMIT:
+                return speed * self.project.unit
+            raise Unknown("the mdesc sets no tvel, and vel is a share of the joints' speed")
+        except Unknown as unknown:
+            self.problem(
+                line,
+                f"the path speed of {text[:40]} is not known: {unknown}; the default is used",
+                ("speed", text, str(unknown)),
+            )
+            return None
+
+    def assignment(self, node, target, text):
+        try:
+            self.assign(target, self.value(text))
+        except Unknown as unknown:
+            # Not known from here on: whoever uses it reports it.
+            self.unknown(target, str(unknown))
+
+    def instruction(self, node):
+        match = INSTRUCTION.match(node.text)
+        if not match:
+            if node.word not in ("putln", "put", "wait", "title", "popupmsg", "logmsg"):
+                self.problem(node.line, f"'{node.text[:40]}' is not understood")
+                if MOVES.search(node.text):
+                    self.gap(node.line)
+                else:
+                    self.lose(node.text)
+            return
+        word, text = match.groups()
+        if word in ("link", "resize"):
+            self.change(node, word, text)
+        elif word not in HARMLESS:
+            message = f"{word}() is known to the controller only; what it changes is not known"
+            self.problem(node.line, message, ("instruction", word))
+            self.handed(text)
+
+    def change(self, node, word, text):
+        """link(point, frame): the point, frame or tool belongs to another frame from here on."""
+        try:
+            row = split(text)
+            if word == "link" and len(row) == 2:
+                value, father = self.value(row[0]), self.value(row[1])
+                kinds = {getattr(value, "kind", ""), getattr(father, "kind", "")}
+                if father is value or not kinds <= {"point", "frame"}:
+                    raise Unknown("a point and a frame expected")
+                value.father = None if row[1] == "world" else father
+                self.texts.clear()
+                return
+            array, size = self.array(row[0]), number(self.value(row[-1]))
+            if isinstance(array.items, dict) or not 1 <= size <= data.MAX_SIZE:
+                raise Unknown("the size is not sensible")
+            self.rounds += int(size) // 8
+            array.items[int(size) :] = [None] * max(0, int(size) - len(array.items))
+        except (Unknown, IndexError) as unknown:
+            self.problem(node.line, f"{word} is not followed: {unknown}")
+            self.lose(text)
+
+    def call(self, node):
+        match = CALL.match(node.text)
+        name = match[1] if match else node.text[4:30].strip()
+        try:
+            row = split(match[2] or "") if match else []
+            if ":" in name:
+                raise Unknown("it belongs to a library")
+            if self.calls >= MAX_CALLS:
+                raise Unknown("it calls itself too deeply")
+            try:
+                routine = self.project.routine(name)
+            except ProgramError as error:
+                raise Unknown(str(error)) from None
+            if routine is None:
+                raise Unknown(f"there is no {name}.pgx beside it")
+            if len(row) != len(routine.parameters):
+                raise Unknown(f"it has {len(routine.parameters)} parameters, not {len(row)}")
+        except Unknown as unknown:
+            message = f"call {name} is left out: {unknown}; motions in it are left out"
+            self.problem(node.line, message)
+            self.gap(node.line)
+            self.handed(match[2] or "" if match else node.text)
+            return
+        scope, back = {}, []
+        for (parameter, kind, by_reference), text in zip(routine.parameters, row):
+            scope[parameter] = self.parameter(kind, text)
+            if by_reference and NAME.fullmatch(text) and scope[parameter].items is not None:
+                try:
+                    scope[parameter] = self.array(text)
+                    continue
+                except Unknown:
+                    pass
+            if by_reference:
+                back.append((parameter, text))
+        self.calls += 1
+        try:
+            self.routine(routine, scope)
+        finally:
+            self.calls -= 1
+        for parameter, text in back:
+            items = scope[parameter].items
+            value = items if isinstance(items, Missing) else items[0]
+            try:
+                self.assign(text, value)
+            except Unknown as unknown:
+                self.unknown(text, str(unknown))
+
+    def parameter(self, kind, text):
+        try:
+            return Array(kind, [data.as_kind(kind, self.value(text))])
+        except Unknown as unknown:
+            return Array(kind, Missing(str(unknown)))
+
+
+def _every(nodes):
+    stack = list(nodes)
+    while stack:
+        node = stack.pop()
+        stack += node.body or []
+        yield node

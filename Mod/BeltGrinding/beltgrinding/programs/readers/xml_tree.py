@@ -1,0 +1,152 @@
+"""XML of robot programs read safely: no DOCTYPE (so no entities), bounded size and depth, lines kept.
+
+Namespaces are dropped. Text is kept only where it is asked for; programs have little of it.
+"""
+
+import zlib
+from pathlib import Path
+from xml.parsers import expat
+
+from ..program import ProgramError, name_of
+
+MAX_BYTES = 256 * 2**20  # of XML, unpacked
+MAX_ELEMENTS = 2_000_000
+MAX_DEPTH = 200
+CHUNK = 2**16
+GZIP = b"\x1f\x8b"
+
+
+class Element:
+    """An element: ``tag`` without prefix, ``attributes``, ``line`` in the XML, ``children``,
+    ``parent`` and, where asked for, ``text`` that begins in the line ``text_line``."""
+
+    __slots__ = ("tag", "attributes", "line", "children", "parent", "text", "text_line")
+
+    def __init__(self, tag, attributes, line, parent):
+        self.tag, self.attributes, self.line, self.parent = tag, attributes, line, parent
+        self.children, self.text, self.text_line = (), None, line
+
+    def get(self, name, default=None):
+        return self.attributes.get(name, default)
+
+    def find(self, tag):
+        """The first child of that tag, or None."""
+        for child in self.children:
+            if child.tag == tag:
+                return child
+        return None
+
+
+class _Builder:
+    def __init__(self, name, text_of, finished, shared):
+        self.name, self.text_of, self.finished = name, text_of, finished
+        self.shared, self.kept = shared, {}
+        self.root = self.at = None
+        self.count = self.depth = self.bytes = 0
+        self.parser = parser = expat.ParserCreate()
+        parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+        parser.StartDoctypeDeclHandler = self.doctype
+        parser.StartElementHandler = self.start
+        parser.EndElementHandler = self.end
+
+    def error(self, message):
+        return ProgramError(f"{self.name}:{self.parser.CurrentLineNumber}: {message}")
+
+    def doctype(self, *_):
+        raise self.error("the XML has a DOCTYPE, which no robot's controller writes; remove it")
+
+    def start(self, tag, attributes):
+        self.count, self.depth = self.count + 1, self.depth + 1
+        if self.count > MAX_ELEMENTS or self.depth > MAX_DEPTH:
+            raise self.error("the XML has too many elements, or they are nested too deeply")
+        tag = tag[tag.find(":") + 1 :]
+        if tag in self.shared:
+            attributes = self.kept.setdefault(tuple(attributes.items()), attributes)
+        element = Element(tag, attributes, self.parser.CurrentLineNumber, self.at)
+        if self.at is None:
+            self.root = element
+        elif self.at.children:
+            self.at.children.append(element)
+        else:
+            self.at.children = [element]
+        self.at = element
+        if tag in self.text_of:
+            element.text = []
+            self.parser.CharacterDataHandler = self.characters
+
+    def characters(self, text):
+        pieces, line = self.at.text, self.parser.CurrentLineNumber
+        if pieces is None:
+            return
+        if not pieces:
+            self.at.text_line = self.line = line
+        if line > self.line:  # a comment or an element stood between: lines must stay true
+            pieces.append("\n" * (line - self.line))
+            self.line = line
+        pieces.append(text)
+        self.line += text.count("\n")
+
+    def end(self, _):
+        element = self.at
+        self.depth -= 1
+        if element.text is not None:
+            element.text = "".join(element.text)
+            self.parser.CharacterDataHandler = None
+        self.at = element.parent
+        if element.tag in self.finished:
+            self.finished[element.tag](element)
+
+    def feed(self, data, last=False):
+        self.bytes += len(data)
+        if self.bytes > MAX_BYTES:
+            raise ProgramError(f"{self.name}: the XML is larger than {MAX_BYTES // 2**20} MB")
+        try:
+            self.parser.Parse(data, last)
+        except expat.ExpatError as error:
+            raise ProgramError(
+                f"{self.name}:{error.lineno}: the XML is not sound "
+                f"({expat.errors.messages[error.code]}); is the file cut off?"
+            ) from None
+        except ProgramError:
+            raise
+        except (ValueError, LookupError):  # an encoding nobody knows
+            raise ProgramError(f"{self.name}: the XML's encoding cannot be read") from None
+
+
+def read_xml(path, text_of=(), finished=None, shared=()):
+    """The root Element of an XML file, packed by gzip or not.
+
+    ``text_of``: tags of elements whose text is kept. ``finished``: functions by tag, called with
+    each such element when it is complete. ``shared``: tags whose attributes often are the same and
+    are kept once. Raises ProgramError naming file and line.
+    """
+    path = Path(path)
+    builder = _Builder(name_of(path), frozenset(text_of), finished or {}, frozenset(shared))
+    try:
+        with path.open("rb") as file:
+            packed = file.read(2) == GZIP
+            file.seek(0)
+            for data in (
+                _unpacked(file, builder.name) if packed else iter(lambda: file.read(CHUNK), b"")
+            ):
+                builder.feed(data)
+    except OSError as error:
+        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+    builder.feed(b"", True)
+    return builder.root
+
+
+def _unpacked(file, name):
+    """Chunks of what a gzip file unpacks to, each of bounded size."""
+    unpacker = zlib.decompressobj(wbits=31)
+    try:
+        while data := unpacker.unconsumed_tail or file.read(CHUNK):
+            if not unpacker.eof:
+                yield unpacker.decompress(data, CHUNK)
+                data = unpacker.unused_data
+            if unpacker.eof and data.strip(b"\0"):
+                raise ProgramError(f"{name}: something follows the packed program; pack it anew")
+        if not unpacker.eof:
+            raise ProgramError(f"{name}: the packed file ends too early; is it cut off?")
+    except zlib.error as error:
+        raise ProgramError(f"{name}: the packed file is damaged ({error})") from None

@@ -1,0 +1,126 @@
+"""The robot languages that are read: each is one module with ``read(path) -> Program``, registered in
+``READERS`` by its suffix.
+"""
+
+import contextlib
+import gc
+from pathlib import Path
+
+from .program import Problem, ProgramError
+
+
+def _krl(path):
+    from .readers.krl import reader as krl
+
+    return krl.read(path)
+
+
+def _csv(path):
+    from .readers import csv as csv_program
+
+    return csv_program.read(path)
+
+
+def _rapid(path):
+    from .readers.rapid import reader as rapid
+
+    return rapid.read(path)
+
+
+def _urscript(path):
+    from .readers.urscript import reader as urscript
+
+    return urscript.read(path)
+
+
+def _apt(path):
+    from .readers import apt
+
+    return apt.read(path)
+
+
+def _gcode(path):
+    from .readers import gcode
+
+    return gcode.read(path)
+
+
+def _fanuc(path):
+    from .readers.fanuc import reader as fanuc
+
+    return fanuc.read(path)
+
+
+def _inform(path):
+    from .readers.inform import reader as inform
+
+    return inform.read(path)
+
+
+def _val3(path):
+    from .readers.val3 import reader as val3
+
+    return val3.read(path)
+
+
+def _urp(path):
+    from .readers.urp import reader as urp
+
+    return urp.read(path)
+
+
+READERS = {
+    ".src": _krl,
+    ".csv": _csv,
+    ".mod": _rapid,
+    ".modx": _rapid,
+    ".prg": _rapid,
+    ".sys": _rapid,
+    ".script": _urscript,
+    ".ls": _fanuc,
+    ".jbi": _inform,
+    ".apt": _apt,
+    ".cls": _apt,
+    ".cl": _apt,
+    ".pgx": _val3,
+    ".dtx": _val3,
+    ".urp": _urp,
+    ".nc": _gcode,
+    ".ngc": _gcode,
+    ".gcode": _gcode,
+    ".mpf": _gcode,
+    ".tap": _gcode,
+}
+
+
+def file_pattern():
+    """What a file dialog shows: "*.src *.csv ..."; suffixes in upper case as well."""
+    return " ".join(f"*{s} *{s.upper()}" for s in sorted(READERS))
+
+
+@contextlib.contextmanager
+def _no_collection():
+    """Reading makes many objects that stay and hardly a cycle: looking for garbage all the while
+    takes a third of the time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def read_program(path):
+    """The Program in the file ``path``, its language told by the suffix. Raises ProgramError."""
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        known = ", ".join(sorted(READERS))
+        raise ProgramError(f"{path}: no robot language is known by '{path.suffix}'; known: {known}")
+    with _no_collection():
+        program = reader(path)
+    if not program.motions and not program.problems:
+        text = "no instruction of the program moves the robot; there is no pose to read"
+        program.problems.append(Problem(program.file, 1, text))
+    return program

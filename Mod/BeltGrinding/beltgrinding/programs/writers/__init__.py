@@ -1,0 +1,1 @@
+"""Writers of new robot programs: one module a language."""

@@ -1,0 +1,94 @@
+"""KUKA KRL as text: a module without data list. After KUKA's System Software operating and
+programming manuals; names of at most 24 characters."""
+
+import re
+
+from ...base.frames import to_abc
+from ..patch.text import decimal
+from ..program import ProgramError
+from .text import DEGREE_DIGITS, MM_DIGITS, SPEED_DIGITS, rounded
+
+NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
+POSE = ",".join([f"{k} %.{MM_DIGITS}f" for k in "XYZ"] + [f"{k} %.{DEGREE_DIGITS}f" for k in "ABC"])
+POSE = "{" + POSE + "}"
+
+
+def text(sheet):
+    """The bytes of a .src file."""
+    if not NAME.match(sheet.name):
+        raise ProgramError(
+            f"'{sheet.name}' is no name of a KRL module: a letter, then at most 23 letters, digits "
+            "or _; the file must be called as the module"
+        )
+    if sheet.part_in_hand:
+        raise ProgramError(
+            "poses of a fixed tool in a held part (robhold) are not written as KRL: the path speed "
+            "would be another one; write RAPID, or the poses of the part in the room"
+        )
+    places = [_pose(frame) for frame in sheet.frames]
+    lines = ["&ACCESS RVP", "&REL 1"]
+    lines += [f"&COMMENT {comment}" for comment in sheet.comments[:1]]
+    lines.append(f"DEF {sheet.name} ( )")
+    lines += [f"; {comment}" for comment in sheet.comments[1:]]
+    lines += [
+        ";FOLD INI",
+        "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
+        "INTERRUPT ON 3",
+        "BAS (#INITMOV,0 )",
+        f"$APO.CDIS={decimal(sheet.blend_mm, 3)}",
+        ";ENDFOLD (INI)",
+    ]
+    blend = " C_DIS" if sheet.blend_mm > 0.0 else ""
+    tool = base = speed = force = None
+    spline = False
+    for k, step in enumerate(sheet.steps):
+        head = []
+        if step.note:
+            head.append(f"; {step.note}")
+        if step.base != base:
+            base = step.base
+            head += [
+                f"; base {sheet.bases[base][1]}".rstrip(),
+                f"$BASE={_frame(sheet.bases[base][0])}",
+            ]
+        if step.tool != tool:
+            tool = step.tool
+            head += [
+                f"; tool {sheet.tools[tool][1]}".rstrip(),
+                f"$TOOL={_frame(sheet.tools[tool][0])}",
+            ]
+        if step.force != force:
+            force = step.force
+            head.append("; force as set" if force is None else f"; force {force:g} N")
+        wanted = speed if step.kind == "PTP" else step.speed or sheet.speed_mm_s
+        if spline and (step.kind != "SPL" or any(not row.startswith(";") for row in head)):
+            lines.append("ENDSPLINE")
+            spline = False
+        own = ""
+        if wanted != speed and spline:
+            own = f" WITH $VEL.CP={decimal(wanted / 1000.0, SPEED_DIGITS + 3)}"
+        elif wanted != speed:
+            speed = wanted
+            head.append(f"$VEL.CP={decimal(speed / 1000.0, SPEED_DIGITS + 3)}")
+        lines += head
+        if step.kind == "SPL" and not spline:
+            lines.append("SPLINE")
+            spline = True
+        target = places[step.pose]
+        if step.kind == "CIRC":
+            target = f"{places[step.aux]},{target}"
+        last = k + 1 == len(sheet.steps)
+        rounds = blend if step.kind in ("LIN", "CIRC") and not last else ""
+        lines.append(f"{step.kind} {target}{own}{rounds}")
+    lines += ["ENDSPLINE"] if spline else []
+    lines += ["END", ""]
+    return "\r\n".join(lines).encode("ascii")
+
+
+def _pose(frame):
+    place = rounded(frame[:3, 3], MM_DIGITS).tolist()
+    return POSE % (*place, *rounded(to_abc(frame), DEGREE_DIGITS).tolist())
+
+
+def _frame(frame):
+    return "{FRAME: " + _pose(frame)[1:]

@@ -1,0 +1,78 @@
+"""URScript as text: one routine. After Universal Robots' "The URScript Programming Language"."""
+
+import numpy as np
+
+from ...base.frames import to_quaternions
+from ..patch.text import decimal
+from ..program import ProgramError
+from .text import SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
+
+POSE = "p[" + ", ".join([f"%.{UNIT_DIGITS}f"] * 6) + "]"
+ACCELERATION = 1.2  # m/s2, the manual's default
+JOINT_ACCELERATION = 1.4  # rad/s2, likewise
+JOINT_SPEED = 1.05  # rad/s, likewise
+BLEND_SHARE = 0.4  # of the way to a neighbour; circles of neighbouring blends must not meet
+MOST = 64  # characters of a name
+
+
+def text(sheet):
+    """The bytes of a .script file."""
+    if sheet.part_in_hand:
+        raise ProgramError(
+            "poses of a fixed tool in a held part (robhold) are not written as URScript: the path "
+            "speed would be another one; write RAPID, or the poses of the part in the room"
+        )
+    if len(sheet.bases) > 1:
+        raise ProgramError("a URScript program has its poses in one frame; write one a base")
+    frame, words = sheet.bases[0]
+    lines = [f"def {identifier(sheet.name, MOST)}():"]
+    lines += [f"  # {comment}" for comment in sheet.comments]
+    lines += [f"  # base {words}", f"  ref_frame = {POSE % tuple(_vectors(frame[None])[0])}"]
+    if any(step.kind == "SPL" for step in sheet.steps):
+        lines.append("  # URScript has no splines: their points are joined by lines.")
+    places = [
+        f"pose_trans(ref_frame, {POSE % tuple(row)})" for row in _vectors(sheet.frames).tolist()
+    ]
+    blends = _blends(sheet)
+    tool = force = None
+    for step, blend in zip(sheet.steps, blends):
+        if step.note:
+            lines.append(f"  # {step.note}")
+        if step.tool != tool:
+            tool = step.tool
+            lines.append(f"  # tool {sheet.tools[tool][1]}")
+            lines.append(f"  set_tcp({POSE % tuple(_vectors(sheet.tools[tool][0][None])[0])})")
+        if step.force != force:
+            force = step.force
+            lines.append("  # force as set" if force is None else f"  # force {force:g} N")
+        speed = decimal((step.speed or sheet.speed_mm_s) / 1000.0, SPEED_DIGITS + 3, 1)
+        place = places[step.pose]
+        if step.kind == "PTP":
+            lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={JOINT_SPEED})")
+            continue
+        tail = f"a={ACCELERATION}, v={speed}, r={decimal(blend / 1000.0, 6, 1)}"
+        if step.kind == "CIRC":
+            lines.append(f"  movec({places[step.aux]}, {place}, {tail}, mode=0)")
+        else:
+            lines.append(f"  movel({place}, {tail})")
+    lines += ["end", ""]
+    return "\n".join(lines).encode("ascii")
+
+
+def _vectors(frames):
+    """(n, 6): metres and rotation vectors (axis times angle, at most pi)."""
+    quaternions = to_quaternions(frames[:, :3, :3])
+    sines = np.linalg.norm(quaternions[:, 1:], axis=1)
+    small = sines < 1e-12
+    factors = 2.0 * np.arctan2(sines, quaternions[:, 0]) / np.where(small, 1.0, sines)
+    factors = np.where(small, 2.0, factors)
+    rows = np.hstack([frames[:, :3, 3] / 1000.0, quaternions[:, 1:] * factors[:, None]])
+    return rounded(rows, UNIT_DIGITS)
+
+
+def _blends(sheet):
+    """mm for each step: never more than a share of the ways before and behind."""
+    places = sheet.positions[[step.pose for step in sheet.steps]]
+    ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    before, behind = np.append(0.0, ways), np.append(ways, 0.0)
+    return np.minimum(sheet.blend_mm, BLEND_SHARE * np.minimum(before, behind)).tolist()

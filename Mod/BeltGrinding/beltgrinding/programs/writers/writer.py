@@ -1,0 +1,241 @@
+"""Writes new programs: KUKA KRL, ABB RAPID, URScript, CSV. The inverse of the readers.
+
+Numbers have so many decimals that reading gives the poses within 1e-6 mm and 1e-6 degrees: 6 of mm
+and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The controllers read them all;
+their own arithmetic (32 bit in KRL and RAPID) is what limits them.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from ...base.frames import from_abc, from_quaternions, to_quaternions
+from ..program import Motion, Program, ProgramError
+from .text import printable
+
+RIGID = 1e-6  # how far a pose's matrix may be off a rotation
+NUMBER = r"\s*([-+]?[\d.]+(?:e[-+]?\d+)?)"
+WORDS = re.compile(r"\bX" + NUMBER + "".join(rf"\s+{k}{NUMBER}" for k in "YZABC"))
+METRES = re.compile(r"p\[" + ",".join([NUMBER] * 6) + r"\]")
+IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
+
+
+@dataclass
+class Step:
+    """A motion to be written. ``aux``: number of the auxiliary pose, None: no arc."""
+
+    kind: str  # PTP, LIN, CIRC, SPL
+    pose: int  # row of the poses
+    aux: Optional[int]
+    speed: Optional[float]  # mm/s
+    force: Optional[float]  # N
+    tool: int  # row of the tools
+    base: int
+    note: str = ""  # what a comment before it says
+
+
+@dataclass
+class Sheet:
+    """What the writer of a language gets."""
+
+    name: str
+    comments: list
+    steps: list
+    positions: np.ndarray  # (n, 3) mm
+    quaternions: np.ndarray  # (n, 4) w, x, y, z
+    frames: np.ndarray  # (n, 4, 4)
+    tools: list  # (4 x 4 flange_from_tcp, words)
+    bases: list  # (4 x 4, words)
+    speed_mm_s: float  # where a motion has none
+    ptp_speed_mm_s: float
+    blend_mm: float
+    part_in_hand: bool
+
+
+def write_program(
+    path,
+    language,
+    program,
+    *,
+    name=None,
+    comment="",
+    tools=None,
+    bases=None,
+    speed_mm_s=100.0,
+    ptp_speed_mm_s=200.0,
+    blend_mm=1.0,
+    part_in_hand=None,
+):
+    """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
+
+    language: .src, .mod, .script, .csv or None, the suffix of ``path``.
+    program: a Program; a list of Motion; or a list of passes, dicts of ``poses`` ((n, 4, 4),
+    base_from_tcp in mm), ``feed_mm_s`` and, optionally, ``force_N``: the first pose of a pass is
+    reached by PTP, the others by LIN.
+    name: of the module, None: the stem of ``path``. comment: a text for its head.
+    tools, bases: a 4 x 4 in mm for all motions, or a dict of them by ``Motion.tool``,
+    ``Motion.base``; None: what these words tell, else the identity with a comment.
+    tools is flange_from_tcp, bases robot_from_base.
+    speed_mm_s: of path motions without a speed; ptp_speed_mm_s: of PTP where the language has it.
+    blend_mm: how far from a pose the robot may round the corner; 0: it stops.
+    part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
+    robhold); None: what the words of the program's frames tell.
+
+    A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
+    by PTP: nothing is ground on a way that is not known.
+    """
+    path = Path(path)
+    suffix = (language or path.suffix).lower()
+    writer = _writer(suffix, path)
+    motions = motions_of(program)
+    used = {m.base for m in motions} | {m.tool for m in motions}
+    if part_in_hand is None:
+        part_in_hand = any(words.endswith(IN_HAND) for words in used)
+    sheet = _sheet(motions, tools, bases)
+    sheet.name = name or path.stem
+    head = [comment] if comment else []
+    if isinstance(program, Program):
+        head.append(f"from {program.file} ({program.language})")
+        head += [f"not followed there: {problem}" for problem in program.problems[:20]]
+    sheet.comments = [printable(text) for text in head]
+    sheet.speed_mm_s, sheet.ptp_speed_mm_s = float(speed_mm_s), float(ptp_speed_mm_s)
+    sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
+    data = writer(sheet)
+    from ...base.files import write_whole
+
+    write_whole(path, data)
+
+
+def _writer(suffix, path):
+    # Imported when called for, as the readers are.
+    if suffix == ".src":
+        from .krl import text
+    elif suffix in (".mod", ".modx"):
+        from .rapid import text
+    elif suffix == ".script":
+        from .urscript import text
+    elif suffix == ".csv":
+        from .csv import text
+    else:
+        raise ProgramError(
+            f"{path}: no program is written as '{suffix}'; known: .src, .mod, .script, .csv"
+        )
+    return text
+
+
+def motions_of(program):
+    """List of Motion of a Program, of motions or of passes."""
+    if isinstance(program, Program):
+        return program.motions
+    program = list(program)
+    if all(isinstance(one, Motion) for one in program):
+        return program
+    motions = []
+    for one in program:
+        poses = np.asarray(one["poses"], dtype=float)
+        for k, pose in enumerate(poses):
+            kind, speed = ("PTP", None) if k == 0 else ("LIN", float(one["feed_mm_s"]))
+            motions.append(Motion(kind, pose, 0, "", speed, one.get("force_N")))
+    return motions
+
+
+def _sheet(motions, tools, bases):
+    """Motions as Steps, poses as arrays."""
+    tool_rows, base_rows = _Frames(tools, "tool"), _Frames(bases, "base")
+    poses, steps, aux, gap = [], [], None, []
+    for number, motion in enumerate(motions):
+        if motion.pose is None:
+            gap.append(motion.line)
+            aux = None
+            continue
+        poses.append(motion.pose)
+        if motion.aux:
+            aux = len(poses) - 1
+            continue
+        if motion.kind == "CIRC" and aux is None and not gap:
+            raise ProgramError(f"motion {number}: the arc has no auxiliary point")
+        speed = motion.speed_mm_s
+        if speed is not None and not 0.0 < speed < 1e6:
+            raise ProgramError(f"motion {number}: the speed is {speed:g} mm/s")
+        kind, note = motion.kind, ""
+        if gap:
+            lines = ", ".join(str(line) for line in gap[:5]) + (", ..." if len(gap) > 5 else "")
+            note = f"left out: no pose is known for line {lines}; the next one is reached by PTP"
+            kind, aux, gap = "PTP", None, []
+        step = Step(
+            kind, len(poses) - 1, aux if kind == "CIRC" else None, speed, motion.force_N, 0, 0
+        )
+        step.tool, step.base, step.note = (
+            tool_rows.row(motion.tool),
+            base_rows.row(motion.base),
+            note,
+        )
+        steps.append(step)
+        aux = None
+    if not steps:
+        raise ProgramError("the program has no pose; there is nothing to write")
+    frames = np.array(poses, dtype=float).reshape(-1, 4, 4)
+    quaternions = _checked(frames)
+    return Sheet(
+        "", [], steps, frames[:, :3, 3], quaternions, frames, tool_rows.rows, base_rows.rows,
+        0.0, 0.0, 0.0, False,
+    )  # fmt: skip
+
+
+def _checked(frames):
+    """Quaternions of the poses. Raises ProgramError for what is no rigid pose."""
+    if not np.isfinite(frames).all():
+        raise ProgramError("a pose is not finite")
+    quaternions = to_quaternions(frames[:, :3, :3])
+    again = from_quaternions(frames[:, :3, 3], quaternions)
+    wrong = np.flatnonzero(np.abs(again - frames).max(axis=(1, 2)) > RIGID)
+    if len(wrong):
+        raise ProgramError(f"pose {wrong[0]}: its matrix is no rotation with a position")
+    return quaternions
+
+
+class _Frames:
+    """Tools or bases by their words."""
+
+    def __init__(self, given, what):
+        self.given, self.what = given, what
+        self.rows, self.numbers = [], {}
+
+    def row(self, words):
+        if words not in self.numbers:
+            self.numbers[words] = len(self.rows)
+            self.rows.append(self.frame(words))
+        return self.numbers[words]
+
+    def frame(self, words):
+        given = self.given.get(words) if isinstance(self.given, dict) else self.given
+        if given is not None:
+            frame = np.asarray(given, dtype=float)
+            if frame.shape != (4, 4):
+                raise ProgramError(f"the {self.what} {words} is no 4 x 4")
+            _checked(frame[None])
+            return frame, printable(words)
+        found = frame_in_words(words)
+        if found is not None:
+            return found, printable(words)
+        text = printable(words)
+        return np.eye(4), f"{text or 'not given'}: enter this {self.what}"
+
+
+def frame_in_words(words):
+    """4 x 4 in mm that the words of a Motion's tool or base tell, to their six digits, or None."""
+    found = WORDS.search(words)
+    if found:
+        values = [float(v) for v in found.groups()]
+        return from_abc(values[:3], values[3:])
+    found = METRES.search(words)
+    if found:
+        from ..readers.urscript.expression import pose_of
+
+        frame = pose_of([float(v) for v in found.groups()]).frame.copy()
+        frame[:3, 3] *= 1000.0
+        return frame
+    return None

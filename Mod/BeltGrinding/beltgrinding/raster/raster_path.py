@@ -1,0 +1,318 @@
+"""Raster paths: contact passes side by side on faces of a job's design. No FreeCAD in here.
+
+The settings are Resources/schema/raster.schema.json; every default stands there and nowhere else.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..base import schemas
+from ..engine import InputError, core
+from ..job import engine_input, load as jobs
+from ..job.workpiece import read_design
+from ..programs.program import Motion, Program
+from . import passes
+
+SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
+LEAST_SAMPLES = 400
+MOST_SAMPLES = 400_000
+STEP_SAMPLES = 4  # between neighbouring passes, at least
+POSE_SAMPLES = 3  # between neighbouring poses, at least
+WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
+PARALLEL = 0.05  # sine of an angle below which two directions count as one
+TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
+FLAT = 1e4  # mm; a larger radius of curvature is a plane
+UNCOVERED = 0.01  # of the area; more is warned of
+
+
+def schema():
+    """The JSON Schema of the settings, as a dict."""
+    return schemas.schema("raster")
+
+
+def validate(settings):
+    """A copy of ``settings`` with all defaults filled in. Raises InputError naming the key."""
+    return schemas.checked(settings, schema(), "raster")
+
+
+def load_job(path):
+    """A validated job from a file that need not have a program yet. Raises InputError."""
+    path = Path(path)
+    data = schemas.read_json(path)
+    if isinstance(data, dict) and not data.get("programs"):
+        data["programs"] = [{"poses": []}]
+    try:
+        return jobs.validate(data, path.resolve().parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def raster(job, settings, context=None):
+    """Lays passes on faces of a validated job's design.
+
+    Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
+    rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
+    work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
+    mm how deep the undeformed wheel reaches into the faces, step_over_mm, contact_width_mm (None
+    if the step-over was given), contact_length_mm, area_mm2, warnings). Raises InputError, Cancelled.
+    """
+    settings = validate(settings)
+    context = context or core.RunContext()
+    warnings = []
+    shape = read_design(job["design"])
+    chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)
+    faces = _checked_faces(chosen, shape)
+    area = sum(shape.face_area(face) for face in faces)
+    spacing = settings["sampling_mm"] or _sampling(area, settings)
+    surfaces = _surfaces(job, shape, faces, spacing, settings, warnings, context)
+    step_over, width = settings["step_over_mm"], None
+    if step_over == 0:
+        width = contact_width(job, settings, surfaces, warnings)
+        step_over = settings["step_over_share"] * width
+    finer = _finer(area, step_over)
+    if not settings["sampling_mm"] and spacing > finer:
+        spacing = finer
+        surfaces = _surfaces(job, shape, faces, spacing, settings, [], context)
+    cell = passes.cell_of(job)
+    lever = passes.lever(cell, np.vstack([s["points"] for s in surfaces]))
+    found = _lines(surfaces, settings, step_over, spacing, lever, warnings, context)
+    result = passes.assemble(found, settings, cell)
+    if not result["passes"]:
+        raise InputError(
+            "no pass is left on the faces; lower min_length_mm, or give another direction"
+        )
+    result["fit"] = _fit(job, settings, surfaces, result, warnings, context)
+    result.update(
+        step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
+    )
+    return result
+
+
+def _checked_faces(numbers, shape):
+    for number in numbers:
+        if number > shape.face_count:
+            raise InputError(
+                f"raster.faces: there is no face {number}; the shape has {shape.face_count}"
+            )
+    return sorted({number - 1 for number in numbers})
+
+
+def _sampling(area, settings):
+    """mm: as fine as poses and passes need, for not too many samples."""
+    side = math.sqrt(max(area, 1e-6))
+    wanted = [settings["max_distance_mm"] / POSE_SAMPLES, side / math.sqrt(LEAST_SAMPLES)]
+    if settings["step_over_mm"] > 0:
+        wanted.append(settings["step_over_mm"] / STEP_SAMPLES)
+    return max(min(*wanted, side / math.sqrt(SAMPLES)), side / math.sqrt(MOST_SAMPLES))
+
+
+def _finer(area, step_over):
+    """mm that ``step_over`` asks for, within bounds: between samples, passes are interpolated."""
+    return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
+
+
+def _surfaces(job, shape, faces, spacing, settings, warnings, context):
+    """What passes are laid on: each face by itself for u and v, all together for a direction. List
+    of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
+    """
+    flip = job["design"]["flip_normals"]
+    field, report = core.sample_faces(
+        shape, faces, spacing, flip, 1.0, 0, context, settings["along"] != "direction"
+    )
+    warnings += report["warnings"]
+    points, normals, triangles = field.points, field.normals.astype(float), field.triangles
+    if len(triangles) == 0:
+        raise InputError("the faces are too small for the sampling; lower sampling_mm")
+    if settings["along"] == "direction":
+        scalars = points @ _across(settings["direction"], points, normals, field.areas)
+        whole = {"points": points, "normals": normals, "triangles": triangles}
+        return [{**whole, "scalars": scalars[triangles], "period": 0.0, "name": ""}]
+    axis = 1 if settings["along"] == "u" else 0  # what does not change along a pass
+    scalars = report["parameters"][:, axis].copy()
+    scalars[(field.flags & core.DEGENERATE) > 0] = np.nan  # a pole
+    owner, result = field.faces[triangles[:, 0]], []
+    for k, face in enumerate(faces):
+        mine = triangles[owner == face]
+        if len(mine) == 0:
+            warnings.append(f"Face{face + 1} is too small for samples of {spacing:.3g} mm: no pass")
+            continue
+        used, local = np.unique(mine, return_inverse=True)
+        local = local.reshape(-1, 3)
+        surface = {"points": points[used], "normals": normals[used], "triangles": local}
+        period = report["period"][k][axis]
+        values = scalars[used][local]
+        result.append({**surface, "scalars": values, "period": period, "name": f"Face{face + 1}"})
+    return result
+
+
+def _across(direction, points, normals, areas):
+    """Unit vector across the passes: the normal of the planes that cut them."""
+    along = np.asarray(direction, dtype=float)
+    length = np.linalg.norm(along)
+    if length == 0:
+        raise InputError("raster.direction: give a direction that is not 0, 0, 0")
+    along = along / length
+    weights = areas[:, None].astype(float)
+    mean = (normals * weights).sum(axis=0) / weights.sum()
+    across = np.cross(mean, along)
+    if np.linalg.norm(mean) > PARALLEL:
+        if np.linalg.norm(across) < PARALLEL * np.linalg.norm(mean):
+            raise InputError(
+                "raster.direction: the faces look in this very direction; give one along them"
+            )
+    else:  # a closed surface looks everywhere: planes across its longer side
+        middle = points - (points * weights).sum(axis=0) / weights.sum()
+        spread = (middle * weights).T @ middle
+        project = np.eye(3) - np.outer(along, along)
+        across = np.linalg.eigh(project @ spread @ project)[1][:, -1]
+    return across / np.linalg.norm(across)
+
+
+def _curvature(surface):
+    """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
+    surface is convex, and the triangles' areas: from how the normals change along the edges.
+    """
+    corners = surface["triangles"]
+    p, n, c = surface["points"][corners], surface["normals"][corners], surface["scalars"]
+    c = (
+        c - surface["period"] * np.round((c - c[:, :1]) / surface["period"])
+        if (surface["period"] > 0)
+        else c
+    )
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    cross = np.cross(u, v)
+    size = np.linalg.norm(cross, axis=1)
+    along = (c[:, 2] - c[:, 0])[:, None] * u - (c[:, 1] - c[:, 0])[:, None] * v
+    length = np.linalg.norm(along, axis=1)
+    sound = np.isfinite(length) & (length > 0) & (size > 1e-12)
+    u, v, n, cross, size, along = (a[sound] for a in (u, v, n, cross, size, along))
+    along = along / length[sound, None]
+    across = np.cross(cross / size[:, None], along)
+    edges = np.stack([np.stack([(e * d).sum(1) for e in (u, v)], 1) for d in (along, across)], 1)
+    turns = [n[:, 1] - n[:, 0], n[:, 2] - n[:, 0]]
+    turned = np.stack([np.stack([(e * d).sum(1) for e in turns], 1) for d in (along, across)], 1)
+    shape = turned @ np.linalg.inv(edges)  # the shape operator in these two directions
+    return shape[:, 0, 0], shape[:, 1, 1], 0.5 * size
+
+
+def _median(values, weights):
+    order = np.argsort(values)
+    at = np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())
+    return float(values[order][min(at, len(values) - 1)])
+
+
+def contact_width(job, settings, surfaces, warnings):
+    """Width of the contact across the pass, mm: the job's wheel under the force, by the job's model
+    of elasticity, on a cylinder with the faces' median curvature across the passes.
+    """
+    wheel, compliance, _, options = engine_input.engine_arguments(job)
+    if compliance["model"] == "geometric":
+        raise InputError(
+            "raster.step_over_mm: a rigid tool has no contact width; give a step-over in mm"
+        )
+    across, areas = zip(*(_curvature(s)[1:] for s in surfaces))
+    curvature = _median(np.concatenate(across), np.concatenate(areas))
+    force = settings["force_N"] or options["force"]
+    angle = -settings["belt_angle_deg"]  # of the pass against the belt
+    workpiece = {"shape": "plane"}
+    if abs(curvature) * FLAT > 1:
+        workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
+    arguments = (compliance, force, None, options["contact_spacing"], 1e-3)
+    try:
+        found = core.single_contact(wheel, workpiece, *arguments)
+    except InputError as error:
+        if workpiece["shape"] == "plane":  # it is not the surface's curvature
+            raise
+        warnings.append(
+            f"the contact's width is that on a plane: on a cylinder of {1.0 / curvature:.4g} mm "
+            f"radius it cannot be found ({error})"
+        )
+        found = core.single_contact(wheel, {"shape": "plane"}, *arguments)
+    x, y = np.meshgrid(found["x"], found["y"])
+    touched = found["pressure"] > TOUCHED * found["pressure"].max()
+    turn = math.radians(angle)
+    place = (y * math.cos(turn) - x * math.sin(turn))[touched]
+    cell = abs(math.cos(turn)) * np.ptp(found["y"]) / max(len(found["y"]) - 1, 1) + abs(
+        math.sin(turn)
+    ) * np.ptp(found["x"]) / max(len(found["x"]) - 1, 1)
+    return float(np.ptp(place) + cell)
+
+
+def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
+    """Pieces of passes of all surfaces: list of levels, each a list of the core's lines."""
+    levels = []
+    for surface in surfaces:
+        found = core.raster_lines(
+            surface["points"],
+            surface["normals"],
+            surface["triangles"],
+            surface["scalars"],
+            period=surface["period"],
+            step_over=step_over,
+            spacing=settings["spacing"],
+            weld=0.0 if surface["name"] else WELD * spacing,
+            split_turn=math.radians(settings["edge_turn_deg"]),
+            smoothing=settings["smoothing_mm"],
+            chord_error=settings["chord_error_mm"],
+            max_distance=settings["max_distance_mm"],
+            max_turn=math.radians(settings["max_turn_deg"]),
+            lever=lever,
+            context=context,
+        )
+        if found["uncovered_area"] > UNCOVERED * found["area"]:
+            share = 100.0 * found["uncovered_area"] / found["area"]
+            where = f"{surface['name']}: " if surface["name"] else ""
+            warnings.append(
+                f"{where}{share:.0f} % of the area lies along the cuts and may stay without a "
+                "pass; lay passes in another direction there"
+            )
+        mine = {}
+        for line in found["lines"]:
+            mine.setdefault(line["level"], []).append(line)
+        levels += [mine[level] for level in sorted(mine)]
+    return levels
+
+
+def _fit(job, settings, surfaces, result, warnings, context):
+    wheel = engine_input.engine_arguments(job)[0]
+    points = np.vstack([s["points"] for s in surfaces])
+    normals = np.vstack([s["normals"] for s in surfaces])
+    fit = np.zeros(len(result["frames"]))
+    touching = np.flatnonzero(result["contact"])
+    fit[touching] = core.wheel_fit(wheel, result["contacts"][touching], points, normals, context)
+    tight = np.flatnonzero(fit > settings["fit_mm"])
+    if len(tight):
+        worst = int(np.argmax(fit))
+        warnings.append(
+            f"the wheel does not fit the faces at {len(tight)} poses: at worst its undeformed rim "
+            f"reaches {fit[worst]:.2f} mm into them at pose {worst + 1}; take a smaller or narrower "
+            "wheel, or another direction"
+        )
+    return fit
+
+
+def program(result):
+    """The path as a ``programs.Program``, for ``programs.write_program``."""
+    rows = zip(result["frames"], result["feeds"].tolist(), result["forces"].tolist())
+    made = Program("raster", "raster")
+    for (pose, feed, force), rapid in zip(rows, result["rapid"].tolist()):
+        kind = "PTP" if rapid else "LIN"
+        given = None if force < 0 else force
+        made.motions.append(Motion(kind, pose, 0, "", feed, given))
+    return made
+
+
+def summary(result):
+    """The figures of a raster, as the command line prints them."""
+    ground = [p["length_mm"] for p in result["passes"]]
+    return {
+        "poses": len(result["frames"]),
+        "passes": len(ground),
+        "length_mm": sum(ground),
+        "step_over_mm": result["step_over_mm"],
+        "contact_width_mm": result["contact_width_mm"],
+        "area_mm2": result["area_mm2"],
+        "warnings": result["warnings"],
+    }

@@ -1,0 +1,112 @@
+"""The report of a result: one HTML file that holds everything, and a PDF of it."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from ..base.files import write_whole
+from ..engine import InputError, core
+from ..inspection import verdict as verdicts
+from ..job import workpiece
+from ..job.tolerances import colour_scale
+from ..simulation.result import Result
+from . import charts, page, pictures, worst_spots
+from .language import Language
+
+
+class Content(NamedTuple):
+    """What a report tells of. ``shape``, ``verdict``, ``convergence`` and ``bins`` (the time series of
+    ``charts.binned``) are None where there is none; ``title``: of the part.
+    """
+
+    result: Result
+    title: str
+    source: str  # where the result lies; '' for a document's
+    shape: object
+    bins: dict
+    verdict: dict
+    convergence: dict
+    notes: list  # sentences that are shown on top
+
+
+def report(result, output=None, pdf=None, language="en", title=None, context=None, notes=()):
+    """Writes the report of a result as one self-contained HTML file.
+
+    ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default
+    report.html in that folder; ``pdf``: a file for the same as PDF (needs WeasyPrint); ``language``:
+    "en" or "de"; ``title``: what the part is called; ``notes``: sentences to be shown on top. Returns the path of the HTML file. Raises
+    InputError, Cancelled.
+    """
+    folder = None if isinstance(result, Result) else Path(result)
+    if output is None and folder is None:
+        raise InputError("report: say by output what file to write")
+    output = Path(output) if output is not None else folder / "report.html"
+    words = Language(language)
+    printer = _printer() if pdf is not None else None
+    context = context or core.RunContext()
+    html = render(load(result, title, notes), words, context)
+    context.throw_if_cancelled()
+    try:
+        write_whole(output, html.encode())
+        if printer is not None:
+            write_whole(Path(pdf), printer(html))
+    except OSError as error:
+        raise InputError(
+            f"{error.filename or output}: cannot be written: {error.strerror}"
+        ) from None
+    return output
+
+
+def load(result, title=None, notes=()):
+    """The ``Content`` of a folder that a run wrote, or of a ``Result``. Raises InputError."""
+    source = ""
+    if not isinstance(result, Result):
+        source, result = str(result), Result.read(result)
+    notes = list(notes)
+    try:
+        shape = workpiece.read_design(result.job["design"])
+    except InputError as error:
+        shape = None
+        notes.append(str(error))
+    bins = result.bins if result.bins or result.steps is None else charts.binned(result.steps)
+    return Content(
+        result,
+        title or page.facts.part_name(result.job),
+        source,
+        shape,
+        bins,
+        _verdict(result, shape, notes),
+        result.convergence,
+        notes,
+    )
+
+
+def _verdict(result, shape, notes):
+    """The result's verdict; of an older one, it is found now. None where it cannot be."""
+    if result.verdict is not None:
+        return result.verdict
+    try:
+        return verdicts.of_result(result, shape)
+    except InputError as error:
+        notes.append(str(error))
+        return None
+
+
+def render(content, words, context=None):
+    """The HTML text of a ``Content`` in the words of a ``Language``."""
+    result = content.result
+    scale = colour_scale(result.job)
+    found = worst_spots.worst(result.field, scale[:2], content.verdict)
+    drawn = pictures.draw(result.field, scale, content.shape, found, context)
+    return page.document(content, words, scale, found, drawn)
+
+
+def _printer():
+    """html -> bytes of a PDF. Raises InputError where there is no WeasyPrint."""
+    try:
+        from weasyprint import HTML
+    except (ImportError, OSError) as error:  # OSError: a library of the system that it needs
+        raise InputError(
+            f"a PDF needs WeasyPrint ({error}); install Debian's weasyprint, or print the HTML "
+            "report from a browser"
+        ) from None
+    return lambda html: HTML(string=html, base_url="").write_pdf()

@@ -1,0 +1,303 @@
+"""A scan of the part as really ground: aligned with the design and compared with the prediction.
+
+The scan is a triangle mesh (STL, PLY, OBJ, OFF, 3MF) or a point cloud (PLY, OBJ, or text of x y z in
+the first three columns: XYZ, ASC, TXT, CSV, PTS). Alignment is by the extension
+``beltgrinding_scan``, which is optional when the workbench is built.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ..base.files import write_whole
+from ..engine import InputError, core
+from ..job import workpiece
+from . import file as scan_file, start as scan_start
+
+FREEDOMS = ("tx", "ty", "tz", "rx", "ry", "rz")  # of the work frame; rotations about the centroid
+SHARE = 0.9  # of the pairs of points, the nearest: the rest is trimmed
+DATUM_SAMPLES = 60_000  # about; more do not place a part better
+LEAST_SHARE = 0.02  # of the part's area: less of it that is not ground is no datum
+LEAST_COSINE = 0.1  # between a sample's normal and that of the scan's triangle, for a mesh
+SEARCH_MARGIN = 1.0  # mm beyond the stock's greatest height
+LEAST_SIZE = 0.02  # of the datum's: a smaller scan is one in another unit
+PLAIN_SD = 0.02  # mm at the part's radius: a freedom that is known worse is told
+
+
+def extension():
+    """The module ``beltgrinding_scan``. Raises InputError saying what is missing."""
+    beside = str(Path(core.__file__).parent)  # built and installed with the core
+    if beside not in sys.path:
+        sys.path.append(beside)
+    try:
+        import beltgrinding_scan
+    except ImportError as error:
+        raise InputError(
+            f"scans are aligned by the module beltgrinding_scan, which cannot be loaded ({error}). It "
+            "is built with the workbench where nanoflann (libnanoflann-dev) is installed"
+        ) from None
+    return beltgrinding_scan
+
+
+def datum(result, faces=None):
+    """The surface that a scan is laid on: dict(points (n, 3), normals (n, 3), spacing, faces,
+    predicted), mm, work frame.
+
+    ``faces``: numbers from 1; None: all that are not ground, or, where these are hardly any, the
+    ground ones at their predicted height. Ground faces that are named are taken at their predicted
+    height as well.
+    """
+    design = result.job["design"]
+    shape = workpiece.read_design(design)
+    ground = sorted({int(face) for face in np.unique(result.field.faces)})
+    if faces is None:
+        others = [i for i in range(shape.face_count) if i not in set(ground)]
+        area = [shape.face_area(i) for i in range(shape.face_count)]
+        enough = sum(area[i] for i in others) > LEAST_SHARE * sum(area)
+        chosen = others if enough else ground
+    else:
+        chosen = sorted({int(face) - 1 for face in faces})
+        for face in chosen:
+            if not 0 <= face < shape.face_count:
+                raise InputError(
+                    f"scan: there is no datum face {face + 1}; the design has {shape.face_count}"
+                )
+        if not chosen:
+            raise InputError("scan: no datum face is named")
+    area = sum(shape.face_area(i) for i in chosen)
+    spacing = max(result.field.spacing, math.sqrt(area / DATUM_SAMPLES))
+    points, normals = [], []
+    fixed = [face for face in chosen if face not in ground]
+    if fixed:
+        field, _ = core.sample_faces(shape, fixed, spacing, design["flip_normals"])
+        points.append(np.array(field.points))
+        normals.append(np.array(field.normals, dtype=float))
+    predicted = [face for face in chosen if face in ground]
+    if predicted:
+        field = result.field
+        keep = np.isin(field.faces, predicted) & ((np.asarray(field.flags) & core.MISSED) == 0)
+        upwards = np.asarray(field.normals, dtype=float)[keep]
+        points.append(field.points[keep] + field.height[keep, None] * upwards)
+        normals.append(upwards)
+    return {
+        "points": np.concatenate(points),
+        "normals": np.concatenate(normals),
+        "spacing": spacing,
+        "faces": [face + 1 for face in chosen],
+        "predicted": bool(predicted),
+    }
+
+
+def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
+    """Where the scan lies: dict(work_from_scan (4, 4), rms_mm, used_share, iterations, converged,
+    sd (6,) mm and rad, undetermined, warnings).
+
+    scan: ``scan_file.Scan``; datum: as ``datum`` gives it, or a dict of points, normals, spacing.
+    start: work_from_scan (4, 4); "principal": by the principal axes of both, all their directions
+    tried, for a scan of the whole part without clutter; None: as it lies. fixed: names of
+    ``FREEDOMS`` that keep the start. max_distance_mm: scan points farther from the datum are not of
+    it (default: a twentieth of the datum's size). Trimmed point-to-plane ICP
+    (src/scan, registration.h). Raises InputError.
+    """
+    module = extension()
+    for name in fixed:
+        if name not in FREEDOMS:
+            raise InputError(f"scan: there is no freedom '{name}'; they are {', '.join(FREEDOMS)}")
+    size = float(np.linalg.norm(np.ptp(datum["points"], axis=0)))
+    reach = size / 20 if max_distance_mm is None else float(max_distance_mm)
+    if not (reach > 0 and math.isfinite(reach) and 0 < share <= 1):
+        raise InputError("scan: the greatest distance must be above 0 mm, the share in (0, 1]")
+
+    taken, upwards = scan.spread()
+
+    def register(matrix, distance, points=scan_file.SPREAD, rounds=100, share=share):
+        return module.register_scan(
+            taken,
+            upwards,
+            datum["points"],
+            datum["normals"],
+            datum["spacing"],
+            np.asarray(matrix, dtype=float),
+            distance,
+            share,
+            [name in fixed for name in FREEDOMS],
+            rounds,
+            points,
+        )
+
+    across = float(np.linalg.norm(np.ptp(scan.points, axis=0)))
+    if across < LEAST_SIZE * size:
+        raise InputError(
+            f"scan: it is {across:.3g} mm across, the design {size:.3g} mm; look at its unit"
+        )
+    warnings = []
+    if isinstance(start, str):
+        if start != "principal":
+            raise InputError(f"scan: there is no start '{start}'; give 'principal' or a matrix")
+        start = scan_start.by_principal_axes(taken, datum, register, size, warnings)
+    matrix = np.eye(4) if start is None else scan_start.rigid(start, "scan: the start")
+    found = register(matrix, reach)
+    motions = [scan_start.motion_words(one) for one in found["undetermined"]]
+    radius = float(np.sqrt(((datum["points"] - found["centre"]) ** 2).sum(axis=1).mean()))
+    if motions:
+        warnings.append(
+            "the datum leaves the scan free to move: "
+            + "; ".join(motions)
+            + ". It stays there as it started; add datum faces that look another way"
+        )
+    scale = np.array([1, 1, 1, radius, radius, radius])
+    if not motions and np.max(np.array(found["sd"]) * scale) > PLAIN_SD:
+        worst = int(np.argmax(np.array(found["sd"]) * scale))
+        warnings.append(f"the datum hardly determines {FREEDOMS[worst]}: see sd")
+    if not found["converged"]:
+        warnings.append(f"the alignment has not settled after {found['iterations']} iterations")
+    return {
+        "work_from_scan": np.asarray(found["work_from_scan"]),
+        "rms_mm": found["rms"],
+        "cut_off_mm": found["distance"],
+        "used_points": found["used"],
+        "used_share": found["used_share"],
+        "iterations": found["iterations"],
+        "converged": found["converged"],
+        "sd": dict(zip(FREEDOMS, (float(value) for value in found["sd"]))),
+        "undetermined": motions,
+        "warnings": warnings,
+    }
+
+
+def measure(field, scan, work_from_scan, search_mm=None):
+    """(n,) height of the scan over each sample of a core.HeightField, mm along its normal; NaN where
+    the scan has nothing within ``search_mm`` of the design (default: the greatest height and stock,
+    and 1 mm). A mesh is met by the normal's ray (not where it only grazes the part's next face), a cloud
+    by the plane of the nearest points.
+    """
+    if search_mm is None:
+        greatest = max(np.abs(field.height).max(), np.abs(field.stock_height).max())
+        search_mm = float(greatest) + SEARCH_MARGIN
+    if not (search_mm > 0 and math.isfinite(search_mm)):
+        raise InputError("scan: the search distance must be above 0 mm")
+    moved = scan_start.moved(scan.points, work_from_scan)
+    if scan.triangles is None:
+        return np.asarray(
+            extension().measure_cloud(
+                moved, field.points, field.normals, np.asarray(field.height), search_mm
+            )
+        )
+    target = field.copy()
+    core.apply_mesh(
+        target,
+        core.TriangleMesh(moved.astype(np.float32), scan.triangles),
+        search_mm,
+        search_mm,
+        least_cosine=LEAST_COSINE,
+    )
+    missed = (np.asarray(target.flags) & core.MISSED) != 0
+    return np.where(missed, math.nan, target.height)
+
+
+def statistics(field, measured, tolerance):
+    """Area-weighted figures of a measurement and of its difference from the prediction, mm."""
+    known = np.isfinite(measured) & ((np.asarray(field.flags) & core.MISSED) == 0)
+    if not known.any():
+        raise InputError("scan: no sample has both a measured and a predicted height")
+    area = np.asarray(field.areas, dtype=float)
+    weight = area[known] / area[known].sum()
+    lower, upper = tolerance
+
+    def figures(values):
+        order = np.argsort(values)
+        share = np.cumsum(weight[order])
+        mean = float(weight @ values)
+        told = {
+            "min": float(values.min()),
+            "max": float(values.max()),
+            "mean": mean,
+            "rms": math.sqrt(float(weight @ values**2)),
+            "sd": math.sqrt(max(0.0, float(weight @ (values - mean) ** 2))),
+        }
+        for name, part in (("p05", 0.05), ("p50", 0.5), ("p95", 0.95)):
+            told[name] = float(values[order][min(np.searchsorted(share, part), len(order) - 1)])
+        return told
+
+    found = measured[known]
+    predicted = np.asarray(field.height)[known]
+    good = (found >= lower) & (found <= upper)
+    said = (predicted >= lower) & (predicted <= upper)
+    return {
+        "measured_area_share": float(area[known].sum() / area.sum()),
+        "measured_mm": figures(found),
+        "difference_mm": figures(found - predicted),
+        "in_tolerance_area_share": float(weight[good].sum()),
+        "predicted_in_tolerance_area_share": float(weight[said].sum()),
+        "same_verdict_area_share": float(weight[good == said].sum()),
+    }
+
+
+def compare(
+    result,
+    path,
+    unit_mm=1.0,
+    start=None,
+    pairs=None,
+    datum_faces=None,
+    fixed=(),
+    max_distance_mm=None,
+    share=SHARE,
+    search_mm=None,
+    aligned=False,
+):
+    """Reads a scan's file, aligns it (``aligned``: it lies where the design does already), measures
+    it at each sample and puts the heights into ``result.field.measured``.
+
+    pairs: (k, 2, 3) of a place on the scan (its unit) and the same place on the design (mm), in
+    place of ``start``. Returns the figures that ``write`` keeps. Raises InputError; the result is
+    then as it was.
+    """
+    scan = scan_file.read(path, unit_mm)
+    figures = {"file": str(path), "unit_mm": float(unit_mm), "points": len(scan.points)}
+    figures["kind"] = "cloud" if scan.triangles is None else "mesh"
+    if aligned:
+        matrix, found = np.eye(4), None
+    else:
+        surface = datum(result, datum_faces)
+        if pairs is not None:
+            if start is not None:
+                raise InputError("scan: give pairs of points or a start, not both")
+            start, figures["pairs_rms_mm"] = scan_start.by_pairs(pairs, unit_mm)
+        found = align(scan, surface, start, fixed, max_distance_mm, share)
+        matrix = found["work_from_scan"]
+        figures["datum_faces"] = surface["faces"]
+        figures["datum_predicted"] = surface["predicted"]
+    measured = measure(result.field, scan, matrix, search_mm)
+    tolerance = result.job["inspection"]["tolerance_mm"]
+    figures.update(statistics(result.field, measured, tolerance))
+    figures["alignment"] = None if found is None else _plain(found)
+    figures["warnings"] = [] if found is None else found["warnings"]
+    result.field.set_measured(measured)
+    return figures
+
+
+def write(result, figures, folder):
+    """Keeps a comparison with the result in ``folder``: heightfield.h5 (``measured_mm``) and
+    scan.json, each whole or not at all.
+    """
+    folder = Path(folder)
+    text = json.dumps(figures, indent=2, allow_nan=False) + "\n"
+    result.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(result.job))
+    try:
+        write_whole(folder / "scan.json", text.encode())
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+
+
+def _plain(found):
+    """An alignment as JSON has it: infinite standard deviations are None."""
+    plain = {name: value for name, value in found.items() if name != "warnings"}
+    plain["work_from_scan"] = found["work_from_scan"].tolist()
+    plain["sd"] = {
+        name: value if math.isfinite(value) else None for name, value in found["sd"].items()
+    }
+    return plain

@@ -1,0 +1,137 @@
+"""Reads a scan's file: a triangle mesh, or a cloud of points."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..engine import InputError, core
+
+TEXT_SUFFIXES = (".xyz", ".asc", ".txt", ".csv", ".pts")
+SPREAD = 100_000  # points on a mesh that align it
+MOST_BYTES = 4 << 30  # of a text: more is no scan, or not one for this memory
+
+
+class Scan:
+    """``points`` (n, 3) mm in the scan's frame; ``triangles`` (m, 3) counter-clockwise seen from
+    outside, or None for a cloud.
+    """
+
+    def __init__(self, points, triangles=None):
+        self.points = np.ascontiguousarray(points, dtype=float)
+        self.triangles = triangles
+
+    def spread(self, count=SPREAD):
+        """(points (k, 3), outward normals (k, 3) or (0, 3)) evenly on the surface: a mesh's vertices
+        may lie anyhow. The same at every call.
+        """
+        if self.triangles is None:
+            return self.points, np.empty((0, 3))
+        corners = self.points[self.triangles]
+        twice = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        size = np.linalg.norm(twice, axis=1)
+        if not size.sum() > 0:
+            raise InputError("scan: its triangles have no area")
+        random = np.random.default_rng(0)
+        chosen = np.sort(random.choice(len(size), count, p=size / size.sum()))
+        u, v = random.random((2, count, 1))
+        u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+        a, b, c = corners[chosen].transpose(1, 0, 2)
+        return a + u * (b - a) + v * (c - a), twice[chosen] / size[chosen, None]
+
+
+def read(path, unit_mm=1.0):
+    """The ``Scan`` in a file; ``unit_mm``: mm of the file's 1. Raises InputError naming the file."""
+    path = Path(path)
+    if not (isinstance(unit_mm, (int, float)) and unit_mm > 0 and math.isfinite(unit_mm)):
+        raise InputError(f"{path}: the scan's unit must be a positive number of millimetres")
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    if path.suffix.lower() in TEXT_SUFFIXES:
+        return Scan(read_text(path) * unit_mm)
+    if path.suffix.lower() == ".ply":
+        points, triangles = core.read_ply(str(path))
+        points = np.asarray(points) * unit_mm
+        if not len(points):
+            raise InputError(f"{path}: the scan has no point")
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise InputError(f"{path}: vertex {row} is not finite")
+        return Scan(points, np.asarray(triangles) if len(triangles) else None)
+    if path.suffix.lower() == ".obj" and not _has_faces(path):
+        return Scan(_obj_points(path) * unit_mm)
+    mesh = core.read_mesh(str(path), float(unit_mm))
+    return Scan(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+
+
+def read_text(path):
+    """(n, 3) of a text's first three columns; blanks, tabs, commas or semicolons between them; lines
+    that begin with # or //, and one line of headings or a count before the first point, are passed
+    over.
+    """
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"{path}: a text of more than 4 GB; thin the scan out, or write PLY")
+        text = path.read_text(encoding="latin-1")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    rows, headings = [], 0
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.strip()
+        if not line or line.startswith(("#", "//")):
+            continue
+        try:
+            words = _words(line)
+            row = (float(words[0]), float(words[1]), float(words[2]))
+        except (ValueError, IndexError):
+            headings += 1
+            if rows or headings > 1 or line[0] in "+-.0123456789" and " " in line:
+                raise InputError(
+                    f"{path}: line {number}: '{line[:40]}' does not begin with three numbers; the "
+                    "decimal sign is a point"
+                ) from None
+            continue
+        if not all(math.isfinite(value) for value in row):
+            raise InputError(f"{path}: line {number}: a coordinate is not finite")
+        rows.append(row)
+    if not rows:
+        raise InputError(f"{path}: the scan has no point")
+    return np.array(rows)
+
+
+def _words(line):
+    """The columns of a line. ValueError where a comma may be a decimal sign."""
+    if ";" in line:
+        words = [word.strip() for word in line.split(";")]
+    else:
+        words = line.split()
+        if len(words) == 1:
+            return line.split(",")
+        words = [word[:-1] if word.endswith(",") else word for word in words]
+    if any("," in word for word in words[:3]):
+        raise ValueError("a decimal comma")
+    return words
+
+
+def _has_faces(path):
+    with open(path, "rb") as file:
+        return any(line.lstrip().startswith(b"f ") for line in file)
+
+
+def _obj_points(path):
+    rows = []
+    with open(path, encoding="latin-1") as file:
+        for number, line in enumerate(file, 1):
+            words = line.split()
+            if not words or words[0] != "v":
+                continue
+            try:
+                row = [float(word) for word in words[1:4]]
+            except ValueError:
+                row = []
+            if len(row) != 3 or not all(math.isfinite(value) for value in row):
+                raise InputError(f"{path}: line {number}: a vertex is three finite numbers")
+            rows.append(row)
+    if not rows:
+        raise InputError(f"{path}: the scan has no point")
+    return np.array(rows)

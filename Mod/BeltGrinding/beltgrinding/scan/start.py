@@ -1,0 +1,172 @@
+"""Where the alignment of a scan starts, and in which words its freedoms are told."""
+
+import itertools
+import math
+
+import numpy as np
+
+from ..engine import InputError
+
+AXES = ("x", "y", "z")
+TRY_POINTS = 3_000  # of the scan, for one of the directions of its principal axes
+TRY_ROUNDS = 25
+AMBIGUOUS = 1.3  # times the best residual: another direction that fits nearly as well
+OTHER_WAY = math.radians(10.0)  # between two directions that are not the same
+ALIKE_SHARE = 0.8  # of the used points of the best
+
+
+def rigid(matrix, name):
+    """A 4 x 4 (or 3 x 4) rigid transform as an array, its rotation made exactly orthonormal. Raises
+    InputError for one that is none by more than rounding.
+    """
+    try:
+        given = np.asarray(matrix, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: not a matrix of numbers") from None
+    if given.shape == (3, 4):
+        given = np.vstack([given, [0, 0, 0, 1]])
+    if given.shape != (4, 4) or not np.isfinite(given).all():
+        raise InputError(f"{name}: write 4 rows (or 3) of 4 finite numbers")
+    u, sizes, v = np.linalg.svd(given[:3, :3])
+    if np.abs(sizes - 1).max() > 1e-3 or np.linalg.det(given[:3, :3]) < 0 or any(given[3, :3]):
+        raise InputError(f"{name}: its left part is no rotation (to 0.001)")
+    result = np.eye(4)
+    result[:3, :3] = u @ v
+    result[:3, 3] = given[:3, 3]
+    return result
+
+
+def moved(points, matrix):
+    """(n, 3) points by a 4 x 4 transform."""
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def by_pairs(pairs, unit_mm=1.0):
+    """(work_from_scan, rms in mm) from three or more pairs of places, (k, 2, 3): on the scan, in its
+    unit, and on the design, mm. Least squares by singular values (Umeyama, IEEE Trans. PAMI 13,
+    1991). Raises InputError for fewer, or for places on one line.
+    """
+    try:
+        given = np.asarray(pairs, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("scan: the pairs are no numbers") from None
+    if given.ndim != 3 or given.shape[1:] != (2, 3) or len(given) < 3:
+        raise InputError("scan: three pairs of points at least; six numbers each")
+    if not np.isfinite(given).all():
+        raise InputError("scan: the pairs are not finite")
+    scan, work = given[:, 0] * unit_mm, given[:, 1]
+    centres = scan.mean(axis=0), work.mean(axis=0)
+    u, sizes, v = np.linalg.svd((work - centres[1]).T @ (scan - centres[0]))
+    if sizes[1] < 1e-9 * max(sizes[0], 1e-300):
+        raise InputError("scan: the pairs lie on one line; a turn about it stays open")
+    sign = np.diag([1, 1, np.sign(np.linalg.det(u @ v))])
+    matrix = np.eye(4)
+    matrix[:3, :3] = u @ sign @ v
+    matrix[:3, 3] = centres[1] - matrix[:3, :3] @ centres[0]
+    off = moved(scan, matrix) - work
+    return matrix, math.sqrt(float((off**2).sum(axis=1).mean()))
+
+
+def principal_axes(points):
+    """(centre, axes as columns of a rotation) by falling spread."""
+    centre = points.mean(axis=0)
+    _, vectors = np.linalg.eigh(np.cov((points - centre).T))
+    axes = vectors[:, ::-1]
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return centre, axes
+
+
+def by_principal_axes(points, datum, register, size, warnings):
+    """work_from_scan for the best of the 24 ways in which the principal axes can lie on each other,
+    each aligned coarsely; a warning where another fits nearly as well.
+    """
+    here, axes = principal_axes(datum["points"])
+    there, others = principal_axes(points)
+    tried = []
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            turn = np.zeros((3, 3))
+            turn[order, range(3)] = signs
+            if np.linalg.det(turn) < 0:
+                continue
+            matrix = np.eye(4)
+            matrix[:3, :3] = axes @ turn @ others.T
+            matrix[:3, 3] = here - matrix[:3, :3] @ there
+            try:
+                found = register(matrix, size / 10, TRY_POINTS, TRY_ROUNDS)
+            except InputError:
+                continue
+            # The distance shrinks with the residual: few points that fit well are no fit.
+            tried.append((found["rms"] / max(found["used_share"], 1e-9), found))
+    if not tried:
+        raise InputError(
+            "scan: by its principal axes the scan lies nowhere on the datum; it may hold much that is "
+            "not the part. Start from pairs of points or a matrix"
+        )
+    tried.sort(key=lambda one: one[0])
+    best = tried[0][1]
+    for score, found in tried[1:]:
+        if score > AMBIGUOUS * tried[0][0]:
+            break
+        turn = found["work_from_scan"][:3, :3] @ best["work_from_scan"][:3, :3].T
+        if math.acos(np.clip((np.trace(turn) - 1) / 2, -1, 1)) > OTHER_WAY:
+            warnings.append(
+                "the scan fits nearly as well turned another way: the part looks symmetric; check "
+                "the side, or start from pairs of points"
+            )
+            break
+    return np.asarray(best["work_from_scan"])
+
+
+def motion_words(motion):
+    """A unit motion (6,) in words: "shift along (1.00, 0.00, 0.00)"."""
+    shift, turn = np.asarray(motion[:3]), np.asarray(motion[3:])
+    told = []
+    for vector, what in ((shift, "shift along"), (turn, "turn about")):
+        if np.linalg.norm(vector) > 0.3:
+            unit = vector / np.linalg.norm(vector)
+            unit = unit * (1 if unit[np.argmax(np.abs(unit))] > 0 else -1)
+            told.append(f"{what} ({', '.join(f'{value + 0:.2f}' for value in unit)})")
+    return " with ".join(told)
+
+
+def face_numbers(text):
+    """[1, 2] of "1,2". Raises InputError."""
+    try:
+        return [int(word) for word in text.split(",") if word.strip()]
+    except ValueError:
+        raise InputError(f"scan: datum faces '{text}': write numbers, as 1,2,5") from None
+
+
+def read_matrix(path):
+    """A rigid transform from a text of 3 or 4 rows of 4 numbers; # begins a comment. None for None."""
+    return None if path is None else rigid(_numbers(path, 4), f"{path}")
+
+
+def read_pairs(path):
+    """(k, 2, 3) from a text of rows x, y, z (scan), x, y, z (design). None for None."""
+    return None if path is None else np.reshape(_numbers(path, 6), (-1, 2, 3))
+
+
+def _numbers(path, columns):
+    """Rows of numbers with commas, semicolons or blanks between them. Raises InputError."""
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            lines = file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from None
+    rows = []
+    for number, line in enumerate(lines, 1):
+        words = line.split("#")[0].replace(",", " ").replace(";", " ").split()
+        if not words:
+            continue
+        try:
+            row = [float(word) for word in words]
+        except ValueError:
+            row = []
+        if len(row) != columns or not all(math.isfinite(value) for value in row):
+            raise InputError(f"{path}: line {number}: write {columns} numbers")
+        rows.append(row)
+    if not rows:
+        raise InputError(f"{path}: there are no numbers")
+    return rows

@@ -1,0 +1,181 @@
+"""Are a job's settings fine enough? The job run coarser, as given and finer, and what that says of the
+error of every figure of the verdict.
+
+Richardson extrapolation over three levels with a constant ratio (Roache, Perspective: a method for
+uniform reporting of grid refinement studies, J. Fluids Engineering 116, 1994; Celik et al., Procedure
+for estimation and reporting of uncertainty due to discretization in CFD applications, J. Fluids
+Engineering 130, 2008). Where the three values do not converge monotonically, their range.
+"""
+
+import copy
+import math
+import time
+
+import numpy as np
+
+from ..engine import InputError, core
+from . import run as runs
+from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
+
+RATIO = 2.0  # between the levels
+SETTINGS = {  # what is refined: name, keys of the job
+    "spacing": (("sampling", "spacing_mm"),),
+    "step": (("simulation", "max_travel_mm"), ("simulation", "max_angle_deg")),
+    "contact_grid": (("belt_machine", "contact_spacing_mm"),),
+}
+
+COST = {"coarse": 0.125, "given": 1.0, "fine": 8.0}  # of a run: samples and steps, by the ratio
+ORDERS = (0.5, 2.0)  # observed orders outside are taken as these: beyond, they are chance
+SAFETY = 1.25  # on three levels (Roache)
+SAFETY_TWO = 3.0  # on two levels, the order taken as 1 (Roache)
+ROUNDING = 1e-9  # relative: differences below it are none
+
+
+def converge(job, context=None):
+    """Runs a validated job at twice, once and half its sampling spacing, steps and contact cells.
+
+    Returns (the job's ``Result``, whose ``convergence`` is the dict that convergence.json holds: see
+    Resources/schema/convergence.schema.json). A level that cannot be run is left out, and said. Where
+    the settings are not fine enough, each of them is coarsened alone as well, to tell which matters.
+    Takes about ten times as long as the job. Raises InputError, Cancelled.
+    """
+    context = context or core.RunContext()
+    whole, so_far, levels, result, notes = sum(COST.values()) + 2.0, 0.0, {}, None, []
+    for level in ("given", "coarse", "fine"):
+        end = so_far + COST[level]
+        part = context.part(so_far / whole, end / whole)
+        start = time.perf_counter()
+        try:
+            found = runs.run(scaled(job, level), part)
+        except (InputError, MemoryError) as error:
+            if level == "given":
+                raise
+            notes.append(f"the {level} level could not be run: {error or 'out of memory'}")
+            levels[level] = None
+        else:
+            levels[level] = _level(found, time.perf_counter() - start)
+            result = found if level == "given" else result
+        so_far = end
+        found = None  # a fine field is large
+    answer = {
+        "job_sha256": digest(job),
+        "ratio": RATIO,
+        "tolerance_mm": list(job["inspection"]["tolerance_mm"]),
+        "band_share": BAND_SHARE,
+        "levels": {name: _settings(job, name, levels[name]) for name in LEVELS},
+        "quantities": _quantities(levels),
+        "settings": None,
+        "notes": notes,
+    }
+    answer = assessed(answer, job["inspection"])
+    if not answer["fine_enough"]:
+        context.report(so_far / whole)
+        rest = context.part(so_far / whole, 1.0)
+        answer["settings"] = _blame(job, levels["given"], rest, notes)
+    result.convergence = answer
+    context.report(1.0)
+    return result
+
+
+def scaled(job, level, only=None):
+    """A copy of a job at a level; ``only``: the one of ``SETTINGS`` that is changed."""
+    factor = RATIO ** (1 - LEVELS.index(level))
+    job = copy.deepcopy(job)
+    for name, keys in SETTINGS.items():
+        if only is None or name == only:
+            for part, key in keys:
+                job[part][key] *= factor
+    return job
+
+
+def _level(result, seconds):
+    """The figures of a run that are compared: name, unit, value."""
+    summary = result.summary
+    figures = {("removed_volume", "mm3", None): summary["removed_volume_mm3"]}
+    for name, value in summary["deviation_mm"].items():
+        figures[(name, "mm", None)] = value
+    figures[("in_tolerance", "share", None)] = summary["in_tolerance_area_share"]
+    field = result.field
+    seen = (field.flags & core.MISSED) == 0
+    faces, heights = field.faces[seen], field.height[seen]
+    for face in np.unique(faces):
+        own = heights[faces == face]
+        figures[("face_min", "mm", int(face) + 1)] = float(own.min())
+        figures[("face_max", "mm", int(face) + 1)] = float(own.max())
+    return {
+        "figures": figures,
+        "samples": summary["samples"],
+        "steps": summary["steps"],
+        "seconds": seconds,
+    }
+
+
+def _settings(job, level, run):
+    """A level's settings and size; None where it could not be run."""
+    if run is None:
+        return None
+    job = scaled(job, level)
+    return {
+        **{key: job[part][key] for keys in SETTINGS.values() for part, key in keys},
+        "samples": run["samples"],
+        "steps": run["steps"],
+        "wall_time_s": run["seconds"],
+    }
+
+
+def _quantities(levels):
+    found = []
+    for key in levels["given"]["figures"]:
+        name, unit, face = key
+        values = [levels[level]["figures"].get(key) if levels[level] else None for level in LEVELS]
+        found.append({"name": name, "face": face, "unit": unit, "values": values})
+        found[-1].update(estimate(*values))
+    return found
+
+
+def estimate(coarse, given, fine):
+    """dict(behaviour, order, error) of a quantity by its values at three levels, None where a level
+    has none. ``error``: estimate of |given - exact| in the quantity's unit, on the safe side.
+    """
+    if fine is None and coarse is None:
+        return {"behaviour": "unknown", "order": None, "error": None}
+    if coarse is None:  # f(h) - f(0) = 2 (f(h) - f(h/2)) at order 1
+        error = SAFETY_TWO * RATIO / (RATIO - 1.0) * abs(fine - given)
+        return {"behaviour": "two levels", "order": None, "error": error}
+    if fine is None:
+        error = SAFETY_TWO / (RATIO - 1.0) * abs(given - coarse)
+        return {"behaviour": "two levels", "order": None, "error": error}
+    step, before = fine - given, given - coarse
+    size = ROUNDING * max(abs(coarse), abs(given), abs(fine))
+    if abs(step) <= size:
+        return {"behaviour": "exact", "order": None, "error": max(abs(step), abs(before))}
+    if abs(before) <= size or not 0.0 < step / before < 1.0:
+        three = (coarse, given, fine)
+        behaviour = "diverging" if abs(step) >= abs(before) else "oscillating"
+        return {"behaviour": behaviour, "order": None, "error": max(three) - min(three)}
+    order = -math.log(step / before) / math.log(RATIO)
+    grown = RATIO ** min(max(order, ORDERS[0]), ORDERS[1])
+    error = SAFETY * abs(step) * grown / (grown - 1.0)
+    return {"behaviour": "monotonic", "order": order, "error": error}
+
+
+def _blame(job, given, context, notes):
+    """How far each setting moves the deviations when it alone is coarsened: {name: mm}, the greatest
+    change among the figures in mm.
+    """
+    found = {}
+    for k, name in enumerate(SETTINGS):
+        part = context.part(k / len(SETTINGS), (k + 1) / len(SETTINGS))
+        try:
+            run = _level(runs.run(scaled(job, "coarse", name), part), 0.0)
+        except InputError as error:
+            notes.append(f"{name} alone could not be made coarser: {error}")
+            found[name] = None
+            continue
+        changes = [
+            abs(run["figures"][key] - value)
+            for key, value in given["figures"].items()
+            if key[1] == "mm" and key in run["figures"]
+        ]
+        found[name] = max(changes)
+    return found

@@ -1,0 +1,60 @@
+"""The answer whether a job's settings are fine enough: as kept, and judged by its tolerances."""
+
+import hashlib
+import math
+
+from ..base import schemas
+from ..job import inputs
+from ..job.tolerances import narrowest_band
+
+LEVELS = ("coarse", "given", "fine")
+BAND_SHARE = 0.1  # of the tolerance band: errors below it do not move a verdict
+SHARE_LIMIT = 0.01  # of the area, and of the removed volume
+
+
+def assessed(convergence, inspection):
+    """A copy of an answer, assessed by the tolerances of a job's ``inspection``: the errors hold for any.
+    The share in tolerance is left out where it was that of another tolerance.
+    """
+    lower, upper = narrowest_band(inspection)
+    limits = {"mm": BAND_SHARE * (upper - lower), "share": SHARE_LIMIT}
+    same = convergence["tolerance_mm"] == list(inspection["tolerance_mm"])
+    quantities = []
+    for one in convergence["quantities"]:
+        if one["name"] == "in_tolerance" and not same:
+            continue
+        limit = limits.get(one["unit"], SHARE_LIMIT * abs(one["values"][1]))
+        ok = one["error"] is not None and one["error"] <= limit
+        quantities.append({**one, "limit": limit, "ok": ok})
+    return {
+        **convergence,
+        "quantities": quantities,
+        "fine_enough": all(one["ok"] for one in quantities),
+    }
+
+
+def worst(convergence):
+    """The quantity whose error is the largest share of its limit."""
+    return max(convergence["quantities"], key=_excess)
+
+
+def _excess(one):
+    if one["error"] is None:
+        return math.inf
+    return one["error"] / one["limit"] if one["limit"] > 0.0 else (math.inf, 0.0)[one["error"] == 0]
+
+
+def digest(job):
+    """SHA-256 of what the heights of a validated job depend on: all but its inspection."""
+    job = {key: value for key, value in job.items() if key != "inspection"}
+    return hashlib.sha256(inputs.canonical(job)).hexdigest()
+
+
+def read(path, job):
+    """The convergence of a job from a file; None where there is none, or one of another job. Raises
+    InputError.
+    """
+    if not path.is_file():
+        return None
+    found = schemas.checked(schemas.read_json(path), schemas.schema("convergence"), str(path))
+    return assessed(found, job["inspection"]) if found["job_sha256"] == digest(job) else None

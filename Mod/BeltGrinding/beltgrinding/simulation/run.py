@@ -1,0 +1,148 @@
+"""Runs a job: grinds its field along its programs, and says what came out. No FreeCAD in here."""
+
+import time
+
+import numpy as np
+
+from ..cell import collision, events as event_lists, motions, reach
+from ..cell.tool_path import tool_path
+from ..engine import InputError, core
+from ..inspection import verdict as verdicts
+from ..job import inputs, law as laws
+from ..job.engine_input import engine_arguments
+from ..job.law import remaining_cut
+from ..job.poses import program_name
+from ..job.workpiece import apply_stock, make_field, read_design
+from .result import Result
+
+NOTES = 3  # warnings shown behind an error
+
+
+class _Phases:
+    """Wall time by phase, s."""
+
+    def __init__(self):
+        self.seconds = {}
+        self.restart()
+
+    def restart(self):
+        self._last = time.perf_counter()
+
+    def end(self, name):
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - self._last
+        self.restart()
+
+
+def run(job, context=None, recording=None):
+    """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
+    ``recording``: an empty core.Recording that is to follow it, program after program.
+    """
+    warnings = []
+    try:
+        return _run(job, context or core.RunContext(), warnings, recording)
+    except InputError as error:
+        if not warnings:
+            raise
+        notes = "; ".join(warnings[:NOTES])  # they may well be the reason
+        raise InputError(f"{error}. Note: {notes}") from None
+
+
+def _run(job, context, warnings, recording):
+    phases = _Phases()
+    digests = inputs.digests(job)
+    phases.end("hash")
+    wheel, compliance, law, options = engine_arguments(job)
+    core.check_wheel(wheel)
+    paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
+    unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
+    ways = motions.of_paths(paths)
+    phases.end("programs")
+    reached = reach.job_reach(job, paths, context.part(0.0, 0.0))
+    phases.end("reach")
+    shape = read_design(job["design"])
+    warnings += shape.warnings()
+    phases.end("read")
+    field = make_field(job, shape, warnings, context.part(0.0, 0.2))
+    phases.end("sample")
+    apply_stock(field, job["stock"], warnings, context.part(0.2, 0.27))
+    phases.end("stock")
+    met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3))
+    phases.end("collisions")
+
+    options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))
+    shifts = np.zeros((field.size, len(options["shifted_laws"])))
+    found, steps, process_time, models = [], None, 0.0, {}
+    for i, path in enumerate(paths):
+        share = 0.7 / len(paths)
+        part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
+        try:
+            result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
+        except InputError as error:
+            raise InputError(f"{program_name(job, i)}: {error}") from None
+        lists = [one[i]["events"] for one in (reached, met) if one]
+        found.append((i, process_time, sum(lists, result["events"])))
+        rows = result["steps"]
+        rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
+        rows["time"] = rows["time"] + process_time
+        steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
+        process_time += result["process_time"]
+        options["belt"] = result["belt"]
+        options["first_motion"] += len(path)
+        shifts += result["shifts"]
+        models = {key: result[key] for key in ("compliance", "law")}
+        for name, seconds in result["wall"].items():
+            phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
+    phases.restart()
+    if shifts.shape[1]:
+        field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))
+    events = event_lists.merge(found)
+    summary = summarise(job, field, events)
+    phases.end("inspect")
+    summary.update(
+        steps=len(steps["time"]),
+        process_time_s=process_time,
+        wall_time_s=phases.seconds,
+        warnings=warnings,
+        inputs=digests,
+        models=models,
+        belt={
+            **laws.job_belt(options["belt"]),
+            "remaining_cut": remaining_cut(job, options["belt"]),
+        },
+        robot=reach.summary(job["robot"], reached),
+        clearances=collision.summary(met, paths),
+        unresolved_motions=unresolved,
+    )
+    result = Result(job, field, summary, events, steps, recording)
+    result.motions = ways
+    phases.restart()
+    result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
+    phases.end("verdict")
+    return result
+
+
+def summarise(job, field, events):
+    """The figures of a ground field, as summary.json has them."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    s = core.deviation_statistics(field, lower, upper)
+    uncertainty = {}
+    if "sd_mean" in s:
+        uncertainty = {
+            "deviation_sd_mm": {"mean": s["sd_mean"], "p95": s["sd_p95"]},
+            "expected_in_tolerance_area_share": s["expected_in_tolerance_share"],
+        }
+    return {
+        "samples": s["samples"],
+        "design_area_mm2": s["design_area"],
+        "stock_volume_mm3": s["stock_volume"],
+        "removed_volume_mm3": s["removed_volume"],
+        "deviation_mm": {k: s[k] for k in ("min", "max", "mean", "rms", "p05", "p50", "p95")},
+        "in_tolerance_area_share": s["in_tolerance_share"],
+        "above_tolerance_area_share": s["above_share"],
+        "below_tolerance_area_share": s["below_share"],
+        **uncertainty,
+        "missed_rays": s["missed"],
+        "defective_samples": s["defective"],
+        "events": event_lists.count(events),
+        "versions": core.versions(),
+    }

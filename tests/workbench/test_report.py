@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 import beltgrinding  # noqa: E402
+from beltgrinding.base import messages  # noqa: E402
 from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.job import inputs  # noqa: E402
 from beltgrinding.inspection import picture  # noqa: E402
@@ -28,7 +29,6 @@ from beltgrinding.simulation import result as results  # noqa: E402
 from beltgrinding.reporting import (
     charts,
     convergence_section as converged,
-    event_messages,
     facts,
     findings,
     language,
@@ -371,24 +371,44 @@ def test_command_line_writes_html_and_pdf(ground, tmp_path):
 
 
 def test_messages_of_events_are_told_in_german():
-    words = language.Language("de")
+    def told(*facts):
+        message = "; ".join(core.Fact(code, text, **named) for code, text, named in facts)
+        kept = [dict(zip(("code", "text", "arguments"), fact)) for fact in facts]
+        event = json.loads(json.dumps({"message": message, "facts": kept}))
+        assert messages.event_message(event, "en") == message
+        return messages.event_message(event, "de")
 
-    def told(text):
-        return event_messages.message({"message": text}, words)
-
-    assert told("ground to -0.123 mm, below the lower limit of -0.05 mm") == (
-        "bis −0,123 mm geschliffen, unter die untere Grenze von −0,05 mm"
-    )
-    assert told("housing and 3 come within 1.25 mm of each other in a rapid motion") == (
+    assert told(
+        ("event.gouge", "ground to {height:.3f} mm", {"height": -0.12345, "limit": -0.05})
+    ) == ("bis −0,123 mm geschliffen, unter die untere Grenze von −0,05 mm")
+    near = {"body": "housing", "other": "3", "distance": 1.25}
+    assert told(("event.near_miss_rapid", "{body}, {other}", near)) == (
         "housing und 3 kommen einander in einer Eilbewegung auf 1,25 mm nahe"
     )
-    assert told(
-        "joint 2 at 130.0 deg, 5.0 deg beyond its limit of 125.0 deg; wound up: it would fit at -230.0 deg"
-    ).endswith("; verdreht: Bei −230,0 Grad würde es passen")
-    assert told("the pressure reaches 1.2e+03 MPa, above the limit of 1 MPa").startswith(
-        "der Druck"
+    beyond = {"joint": 2, "angle": 130.0, "beyond": 5.0, "limit": 125.0}
+    wound = ("event.wound_up", "it would fit at {angle:.1f} deg", {"angle": -230.0})
+    assert told(("event.joint_limit", "joint {joint}", beyond), wound).endswith(
+        "; verdreht: Bei −230,0 Grad würde es passen"
     )
-    assert told("part and wheel run into each other") == "Bauteil und Scheibe stoßen zusammen"
-    assert told("something of another version") == "something of another version"
-    text = "ground to -0.123 mm, below the lower limit of -0.05 mm"
-    assert event_messages.message({"message": text}, language.Language("en")) == text
+    high = ("event.over_pressure", "{pressure:.3g} MPa", {"pressure": 1234.5, "limit": 1.0})
+    assert told(high).startswith("der Druck erreicht 1,23e+03 MPa")
+    meet = ("event.collision", "{body}, {other}", {"body": "part", "other": "wheel"})
+    assert told(meet) == "Bauteil und Scheibe stoßen zusammen"
+    # Of a later version, and of an earlier one, which kept no facts.
+    assert told(("event.of_a_later_version", "{mm:.1f} mm", {"mm": 2.0})) == "2.0 mm"
+    old = {"message": "ground to -0.123 mm, below the lower limit of -0.05 mm"}
+    assert messages.event_message({**old, "facts": []}, "de") == old["message"]
+
+
+def test_errors_are_told_in_german(tmp_path):
+    path = tmp_path / "a {0}.ply"
+    path.write_text("none")
+    with pytest.raises(InputError) as caught:
+        core.read_ply(str(path))
+    english, german = "cannot be read as a PLY mesh", "lässt sich nicht als PLY-Netz lesen"
+    assert messages.sentence(caught.value, "en") == f"{path}: {english}: it has no PLY header"
+    told = messages.sentence(caught.value, "de")
+    assert told == f"{path}: {german}: sie hat keinen PLY-Kopf"
+    assert caught.value.culprit == {"file": str(path)}
+    assert messages.sentence(InputError("a {0}"), "de") == "a {0}"
+    assert messages.sentence(ValueError("of another kind"), "de") == "of another kind"

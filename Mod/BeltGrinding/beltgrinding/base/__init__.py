@@ -1,1 +1,2 @@
-"""What every layer uses and what knows none of them: files, JSON, resources, schemas, frames."""
+"""What every layer uses and what knows none of them: files, JSON, resources, schemas, frames,
+sentences in the reader's language."""

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.messages import body, event_message, kind_text
 from ..engine import core
 from ..job.poses import program_name
 from . import charts, facts, verdict_section
 from .convergence_section import convergence_part
-from .event_messages import body, kind_text, message
 from .layout import section, table
 from .markup import element
 
@@ -223,7 +223,7 @@ def events(content, words):
             [_severity(first[kind], words), element("b", words(kind_text(kind)))],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
-            [_begun(message(first[kind], words)), _advice(first[kind], words)],
+            [_begun(event_message(first[kind], words.code)), _advice(first[kind], words)],
         )
         for kind in order
     ]
@@ -243,7 +243,7 @@ def _clearances(content, words):
         return None
     rows = [
         (
-            " – ".join(words.short(body(name, words)) for name in pair["bodies"]),
+            " – ".join(words.short(body(name, words.code)) for name in pair["bodies"]),
             words.number(pair["distance_mm"], 1),
             where({**pair, "time": pair["time_s"]}, content.result.job, words),
         )
@@ -303,7 +303,7 @@ def all_events(content, words):
             words(kind_text(event["kind"])),
             where_short(event, content.result.job, words),
             "" if event.get("face") is None else f"Face{event['face']}",
-            _begun(message(event, words)),
+            _begun(event_message(event, words.code)),
         )
         for event in found[:MOST_EVENTS]
     ]

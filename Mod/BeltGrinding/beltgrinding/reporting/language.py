@@ -4,12 +4,11 @@ import json
 import math
 from functools import lru_cache
 
+from ..base import messages
 from ..base.resources import resources
 from ..engine import InputError
 
 LANGUAGES = ("en", "de")
-POINTS = {"en": ".", "de": ","}
-MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"  # where a number is not known
 
 
@@ -41,7 +40,7 @@ class Language:
 
     def decimal(self, text):
         """A number that is written already, with the language's own signs."""
-        return text.replace("-", MINUS).replace(".", POINTS[self.code])
+        return messages.decimal(text, self.code)
 
     def figures(self, value, count=4):
         """A number with so many figures, as large or small as it may be."""

@@ -1,6 +1,6 @@
 """Events in words, in the language of the window."""
 
-from ...reporting import event_messages
+from ...base.messages import body, event_message, kind_text
 from .compat import translate
 from .report_language import words
 
@@ -16,17 +16,17 @@ def severities():
 
 def title(code):
     """The title of a kind; of one that is not known, its code in words."""
-    return words()(event_messages.kind_text(code))
+    return words()(kind_text(code))
 
 
 def message(event):
-    """What happened, as the core says it."""
-    return event_messages.message(event, words())
+    """What happened."""
+    return event_message(event, words().code)
 
 
 def bodies(event):
     """The bodies that are concerned."""
-    return ", ".join(event_messages.body(name, words()) for name in event["bodies"])
+    return ", ".join(body(name, words().code) for name in event["bodies"])
 
 
 def advice(event):

@@ -1,0 +1,87 @@
+"""Facts as sentences, in the reader's language: here and nowhere else.
+
+A fact (``beltgrinding_core.Fact``, an event's ``facts``, an ``InputError``) has a code, an English form
+and arguments. The forms in other languages stand in Resources/messages, by code; what has none there,
+as of another version, is told in English.
+"""
+
+import json
+import string
+from functools import lru_cache
+
+from .resources import resources
+
+POINTS = {"en": ".", "de": ","}
+MINUS = "\N{MINUS SIGN}"
+BODIES = ("body", "other")  # arguments that are bodies of the cell
+
+
+@lru_cache(maxsize=None)
+def _forms(language):
+    """{code: form}"""
+    path = resources() / "messages" / f"{language}.json"
+    return json.loads(path.read_text(encoding="utf-8")) if language != "en" else {}
+
+
+def decimal(text, language):
+    """A number that is written already, with the language's own signs."""
+    return text.replace("-", MINUS).replace(".", POINTS[language])
+
+
+class _Formatter(string.Formatter):
+    """str.format, with numbers as the language writes them."""
+
+    def __init__(self, language):
+        self.language = language
+
+    def format_field(self, value, format_spec):
+        text = format(value, format_spec)
+        return text if isinstance(value, str) else decimal(text, self.language)
+
+
+def word(code, text, language):
+    """A word or a sentence without arguments; ``text`` is the English one."""
+    return _forms(language).get(code, text)
+
+
+def body(name, language):
+    """The name of a body of the cell: those of wheel and part are ours, the others the user's."""
+    if name == "wheel":
+        return word("body.wheel", "wheel", language)
+    if name == "part":
+        return word("body.part", "part", language)
+    return name
+
+
+def _filled(code, text, arguments, language):
+    form = _forms(language).get(code)
+    if form is None:
+        return text.format(**arguments) if code else text
+    named = {
+        name: body(value, language) if name in BODIES else value
+        for name, value in arguments.items()
+    }
+    return _Formatter(language).vformat(form, (), named)
+
+
+def sentence(told, language):
+    """What a fact, an error or a fact of an event (a dict) says. ``language``: "en" or "de". Of an
+    error of another kind, what it says itself."""
+    if isinstance(told, dict):
+        return _filled(told["code"], told["text"], told["arguments"], language)
+    if language == "en" or not hasattr(told, "code"):
+        return str(told)
+    parts = [*getattr(told, "context", ()), (told.code, told.text, told.arguments)]
+    return "".join(_filled(*part, language) for part in parts)
+
+
+def kind_text(kind):
+    """A kind of events in English words: "force_not_reached" is "Force not reached"."""
+    return kind.replace("_", " ").capitalize()
+
+
+def event_message(event, language):
+    """What happened, one line. Of a result without facts, of a version before 0.2, in English."""
+    if language == "en" or not event.get("facts"):
+        return event["message"]
+    return "; ".join(sentence(fact, language) for fact in event["facts"])

@@ -39,6 +39,17 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath"):
     next(b for b in buttons if b.text().replace("&", "") in ("OK", "Ok")).click()
     settle()
 
+# What the core refuses is told in German, too.
+from beltgrinding.engine import InputError, core
+from beltgrinding.gui.common.messages import report
+try:
+    core.read_mesh("/no/such.stl")
+except InputError as error:
+    report(error)
+box = window.findChild(QtGui.QMessageBox, "BeltGrinding_Error")
+assert box.text() == "/no/such.stl: Diese Datei gibt es nicht", box.text()
+box.close()
+
 # What is said of a property: FreeCAD stores it in English, and looks for its translation when it shows it.
 Gui.Selection.clearSelection()
 Gui.Selection.addSelection(doc.BeltMachine)

@@ -9,6 +9,7 @@ from ..objects import preferences
 from ..objects.deviation import Deviation
 from ..objects.proxy import type_of
 from .common.compat import QtGui, translate
+from .common.messages import error_text
 from .widgets.form import quantity_field, show_quantity
 
 MOST_THREADS = 1024
@@ -174,4 +175,4 @@ def take_effect():
                 obj.Proxy.update(obj)
                 obj.ViewObject.Proxy.update_legend()
             except InputError as error:  # its result is gone
-                FreeCAD.Console.PrintError(f"{error}\n")
+                FreeCAD.Console.PrintError(f"{error_text(error)}\n")

@@ -5,17 +5,27 @@ import traceback
 import FreeCAD
 import FreeCADGui as Gui
 
+from ...base.messages import sentence
 from .compat import QtGui, translate
+
+
+def error_text(error):
+    """What an error says, in the window's language."""
+    if not hasattr(error, "code"):
+        return str(error)
+    from .report_language import language  # not above: that the core is missing must be said, too
+
+    return sentence(error, language())
 
 
 def report(error):
     """Says an error in the report view and, where there is a user to see it, in a message."""
-    from ...engine import InputError  # not above: that the core is missing must be said, too
+    from ...engine import InputError  # not above, as in error_text
 
     if not isinstance(error, InputError):
         lines = traceback.format_exception(type(error), error, error.__traceback__)
         FreeCAD.Console.PrintError("".join(lines))
-    tell(str(error))
+    tell(error_text(error))
 
 
 def tell(text):

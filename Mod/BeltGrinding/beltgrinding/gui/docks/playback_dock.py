@@ -11,6 +11,7 @@ from ...objects import job_data
 from ...objects.simulation import Simulation
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from ..common.runner import Runner
 from ..scene.playback_scene import SAME, Scene
 
@@ -60,7 +61,7 @@ class Playback(QtGui.QDockWidget):
             self.scene = Scene(job, simulation, found[0])
         except InputError as error:
             self.setWidget(self._offer(simulation))
-            self.state.setText(str(error))
+            self.state.setText(error_text(error))
             return
         self.setWidget(self._controls(simulation, found[1]))
         self.go(0.0)
@@ -99,7 +100,7 @@ class Playback(QtGui.QDockWidget):
         try:
             self.runner = Runner(self.job(), self._progress, self._simulated, core.Recording())
         except InputError as error:
-            self.state.setText(str(error))
+            self.state.setText(error_text(error))
             return
         self.record.hide()
         self.bar.show()
@@ -120,7 +121,9 @@ class Playback(QtGui.QDockWidget):
                 FreeCAD.Console.PrintError("".join(lines))
             self.setWidget(self._offer(job_data.child(self.job(), Simulation)))
             cancelled = isinstance(error, Cancelled)
-            self.state.setText(translate("BeltGrinding", "Cancelled.") if cancelled else str(error))
+            self.state.setText(
+                translate("BeltGrinding", "Cancelled.") if cancelled else error_text(error)
+            )
 
     def _controls(self, simulation, steps):
         panel = QtGui.QWidget()

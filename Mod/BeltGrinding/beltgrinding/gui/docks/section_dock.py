@@ -10,6 +10,7 @@ from ...objects import preferences, section as objects
 from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from .object_dock import ObjectDock
 
 STEPS = 1000  # of the slider
@@ -139,7 +140,7 @@ class SectionDock(ObjectDock):
             plot = section_plot.plot(section, mode, self.exaggeration())
         except InputError as error:
             self.chart.show_plot(None, None)
-            return self._say(str(error), True)
+            return self._say(error_text(error), True)
         self.chart.show_plot(section, plot)
         self._say(self.figures_text(obj), False)
 
@@ -328,7 +329,7 @@ class SectionDock(ObjectDock):
                 mode = section_plot.SHAPE if shape else section_plot.UNROLLED
                 sections.write_svg(section, path, mode, self.exaggeration())
         except InputError as error:
-            return self._say(str(error), True)
+            return self._say(error_text(error), True)
         self._say(translate("BeltGrinding", "Written: {}").format(path), False)
 
     # What FreeCAD tells

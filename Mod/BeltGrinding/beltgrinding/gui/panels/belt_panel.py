@@ -4,6 +4,7 @@ from ...engine import InputError
 from ...objects import belt_machine, job_data, job_object
 from ...objects.simulation import Simulation
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..widgets.form import Form
 from .panel import Panel
 
@@ -55,7 +56,7 @@ class BeltPanel(Panel):
                 self.obj.Proxy.count(self.obj, simulation)
                 counted += 1
             except InputError as error:
-                refused.append(str(error))
+                refused.append(error_text(error))
         self.fill()
         if counted:
             self.tell(translate("BeltGrinding", "Runs counted: {}.").format(counted))

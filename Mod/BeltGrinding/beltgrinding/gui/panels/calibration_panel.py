@@ -7,6 +7,7 @@ from ...engine import Cancelled, InputError
 from ...objects import job_data, properties
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.form import MINIMUM_WIDTH
 
@@ -137,7 +138,7 @@ class CalibrationPanel:
         if isinstance(error, Cancelled):
             return
         if error is not None:
-            self.state.setText(str(error))
+            self.state.setText(error_text(error))
             if not isinstance(error, InputError):
                 raise error
             return

@@ -9,6 +9,7 @@ from ...objects import job_data, job_inputs
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.messages import error_text
 from ..common.runner import Background
 
 WAIT = 300  # ms after the last move of the slider
@@ -109,7 +110,7 @@ class ContactPanel:
         if error is not None:
             if not isinstance(error, InputError):
                 raise error
-            self.state.setText(str(error))
+            self.state.setText(error_text(error))
             return
         self.image.setPixmap(QtGui.QPixmap.fromImage(picture(result)))
         self.state.setText(

@@ -3,6 +3,7 @@
 from ...engine import InputError
 from ...objects import preferences
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..scene.probe import Probe
 from ..widgets.form import Form
 from .job_panel import check_tolerance, mark_tolerance
@@ -72,7 +73,7 @@ class DeviationPanel(Panel):
         try:
             self.check()
         except InputError as error:
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         obj.Proxy.update(obj)
         self.tell(

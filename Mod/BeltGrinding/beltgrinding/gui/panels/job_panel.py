@@ -5,6 +5,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ...objects import job_data
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from ..widgets.form import Form
 from .law_forms import LawForms
@@ -23,7 +24,7 @@ def mark_tolerance(form, job):
         check_tolerance(job)
         mistake = ""
     except InputError as error:
-        mistake = str(error)
+        mistake = error_text(error)
     for name in ("ToleranceLower", "ToleranceUpper"):
         form.mark(name, mistake)
 
@@ -138,7 +139,7 @@ class JobPanel(Panel):
             shape, numbers = job_data.design(self.obj)
         except InputError as error:
             self.tint.show([])
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         # A hidden part lies under the deviation, whose colours a tint would change.
         seen = any(obj.ViewObject.Visibility for obj, _ in self.obj.DesignFaces)

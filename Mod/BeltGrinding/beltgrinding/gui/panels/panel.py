@@ -6,6 +6,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.messages import error_text
 from ..widgets.form import Form
 
 
@@ -55,8 +56,8 @@ class Panel:
                     form.check()
             self.check()
         except InputError as error:
-            self.tell(str(error), True)
-            FreeCAD.Console.PrintError(f"{self.obj.Label}: {error}\n")
+            self.tell(error_text(error), True)
+            FreeCAD.Console.PrintError(f"{self.obj.Label}: {error_text(error)}\n")
             return False
         self.close()
         self.document.recompute()

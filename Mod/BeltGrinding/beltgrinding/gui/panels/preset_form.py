@@ -9,6 +9,7 @@ from ...objects.properties import set_value
 from ...objects.proxy import type_of
 from ...presets import library as presets, rubber
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 
 YOUNGS_MODULUS = next(key for key in belt_machine.KEYS if key.name == "YoungsModulus")
 
@@ -71,7 +72,7 @@ class HardnessField:
                 set_value(self.form.obj, YOUNGS_MODULUS, rubber.modulus(shore_a))
                 self.form.refresh("YoungsModulus")
         except InputError as error:
-            text = str(error)
+            text = error_text(error)
         self.text.setText(text)
         self.text.setVisible(bool(text))
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from ...engine import InputError
 from ...objects import robot_path
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from .panel import Panel, edit
@@ -74,7 +75,7 @@ class ProgramPanel(Panel):
             self.obj.Label = Path(self.obj.Source).stem
         except InputError as error:
             self.obj.Source = self.source
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         self.show()
 

@@ -5,6 +5,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ...objects import raster_path
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from ..widgets.form import Form
 from .panel import Panel
 
@@ -145,7 +146,7 @@ class RasterPanel(Panel):
         try:
             raster_path.generate(self.obj)
         except InputError as error:
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         obj = self.obj
         obj.recompute()

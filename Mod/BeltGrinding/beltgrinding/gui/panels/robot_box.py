@@ -7,6 +7,7 @@ from ...engine import Cancelled, InputError, core
 from ...presets import library as presets, robot as robots
 from ..common import event_texts
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.form import FrameField
 
@@ -109,7 +110,7 @@ class RobotBox(QtGui.QGroupBox):
             robot = robots.checked(self.machine.Proxy.robot(self.machine))
             path = core.ToolPath(**obj.Proxy.arrays(obj), **self.machine.Proxy.cell(self.machine))
         except InputError as error:
-            self.joints.setText(str(error))
+            self.joints.setText(error_text(error))
             return
         self.check.setEnabled(False)
         self.task = Background(
@@ -124,7 +125,7 @@ class RobotBox(QtGui.QGroupBox):
         if error is not None:
             if not isinstance(error, InputError):
                 raise error
-            self.joints.setText(str(error))
+            self.joints.setText(error_text(error))
             return
         self.events = result["events"][:SHOWN_EVENTS]
         self.list.clear()

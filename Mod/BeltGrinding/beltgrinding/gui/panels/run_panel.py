@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 from ...engine import Cancelled, InputError
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.messages import error_text
 from ..common.status_progress import StatusProgress
 from ..common.time_left import TimeLeft, duration
 
@@ -98,8 +99,8 @@ class RunPanel:
         if not isinstance(error, InputError):
             lines = traceback.format_exception(type(error), error, error.__traceback__)
             FreeCAD.Console.PrintError("".join(lines))
-        FreeCAD.Console.PrintError(f"{error}\n")
-        self._say(str(error), True)
+        FreeCAD.Console.PrintError(f"{error_text(error)}\n")
+        self._say(error_text(error), True)
 
     def _say(self, text, error=False):
         self.state.setText(text)

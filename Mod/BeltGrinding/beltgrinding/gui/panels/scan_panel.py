@@ -8,6 +8,7 @@ from ...objects import deviation, ground_mesh, part_scan, preferences, simulatio
 from ...objects.job_data import child, children
 from ...scan import comparison as scan, start as scan_start
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 from ..common.runner import Background
 from .panel import Panel
 
@@ -156,7 +157,7 @@ class ScanPanel(Panel):
             options = self.options()
             result = part_scan.prepare(self.obj, self.job)
         except InputError as error:
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         self.button.setEnabled(False)
         self.tell(translate("BeltGrinding", "Aligning and measuring..."))
@@ -171,7 +172,7 @@ class ScanPanel(Panel):
         self.work = None
         self.button.setEnabled(True)
         if error is not None:
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
             return
         result, figures = found
         part_scan.store(self.obj, result, figures)

@@ -8,6 +8,7 @@ from ...objects.job_data import child
 from ...objects.simulation import Simulation
 from ...objects.verdict import limits_changed
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from ..common.runner import Runner
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
@@ -97,7 +98,7 @@ class SimulationPanel(RunPanel):
         try:
             self.moment.show(event)
         except InputError as error:  # the job has changed since
-            self._say(str(error), True)
+            self._say(error_text(error), True)
 
     def deviation(self):
         self.moment.close()

@@ -5,6 +5,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ...objects import job_data
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from .job_panel import FaceGate
 from .panel import Panel
@@ -159,7 +160,7 @@ class ZonesPanel(Panel):
         try:
             job_data.set_zones(self.obj, self.zones())
         except InputError as error:
-            self.tell(str(error), True)
+            self.tell(error_text(error), True)
         else:
             count = self.table.rowCount()
             self.tell(

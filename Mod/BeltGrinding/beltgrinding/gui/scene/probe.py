@@ -7,6 +7,7 @@ from pivy import coin
 from ...engine import InputError
 from ...objects import preferences, readout as readings
 from ..common.compat import QtCore, QtGui, translate
+from ..common.messages import error_text
 from . import field_view
 
 SHOWN_FOR = 10000  # ms
@@ -72,7 +73,7 @@ class Probe(QtGui.QGroupBox):
         try:
             reading = self._seen(view, tuple(event["Position"]))
         except InputError as error:
-            self.text.setText(str(error))
+            self.text.setText(error_text(error))
             return
         if reading is not None:
             self.show_reading(reading, event["ShiftDown"] or self.keep.isChecked())

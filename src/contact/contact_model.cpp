@@ -1,14 +1,49 @@
 #include "beltgrinding/contact_model.h"
 
 #include <cmath>
+#include <utility>
 
 #include "beltgrinding/error.h"
 
 namespace beltgrinding {
+namespace {
 
-void ContactProblem::validate() const {
+constexpr int kMostCells = 1 << 26;  // of a grid: its transforms take some 2 GB
+
+/// Cells whose surface the undeformed tool reaches.
+class PreparedGeometric final : public PreparedContact {
+  public:
+    PreparedGeometric(const ContactGrid& grid, std::string description)
+        : PreparedContact(grid, std::move(description)) {}
+
+  private:
+    ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd*) override {
+        if (problem.force_control)
+            throw InputError("contact: a rigid tool has no force to command");
+        ContactSolution solution;
+        solution.pressure = Eigen::ArrayXd::Zero(problem.gap.size());
+        solution.approach = problem.approach;
+        solution.area = (problem.gap < problem.approach).select(problem.coverage, 0.0).sum() *
+                        grid().cell_area();
+        solution.converged = true;
+        return solution;
+    }
+};
+
+}  // namespace
+
+void ContactGrid::validate() const {
+    const bool sides = std::isfinite(ds) && std::isfinite(dy) && ds > 0.0 && dy > 0.0;
+    if (nx <= 0 || ny <= 0 || nx > kMostCells / ny || !sides) {
+        throw InputError(
+            "contact: the grid needs cells of positive sides, in millimetres, at most " +
+            std::to_string(kMostCells));
+    }
+}
+
+void ContactProblem::validate(const ContactGrid& grid) const {
     const Eigen::Index n = grid.cells();
-    if (n <= 0 || gap.size() != n || coverage.size() != n) {
+    if (gap.size() != n || coverage.size() != n) {
         throw InputError("contact: gap and coverage must have one value per cell of the grid");
     }
     if (gap.isNaN().any() || !coverage.isFinite().all()) {
@@ -25,16 +60,26 @@ void ContactProblem::validate() const {
     }
 }
 
-ContactSolution Geometric::solve(const ContactProblem& problem, const Eigen::ArrayXd*) const {
-    problem.validate();
-    if (problem.force_control) throw InputError("contact: a rigid tool has no force to command");
-    ContactSolution solution;
-    solution.pressure = Eigen::ArrayXd::Zero(problem.gap.size());
-    solution.approach = problem.approach;
-    solution.area = (problem.gap < problem.approach).select(problem.coverage, 0.0).sum() *
-                    problem.grid.cell_area();
-    solution.converged = true;
-    return solution;
+PreparedContact::PreparedContact(const ContactGrid& grid, std::string description)
+    : grid_(grid), description_(std::move(description)) {
+    grid_.validate();
+}
+
+ContactSolution PreparedContact::solve(const ContactProblem& problem, const Eigen::ArrayXd* start) {
+    problem.validate(grid_);
+    if (start != nullptr && start->size() != grid_.cells()) {
+        throw InputError("contact: the pressure to start from must have one value per cell");
+    }
+    return do_solve(problem, start);
+}
+
+std::unique_ptr<PreparedContact> ContactModel::prepare(const ContactGrid& grid) const {
+    grid.validate();
+    return do_prepare(grid);
+}
+
+std::unique_ptr<PreparedContact> Geometric::do_prepare(const ContactGrid& grid) const {
+    return std::make_unique<PreparedGeometric>(grid, describe());
 }
 
 }  // namespace beltgrinding

@@ -1,8 +1,11 @@
-#include "contact_solver.h"
+// Polonsky and Keer's constrained conjugate gradients; see
+// beltgrinding/compliance.h.
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "beltgrinding/compliance.h"
 
 namespace beltgrinding {
 namespace {
@@ -13,11 +16,10 @@ constexpr double kPi = std::numbers::pi;
 /// in which C is symmetric.
 class ConstrainedConjugateGradients {
   public:
-    ConstrainedConjugateGradients(const ContactProblem& problem,
-                                  const ComplianceOperator& compliance)
+    ConstrainedConjugateGradients(const ContactProblem& problem, ComplianceOperator& compliance)
         : problem_(problem),
           compliance_(compliance),
-          weight_(problem.coverage * problem.grid.cell_area()),
+          weight_(problem.coverage * compliance.grid().cell_area()),
           reachable_((problem.gap.isFinite() && problem.coverage > 0.0).cast<double>()),
           gap_((reachable_ > 0.0).select(problem.gap, 0.0)) {}
 
@@ -45,7 +47,7 @@ class ConstrainedConjugateGradients {
     void precondition(const Eigen::ArrayXd& r, Eigen::ArrayXd& z) const;
 
     const ContactProblem& problem_;
-    const ComplianceOperator& compliance_;
+    ComplianceOperator& compliance_;
     Eigen::ArrayXd weight_;
     Eigen::ArrayXd reachable_, contact_;  // 1 for the cells, else 0: quicker than logical arrays
     Eigen::ArrayXd gap_;
@@ -64,7 +66,7 @@ class ConstrainedConjugateGradients {
 
 void ConstrainedConjugateGradients::start_from(const Eigen::ArrayXd* start) {
     const Eigen::Index n = gap_.size();
-    if (start != nullptr && start->size() == n && start->isFinite().all()) {
+    if (start != nullptr && start->isFinite().all()) {
         pressure_ = reachable_ * start->max(0.0);
     } else {
         pressure_ = Eigen::ArrayXd::Zero(n);
@@ -120,7 +122,7 @@ void ConstrainedConjugateGradients::precondition(const Eigen::ArrayXd& r, Eigen:
     if (compliance_.local()) return;
     // The compliance falls with the wavenumber k like 1 / k between the contact's size and the
     // cell's; a + b k^2, a five-point star, levels that out. Beside the contact r is zero.
-    const ContactGrid& grid = problem_.grid;
+    const ContactGrid& grid = compliance_.grid();
     const double cell = std::sqrt(grid.cell_area());
     const double b = std::sqrt(area_) * cell / (kPi * std::sqrt(8.0));
     const double across = b / (grid.ds * grid.ds), along = b / (grid.dy * grid.dy);
@@ -239,15 +241,9 @@ ContactSolution ConstrainedConjugateGradients::solve(const Eigen::ArrayXd* start
 
 }  // namespace
 
-ContactSolution solve_contact(const ContactProblem& problem, const ComplianceOperator& compliance,
-                              const Eigen::ArrayXd* start) {
-    problem.validate();
-    return ConstrainedConjugateGradients(problem, compliance).solve(start);
-}
-
-ContactSolution ComplianceOperator::solve(const ContactProblem& problem,
-                                          const Eigen::ArrayXd* start) const {
-    return solve_contact(problem, *this, start);
+ContactSolution ComplianceOperator::do_solve(const ContactProblem& problem,
+                                             const Eigen::ArrayXd* start) {
+    return ConstrainedConjugateGradients(problem, *this).solve(start);
 }
 
 }  // namespace beltgrinding

@@ -1,4 +1,4 @@
-#include "contact/convolution.h"
+#include "convolution.h"
 
 #include <algorithm>
 

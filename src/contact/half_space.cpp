@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "beltgrinding/error.h"
+#include "convolution.h"
 
 namespace beltgrinding {
 namespace {
@@ -37,6 +40,53 @@ double love(const ContactGrid& grid, double x, double y, const Elasticity& elast
     return integral / (std::numbers::pi * elasticity.plane_strain_modulus());
 }
 
+class ConvolutionOperator final : public ComplianceOperator {
+  public:
+    /// `length`, `rows`: of the padded grid.
+    ConvolutionOperator(const ContactGrid& grid, std::string description, int length, int rows,
+                        std::shared_ptr<const ConvolutionModel::Spectrum> influence)
+        : ComplianceOperator(grid, std::move(description)),
+          rows_(rows),
+          influence_(std::move(influence)),
+          transform_(grid.ny, grid.nx, length),
+          values_(static_cast<std::size_t>(grid.cells())),
+          spectrum_(influence_->values.size()) {}
+    double diagonal() const override { return influence_->centre; }
+
+  private:
+    void do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                  Eigen::ArrayXd& displacement) override;
+
+    int rows_;
+    std::shared_ptr<const ConvolutionModel::Spectrum> influence_;
+    RowTransform transform_;
+    std::vector<float> values_;
+    std::vector<std::complex<float>> spectrum_;
+};
+
+void ConvolutionOperator::do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                                   Eigen::ArrayXd& displacement) {
+    using Values = Eigen::Map<Eigen::ArrayXf>;
+    Values(values_.data(), pressure.size()) = (coverage * pressure).cast<float>();
+    // Rows beyond the grid's are zero: the transform along the circumference skips them.
+    const auto waves = static_cast<std::size_t>(transform_.wavenumbers());
+    const auto ny = static_cast<std::size_t>(grid().ny), rows = static_cast<std::size_t>(rows_);
+    std::vector<std::complex<float>> narrow(waves * ny);
+    transform_.forward(values_.data(), narrow.data());
+    std::fill(spectrum_.begin(), spectrum_.end(), std::complex<float>());
+    for (std::size_t k = 0; k < waves; ++k) {
+        std::copy_n(narrow.data() + k * ny, ny, spectrum_.data() + k * rows);
+    }
+    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, true);
+    for (std::size_t i = 0; i < spectrum_.size(); ++i) spectrum_[i] *= influence_->values[i];
+    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, false);
+    for (std::size_t k = 0; k < waves; ++k) {
+        std::copy_n(spectrum_.data() + k * rows, ny, narrow.data() + k * ny);
+    }
+    transform_.backward(narrow.data(), values_.data());
+    displacement = Values(values_.data(), pressure.size()).cast<double>();
+}
+
 }  // namespace
 
 void Elasticity::validate(double largest_ratio) const {
@@ -55,25 +105,8 @@ double Elasticity::plane_strain_modulus() const {
     return youngs_modulus / (1.0 - poissons_ratio * poissons_ratio);
 }
 
-void ConvolutionCompliance::set_grid(const ContactGrid& grid) {
-    if (grid == grid_) return;
-    if (grid.ny != grid_.ny || grid.dy != grid_.dy || grid.ds != grid_.ds) symbols_.clear();
-    grid_ = grid;
-    build(grid);
-}
-
-void ConvolutionCompliance::build(const ContactGrid& grid) {
-    const int length = quick_fft_length(2 * grid.nx - 1);
-    const int rows = rows_ = quick_fft_length(2 * grid.ny - 1);
-    transform_ = RowTransform(grid.ny, grid.nx, length);
-    values_.resize(static_cast<std::size_t>(grid.cells()));
-    const auto waves = static_cast<std::size_t>(transform_.wavenumbers());
-    spectrum_.resize(waves * static_cast<std::size_t>(rows));
-    const auto known = symbols_.find(length);
-    if (known != symbols_.end()) {
-        symbol_ = &known->second;
-        return;
-    }
+ConvolutionModel::Spectrum ConvolutionModel::build(const ContactGrid& grid, int length,
+                                                   int rows) const {
     // The influence function wrapped around the padded grid; even, so that its spectrum is real.
     std::vector<float> kernel(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length));
     for (int j = 0; j <= rows / 2; ++j) {
@@ -87,40 +120,24 @@ void ConvolutionCompliance::build(const ContactGrid& grid) {
             }
         }
     }
-    centre_ = kernel[0];
     RowTransform whole(rows, length, length);
-    std::vector<std::complex<float>> spectrum(spectrum_.size());
+    std::vector<std::complex<float>> spectrum(static_cast<std::size_t>(whole.wavenumbers()) *
+                                              static_cast<std::size_t>(rows));
     whole.forward(kernel.data(), spectrum.data());
     transform_rows(spectrum.data(), whole.wavenumbers(), rows, true);
-    std::vector<float>& symbol = symbols_[length];
-    symbol_ = &symbol;
-    symbol.resize(spectrum.size());
+    Spectrum result{std::vector<float>(spectrum.size()), kernel[0]};
     const float scale = 1.0F / static_cast<float>(rows);
-    std::transform(spectrum.begin(), spectrum.end(), symbol.begin(),
+    std::transform(spectrum.begin(), spectrum.end(), result.values.begin(),
                    [&](std::complex<float> c) { return c.real() * scale; });
+    return result;
 }
 
-void ConvolutionCompliance::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                                  Eigen::ArrayXd& displacement) const {
-    using Values = Eigen::Map<Eigen::ArrayXf>;
-    Values(values_.data(), pressure.size()) = (coverage * pressure).cast<float>();
-    // Rows beyond the grid's are zero: the transform along the circumference skips them.
-    const auto waves = static_cast<std::size_t>(transform_.wavenumbers());
-    const auto ny = static_cast<std::size_t>(grid_.ny), rows = static_cast<std::size_t>(rows_);
-    std::vector<std::complex<float>> narrow(waves * ny);
-    transform_.forward(values_.data(), narrow.data());
-    std::fill(spectrum_.begin(), spectrum_.end(), std::complex<float>());
-    for (std::size_t k = 0; k < waves; ++k) {
-        std::copy_n(narrow.data() + k * ny, ny, spectrum_.data() + k * rows);
-    }
-    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, true);
-    for (std::size_t i = 0; i < spectrum_.size(); ++i) spectrum_[i] *= (*symbol_)[i];
-    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, false);
-    for (std::size_t k = 0; k < waves; ++k) {
-        std::copy_n(spectrum_.data() + k * rows, ny, narrow.data() + k * ny);
-    }
-    transform_.backward(narrow.data(), values_.data());
-    displacement = Values(values_.data(), pressure.size()).cast<double>();
+std::unique_ptr<ComplianceOperator> ConvolutionModel::make_operator(const ContactGrid& grid) const {
+    const int length = quick_fft_length(2 * grid.nx - 1);
+    const int rows = quick_fft_length(2 * grid.ny - 1);
+    return std::make_unique<ConvolutionOperator>(
+        grid, describe(), length, rows,
+        spectra_.get(grid, length, [&] { return build(grid, length, rows); }));
 }
 
 HalfSpace::HalfSpace(Elasticity elasticity) : elasticity_(elasticity) {

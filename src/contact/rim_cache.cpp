@@ -2,14 +2,14 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace beltgrinding {
 namespace {
@@ -31,17 +31,6 @@ std::string hex(std::uint64_t value) {
     std::ostringstream text;
     text << std::hex << value;
     return text.str();
-}
-
-/// Empty if the user has no place for a cache.
-fs::path folder() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
-        return fs::path(cache) / "beltgrinding";
-    }
-    if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
-        return fs::path(home) / ".cache" / "beltgrinding";
-    }
-    return {};
 }
 
 void put(std::string& to, const void* data, std::size_t size) {
@@ -84,29 +73,30 @@ std::string rim_cache_name(const std::string& key) {
     return hex(fnv1a(key));
 }
 
-bool read_rim_cache(const std::string& key, RimSamples& samples) {
-    const fs::path place = folder();
-    if (place.empty()) return false;
-    std::ifstream file(place / ("rim-" + rim_cache_name(key)), std::ios::binary);
+FolderRimCache::FolderRimCache(fs::path folder) : folder_(std::move(folder)) {}
+
+fs::path FolderRimCache::path(const std::string& key) const {
+    return folder_ / ("rim-" + rim_cache_name(key));
+}
+
+std::optional<RimSamples> FolderRimCache::read(const std::string& key) const {
+    std::ifstream file(path(key), std::ios::binary);
     const std::string data{std::istreambuf_iterator<char>(file), {}};
-    if (data.size() < sizeof(std::uint64_t)) return false;
+    if (data.size() < sizeof(std::uint64_t)) return std::nullopt;
     const std::string_view body(data.data(), data.size() - sizeof(std::uint64_t));
     std::uint64_t sum = 0;
     std::memcpy(&sum, data.data() + body.size(), sizeof(sum));
-    if (sum != fnv1a(body)) return false;
+    if (sum != fnv1a(body)) return std::nullopt;
     Reader reader(body);
-    RimSamples read;
-    if (!reader.expect(kMagic) || !reader.expect(key) || !reader.take(read.even) ||
-        !reader.take(read.odd) || !reader.done()) {
-        return false;
+    RimSamples found;
+    if (!reader.expect(kMagic) || !reader.expect(key) || !reader.take(found.even) ||
+        !reader.take(found.odd) || !reader.done()) {
+        return std::nullopt;
     }
-    samples = std::move(read);
-    return true;
+    return found;
 }
 
-void write_rim_cache(const std::string& key, const RimSamples& samples) {
-    const fs::path place = folder();
-    if (place.empty()) return;
+void FolderRimCache::write(const std::string& key, const RimSamples& samples) {
     std::string data(kMagic);
     data += key;
     for (const auto* matrices : {&samples.even, &samples.odd}) {
@@ -121,14 +111,16 @@ void write_rim_cache(const std::string& key, const RimSamples& samples) {
     const std::uint64_t sum = fnv1a(data);
     put(data, &sum, sizeof(sum));
     std::error_code ignored;
-    fs::create_directories(place, ignored);
-    const fs::path path = place / ("rim-" + rim_cache_name(key));
-    const fs::path part = path.string() + "." + std::to_string(::getpid()) + ".part";
+    fs::create_directories(folder_, ignored);
+    static std::atomic<unsigned> writes{0};  // two threads may write the same
+    std::ostringstream part_name;
+    part_name << path(key).string() << '.' << ::getpid() << '-' << writes++ << ".part";
+    const fs::path part = part_name.str();
     std::ofstream file(part, std::ios::binary);
     file.write(data.data(), static_cast<std::streamsize>(data.size()));
     file.close();
     if (file) {
-        fs::rename(part, path, ignored);
+        fs::rename(part, path(key), ignored);
     }
     fs::remove(part, ignored);
 }

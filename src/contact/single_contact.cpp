@@ -39,7 +39,8 @@ double meet(const SingleContact& contact, double placed, double s, double y) {
 
 class Press {
   public:
-    Press(const SingleContact& contact, ContactModel& model) : contact_(contact), model_(model) {}
+    Press(const SingleContact& contact, const ContactModel& model)
+        : contact_(contact), model_(model) {}
 
     SingleContactResult run() {
         if (model_.rigid()) throw InputError("contact: a rigid tool has no pressure");
@@ -49,32 +50,30 @@ class Press {
             throw InputError("contact: the grid's spacing must be positive, in millimetres");
         }
         const double across = std::round(contact_.wheel.width / contact_.spacing);
-        problem_.grid.ny = static_cast<int>(std::clamp(across, 1.0, 1.0 * kMaxCells));
-        problem_.grid.dy = contact_.wheel.width / problem_.grid.ny;
-        problem_.grid.ds = std::min(contact_.spacing, contact_.wheel.radius / kCellsPerRadius);
+        grid_.ny = static_cast<int>(std::clamp(across, 1.0, 1.0 * kMaxCells));
+        grid_.dy = contact_.wheel.width / grid_.ny;
+        grid_.ds = std::min(contact_.spacing, contact_.wheel.radius / kCellsPerRadius);
         problem_.tolerance = contact_.tolerance;
         problem_.force = contact_.force;
-        const double round = 2.0 * kLargestAngle * contact_.wheel.radius / problem_.grid.ds;
+        const double round = 2.0 * kLargestAngle * contact_.wheel.radius / grid_.ds;
         const int most = static_cast<int>(std::min(round, 1.0 * kMaxCells));
         for (int nx = kFirstCells;; nx *= 2) {
-            problem_.grid.nx = std::min(nx, most);
+            grid_.nx = std::min(nx, most);
             SingleContactResult result = press();
-            if (problem_.grid.nx == most || !reaches_ends(result)) return result;
+            if (grid_.nx == most || !reaches_ends(result)) return result;
         }
     }
 
   private:
     /// Gap, coverage of every cell with the wheel's centre at `placed`.
     void set_gap(double placed) {
-        const ContactGrid& grid = problem_.grid;
-        problem_.gap.resize(grid.cells());
-        problem_.coverage.resize(grid.cells());
-        for (int j = 0; j < grid.ny; ++j) {
-            for (int i = 0; i < grid.nx; ++i) set_cell(placed, i, j);
+        problem_.gap.resize(grid_.cells());
+        problem_.coverage.resize(grid_.cells());
+        for (int j = 0; j < grid_.ny; ++j) {
+            for (int i = 0; i < grid_.nx; ++i) set_cell(placed, i, j);
         }
     }
     void set_cell(double placed, int i, int j) {
-        const ContactGrid& grid = problem_.grid;
         double gap = 0.0;
         int covered = 0;
         const auto look = [&](double s, double y) {
@@ -85,28 +84,29 @@ class Press {
         };
         int points = 1;
         if (contact_.workpiece.shape != Workpiece::Shape::kStrip) {
-            look(grid.s(i), grid.y(j));
+            look(grid_.s(i), grid_.y(j));
         } else {
             points = kPointsPerSide * kPointsPerSide;
             for (int p = 0; p < points; ++p) {
                 const double u = (p % kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
                 const double v = (p / kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
-                look(grid.s(i) + u * grid.ds, grid.y(j) + v * grid.dy);
+                look(grid_.s(i) + u * grid_.ds, grid_.y(j) + v * grid_.dy);
             }
         }
-        const int cell = j * grid.nx + i;
+        const int cell = j * grid_.nx + i;
         problem_.gap[cell] = covered > 0 ? gap / covered : kInfinity;
         problem_.coverage[cell] = static_cast<double>(covered) / points;
     }
 
     SingleContactResult press() {
-        model_.set_grid(problem_.grid);
+        const auto prepared = model_.prepare(grid_);
         set_gap(0.0);
         const double touch = problem_.gap.minCoeff();
         if (!std::isfinite(touch))
             throw InputError("contact: the wheel meets the workpiece nowhere");
         SingleContactResult result;
-        result.grid = problem_.grid;
+        result.grid = grid_;
+        result.model = prepared->describe();
         problem_.force_control = contact_.force_control;
         double placed = touch;
         if (!contact_.force_control) {
@@ -119,7 +119,7 @@ class Press {
             set_gap(placed);
             {
                 const Stopwatch watch(result.time);
-                result.solution = model_.solve(problem_, start.size() > 0 ? &start : nullptr);
+                result.solution = prepared->solve(problem_, start.size() > 0 ? &start : nullptr);
             }
             iterations += result.solution.iterations;
             if (!contact_.force_control) break;
@@ -145,7 +145,8 @@ class Press {
     }
 
     const SingleContact& contact_;
-    ContactModel& model_;
+    const ContactModel& model_;
+    ContactGrid grid_;
     ContactProblem problem_;
 };
 
@@ -182,7 +183,7 @@ void Workpiece::validate() const {
     if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
 }
 
-double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force,
+double foundation_stiffness(const ContactWheel& wheel, const ContactModel& model, double force,
                             double softest) {
     // A Winkler layer on a plane: F = 2/3 k w a^3 / R (Johnson, Contact Mechanics, 4.3).
     const double half_length = std::cbrt(1.5 * force * wheel.radius / (wheel.width * softest));
@@ -194,11 +195,11 @@ double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, doub
     contact.tolerance = 1e-3;
     contact.approach = press(contact, model).solution.approach;
     contact.force_control = false;
-    ElasticFoundation unit(1.0);  // whose force is proportional to its stiffness
+    const ElasticFoundation unit(1.0);  // whose force is proportional to its stiffness
     return force / press(contact, unit).solution.force;
 }
 
-SingleContactResult press(const SingleContact& contact, ContactModel& model) {
+SingleContactResult press(const SingleContact& contact, const ContactModel& model) {
     return Press(contact, model).run();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "beltgrinding/error.h"
 
@@ -66,6 +68,12 @@ double lowest_gap(const ContactProblem& problem) {
         .minCoeff();
 }
 
+void check(const ContactGrid& grid, const ContactProblem& problem) {
+    if (problem.gap.size() != grid.cells() || problem.coverage.size() != grid.cells()) {
+        throw std::invalid_argument("surrogate: the contact is of another grid");
+    }
+}
+
 }  // namespace
 
 int ContactFeatures::levels() const {
@@ -78,10 +86,12 @@ int ContactFeatures::size() const {
     return 1 + 1 + 8 * levels() + 2;
 }
 
-std::vector<int> ContactFeatures::candidates(const ContactProblem& problem, double approach) const {
+std::vector<int> ContactFeatures::candidates(const ContactGrid& grid, const ContactProblem& problem,
+                                             double approach) const {
+    check(grid, problem);
     const double greatest = approach - lowest_gap(problem);
     std::vector<int> cells;
-    for (int k = 0; k < problem.grid.cells(); ++k) {
+    for (int k = 0; k < grid.cells(); ++k) {
         if (problem.coverage[k] > 0.0 && approach - problem.gap[k] > -kDeepest * greatest) {
             cells.push_back(k);
         }
@@ -89,9 +99,14 @@ std::vector<int> ContactFeatures::candidates(const ContactProblem& problem, doub
     return cells;
 }
 
-Eigen::MatrixXf ContactFeatures::of(const ContactProblem& problem, double approach,
-                                    const std::vector<int>& cells) const {
-    const ContactGrid& grid = problem.grid;
+Eigen::MatrixXf ContactFeatures::of(const ContactGrid& grid, const ContactProblem& problem,
+                                    double approach, const std::vector<int>& cells) const {
+    check(grid, problem);
+    for (const int k : cells) {
+        if (k < 0 || k >= grid.cells()) {
+            throw std::invalid_argument("surrogate: a cell is not of the contact's grid");
+        }
+    }
     const double greatest = approach - lowest_gap(problem);
     Eigen::ArrayXf depth(grid.cells()), covered(grid.cells());
     for (int k = 0; k < grid.cells(); ++k) {
@@ -123,25 +138,36 @@ Eigen::MatrixXf ContactFeatures::of(const ContactProblem& problem, double approa
     return result;
 }
 
-Surrogate::Surrogate(ContactFeatures features, TrainedRegression regression, std::string name)
-    : features_(features), regression_(std::move(regression)), name_(std::move(name)) {
-    if (!(features_.cell > 0.0) || !(features_.rim_thickness > 0.0)) {
-        throw InputError("surrogate: its cell and rim thickness must be positive");
-    }
-    regression_.validate(features_.size());
-}
+namespace {
 
-Eigen::ArrayXd Surrogate::predict(const ContactProblem& problem, double approach) const {
+class PreparedSurrogate final : public PreparedContact {
+  public:
+    PreparedSurrogate(const ContactGrid& grid, std::string description, ContactFeatures features,
+                      std::shared_ptr<const TrainedRegression> regression)
+        : PreparedContact(grid, std::move(description)),
+          features_(features),
+          regression_(std::move(regression)) {}
+
+  private:
+    ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd*) override;
+    Eigen::ArrayXd predict(const ContactProblem& problem, double approach) const;
+
+    ContactFeatures features_;
+    std::shared_ptr<const TrainedRegression> regression_;
+};
+
+Eigen::ArrayXd PreparedSurrogate::predict(const ContactProblem& problem, double approach) const {
     Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(problem.gap.size());
     const double greatest = approach - lowest_gap(problem);
     if (!(greatest > 0.0)) return pressure;
-    const std::vector<int> all = features_.candidates(problem, approach);
+    const std::vector<int> all = features_.candidates(grid(), problem, approach);
     for (std::size_t first = 0; first < all.size(); first += kBatch) {
         const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
         const std::vector<int> cells(
             begin,
             begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(kBatch, all.size() - first)));
-        const Eigen::VectorXf values = regression_.predict(features_.of(problem, approach, cells));
+        const Eigen::VectorXf values =
+            regression_->predict(features_.of(grid(), problem, approach, cells));
         for (std::size_t k = 0; k < cells.size(); ++k) {
             pressure[cells[k]] = greatest * std::max(0.0f, values[static_cast<Eigen::Index>(k)]);
         }
@@ -149,8 +175,7 @@ Eigen::ArrayXd Surrogate::predict(const ContactProblem& problem, double approach
     return pressure;
 }
 
-ContactSolution Surrogate::solve(const ContactProblem& problem, const Eigen::ArrayXd*) const {
-    problem.validate();
+ContactSolution PreparedSurrogate::do_solve(const ContactProblem& problem, const Eigen::ArrayXd*) {
     ContactSolution solution;
     solution.pressure = Eigen::ArrayXd::Zero(problem.gap.size());
     solution.approach = problem.force_control ? 0.0 : problem.approach;
@@ -159,7 +184,7 @@ ContactSolution Surrogate::solve(const ContactProblem& problem, const Eigen::Arr
         solution.converged = !problem.force_control || problem.force == 0.0;
         return solution;
     }
-    const Eigen::ArrayXd weight = problem.coverage * problem.grid.cell_area();
+    const Eigen::ArrayXd weight = problem.coverage * grid().cell_area();
     // By what the force at this approach is too large: force control, or a robot that gives way.
     const auto excess = [&](double approach) {
         solution.pressure = predict(problem, approach);
@@ -207,6 +232,21 @@ ContactSolution Surrogate::solve(const ContactProblem& problem, const Eigen::Arr
     solution.area = (solution.pressure > 0.0).select(weight, 0.0).sum();
     solution.peak_pressure = solution.pressure.maxCoeff();
     return solution;
+}
+
+}  // namespace
+
+Surrogate::Surrogate(ContactFeatures features, TrainedRegression regression, std::string name)
+    : features_(features), name_(std::move(name)) {
+    if (!(features_.cell > 0.0) || !(features_.rim_thickness > 0.0)) {
+        throw InputError("surrogate: its cell and rim thickness must be positive");
+    }
+    regression.validate(features_.size());
+    regression_ = std::make_shared<const TrainedRegression>(std::move(regression));
+}
+
+std::unique_ptr<PreparedContact> Surrogate::do_prepare(const ContactGrid& grid) const {
+    return std::make_unique<PreparedSurrogate>(grid, describe(), features_, regression_);
 }
 
 }  // namespace beltgrinding

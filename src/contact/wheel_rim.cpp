@@ -3,11 +3,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
+#include "convolution.h"
 
 namespace beltgrinding {
 namespace {
@@ -95,10 +98,93 @@ Eigen::MatrixXd combinations(int cells, bool even) {
     return basis;
 }
 
+/// Whether the samples, which may come from any cache, are of as many wavenumbers and cells.
+bool fits(const RimSamples& samples, int cells) {
+    const auto all = [](const std::vector<Eigen::MatrixXd>& matrices, int size) {
+        return matrices.size() == kWaves &&
+               std::all_of(matrices.begin(), matrices.end(), [&](const Eigen::MatrixXd& m) {
+                   return m.rows() == size && m.cols() == size && m.allFinite();
+               });
+    };
+    return all(samples.even, (cells + 1) / 2) && all(samples.odd, cells / 2);
+}
+
+class RimOperator final : public ComplianceOperator {
+  public:
+    /// `length`: of the padded grid along the circumference.
+    RimOperator(const ContactGrid& grid, std::string description, int length,
+                std::shared_ptr<const WheelRim::Spectrum> spectrum)
+        : ComplianceOperator(grid, std::move(description)),
+          spectrum_(std::move(spectrum)),
+          transform_(grid.ny, grid.nx, length),
+          values_(static_cast<std::size_t>(grid.cells())),
+          waves_(static_cast<std::size_t>(transform_.wavenumbers()) *
+                 static_cast<std::size_t>(grid.ny)),
+          image_(waves_.size()) {}
+    double diagonal() const override { return spectrum_->diagonal; }
+
+  private:
+    void do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                  Eigen::ArrayXd& displacement) override;
+
+    std::shared_ptr<const WheelRim::Spectrum> spectrum_;
+    RowTransform transform_;
+    std::vector<float> values_;
+    std::vector<std::complex<float>> waves_, image_;
+};
+
+void RimOperator::do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                           Eigen::ArrayXd& displacement) {
+    const int nx = grid().nx, ny = grid().ny, ne = (ny + 1) / 2, no = ny / 2;
+    const auto root = std::sqrt(0.5);
+    using Rows = Eigen::Map<Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic>>;
+    Rows parts(values_.data(), nx, ny);  // a column is a row of the grid
+    const auto row = [&](const Eigen::ArrayXd& a, int j) { return a.segment(j * nx, nx); };
+    const int shift = ny % 2;
+    for (int a = 0; a < ne; ++a) {
+        const int up = ny / 2 + a, down = ny - 1 - up;
+        const Eigen::ArrayXd p = row(pressure, up) * row(coverage, up);
+        if (up == down) {
+            parts.col(a) = p.cast<float>();
+            continue;
+        }
+        const Eigen::ArrayXd q = row(pressure, down) * row(coverage, down);
+        parts.col(a) = (root * (p + q)).cast<float>();
+        parts.col(ne + a - shift) = (root * (p - q)).cast<float>();
+    }
+    transform_.forward(values_.data(), waves_.data());
+    const float* matrix = spectrum_->matrices.data();
+    std::vector<float> re(static_cast<std::size_t>(ny)), im(re.size());
+    for (int k = 0; k < transform_.wavenumbers(); ++k) {
+        std::fill(re.begin(), re.end(), 0.0F);
+        std::fill(im.begin(), im.end(), 0.0F);
+        const auto* x = reinterpret_cast<const float*>(waves_.data() + k * ny);
+        multiply(matrix, ne, x, re.data(), im.data());
+        multiply(matrix + ne * ne, no, x + 2 * ne, re.data() + ne, im.data() + ne);
+        matrix += ne * ne + no * no;
+        for (int j = 0; j < ny; ++j) {
+            const auto i = static_cast<std::size_t>(j);
+            image_[static_cast<std::size_t>(k * ny + j)] = {re[i], im[i]};
+        }
+    }
+    transform_.backward(image_.data(), values_.data());
+    for (int a = 0; a < ne; ++a) {
+        const int up = ny / 2 + a, down = ny - 1 - up;
+        const Eigen::ArrayXd even = parts.col(a).cast<double>();
+        if (up == down) {
+            displacement.segment(up * nx, nx) = even;
+            continue;
+        }
+        const Eigen::ArrayXd odd = parts.col(ne + a - shift).cast<double>();
+        displacement.segment(up * nx, nx) = root * (even + odd);
+        displacement.segment(down * nx, nx) = root * (even - odd);
+    }
+}
+
 }  // namespace
 
-WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt)
-    : design_(std::move(design)), belt_(belt) {
+WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt, std::shared_ptr<RimCache> cache)
+    : design_(std::move(design)), belt_(belt), cache_(std::move(cache)) {
     design_.validate();
     if (!(belt_.tension >= 0.0) || !(belt_.bending >= 0.0)) {
         throw InputError(
@@ -106,76 +192,76 @@ WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt)
     }
 }
 
-void WheelRim::set_grid(const ContactGrid& grid) {
-    if (grid == grid_ && current_) return;
-    if (grid.ny != grid_.ny || grid.dy != grid_.dy || grid.ds != grid_.ds) {
-        current_ = nullptr;
-        spectra_.clear();
-        sample(grid);
-    }
-    grid_ = grid;
+std::unique_ptr<ComplianceOperator> WheelRim::make_operator(const ContactGrid& grid) const {
+    const auto samples = samples_.get(grid, 0, [&] { return sample(grid); });
     const int length = quick_fft_length(2 * grid.nx - 1);
-    const auto known = spectra_.find(length);
-    current_ = known != spectra_.end() ? &known->second
-                                       : &spectra_.emplace(length, build(length)).first->second;
-    transform_ = RowTransform(grid.ny, grid.nx, length);
-    values_.resize(static_cast<std::size_t>(grid.cells()));
-    const auto size = static_cast<std::size_t>(transform_.wavenumbers() * grid.ny);
-    spectrum_.resize(size);
-    image_.resize(size);
+    return std::make_unique<RimOperator>(
+        grid, samples->description, length,
+        spectra_.get(grid, length, [&] { return build(grid, *samples, length); }));
 }
 
-void WheelRim::sample(const ContactGrid& grid) {
-    grid_ = grid;
+WheelRim::Samples WheelRim::sample(const ContactGrid& grid) const {
+    Samples samples;
+    samples.description = describe();
     const WaveScale scale(design_.thickness(), 2.0 * kPi / grid.ds);
-    waves_.resize(kWaves);
-    for (int m = 0; m < kWaves; ++m) waves_[static_cast<std::size_t>(m)] = scale.wave(m);
-    std::ostringstream key;
-    key.precision(kExact);
-    key << describe_design(kExact) << "; cells " << grid.ny << " x " << grid.dy << " mm, "
-        << grid.ds << " mm; waves " << kWaves << " from " << scale.first << "\n";
-    key_ = key.str();
-    if (read_rim_cache(key_, samples_) && samples_.even.size() == kWaves &&
-        samples_.odd.size() == kWaves && samples_.even[0].rows() == (grid.ny + 1) / 2) {
-        return;
+    samples.waves.resize(kWaves);
+    for (int m = 0; m < kWaves; ++m) samples.waves[static_cast<std::size_t>(m)] = scale.wave(m);
+    if (cache_ == nullptr) {
+        samples.compliance = compute(grid, samples.waves);
+        return samples;
     }
-    compute(grid);
-    write_rim_cache(key_, samples_);
+    std::ostringstream text;
+    text.precision(kExact);
+    text << describe_design(kExact) << "; cells " << grid.ny << " x " << grid.dy << " mm, "
+         << grid.ds << " mm; waves " << kWaves << " from " << scale.first << "\n";
+    const std::string key = text.str();
+    samples.description += " (cached as " + rim_cache_name(key) + ")";
+    if (auto kept = cache_->read(key); kept && fits(*kept, grid.ny)) {
+        samples.compliance = std::move(*kept);
+    } else {
+        samples.compliance = compute(grid, samples.waves);
+        cache_->write(key, samples.compliance);
+    }
+    return samples;
 }
 
-void WheelRim::compute(const ContactGrid& grid) {
+RimSamples WheelRim::compute(const ContactGrid& grid, const std::vector<double>& waves) const {
     WheelRimDesign design = design_;
     design.width = grid.ny * grid.dy;
     const RimSection section(design, grid.ny, grid.ds);
-    samples_.even.assign(kWaves, {});
-    samples_.odd.assign(kWaves, {});
+    RimSamples samples;
+    samples.even.assign(kWaves, {});
+    samples.odd.assign(kWaves, {});
     parallel_blocks(kWaves, 1, {}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m)
-            section.compliance(waves_[m], samples_.even[m], samples_.odd[m]);
+            section.compliance(waves[m], samples.even[m], samples.odd[m]);
     });
     if (belt_.tension > 0.0 || belt_.bending > 0.0) {
         const Eigen::MatrixXd across = second_difference(grid.ny, grid.dy);
         for (std::size_t m = 0; m < kWaves; ++m) {
-            const double k2 = waves_[m] * waves_[m];
+            const double k2 = waves[m] * waves[m];
             const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(grid.ny, grid.ny);
             const Eigen::MatrixXd bend = k2 * one + across;
             const Eigen::MatrixXd plate = belt_.tension * k2 * one + belt_.bending * bend * bend;
             for (const bool even : {true, false}) {
                 const Eigen::MatrixXd basis = combinations(grid.ny, even);
-                Eigen::MatrixXd& c = even ? samples_.even[m] : samples_.odd[m];
+                Eigen::MatrixXd& c = even ? samples.even[m] : samples.odd[m];
                 if (c.size() == 0) continue;
                 c = (c.inverse() + basis.transpose() * plate * basis).inverse().eval();
             }
         }
     }
+    return samples;
 }
 
-WheelRim::Spectrum WheelRim::build(int length) const {
+WheelRim::Spectrum WheelRim::build(const ContactGrid& grid, const Samples& samples,
+                                   int length) const {
     // The influence function along the circumference, of the wheel's whole numbers of waves, as
     // weights of the sampled matrices.
-    const double radius = design_.outer_radius, ds = grid_.ds;
+    const auto& [even, odd] = samples.compliance;
+    const double radius = design_.outer_radius, ds = grid.ds;
     const double offset = 1.0 / design_.thickness();
-    const double last = waves_.back();
+    const double last = samples.waves.back();
     const WaveScale scale(design_.thickness(), last);
     const int terms = static_cast<int>(kAliases * 2.0 * kPi / ds * radius);
     std::vector<double> place(static_cast<std::size_t>(terms) + 1);
@@ -190,7 +276,8 @@ WheelRim::Spectrum WheelRim::build(int length) const {
         const double beyond = k > last ? last / k : 1.0;  // as on a half-space
         weights.row(n) *= (n == 0 ? 1.0 : 2.0) * sinc * sinc * beyond * ds / (2.0 * kPi * radius);
         for (int m = 0; m < kWaves; ++m) {  // C (k + 1/h) is what is smooth
-            weights(n, m) *= (waves_[static_cast<std::size_t>(m)] + offset) / (known + offset);
+            weights(n, m) *=
+                (samples.waves[static_cast<std::size_t>(m)] + offset) / (known + offset);
         }
     }
     const int half = length / 2;
@@ -217,14 +304,13 @@ WheelRim::Spectrum WheelRim::build(int length) const {
     result.diagonal = 0.0;
     for (int m = 0; m < kWaves; ++m) {
         const auto i = static_cast<std::size_t>(m);
-        result.diagonal +=
-            influence(0, m) * (samples_.even[i].trace() + samples_.odd[i].trace()) / grid_.ny;
+        result.diagonal += influence(0, m) * (even[i].trace() + odd[i].trace()) / grid.ny;
     }
-    const Eigen::Index ne = samples_.even[0].size(), no = samples_.odd[0].size();
+    const Eigen::Index ne = even[0].size(), no = odd[0].size();
     result.matrices.resize(static_cast<std::size_t>((half + 1) * (ne + no)));
     float* to = result.matrices.data();
     for (int k = 0; k <= half; ++k) {
-        for (const auto* matrices : {&samples_.even, &samples_.odd}) {
+        for (const auto* matrices : {&even, &odd}) {
             const Eigen::Index n = (*matrices)[0].rows();
             Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
             for (int m = 0; m < kWaves; ++m) {
@@ -237,58 +323,8 @@ WheelRim::Spectrum WheelRim::build(int length) const {
     return result;
 }
 
-void WheelRim::apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                     Eigen::ArrayXd& displacement) const {
-    const int nx = grid_.nx, ny = grid_.ny, ne = (ny + 1) / 2, no = ny / 2;
-    const auto root = std::sqrt(0.5);
-    using Rows = Eigen::Map<Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic>>;
-    Rows parts(values_.data(), nx, ny);  // a column is a row of the grid
-    const auto row = [&](const Eigen::ArrayXd& a, int j) { return a.segment(j * nx, nx); };
-    const int shift = ny % 2;
-    for (int a = 0; a < ne; ++a) {
-        const int up = ny / 2 + a, down = ny - 1 - up;
-        const Eigen::ArrayXd p = row(pressure, up) * row(coverage, up);
-        if (up == down) {
-            parts.col(a) = p.cast<float>();
-            continue;
-        }
-        const Eigen::ArrayXd q = row(pressure, down) * row(coverage, down);
-        parts.col(a) = (root * (p + q)).cast<float>();
-        parts.col(ne + a - shift) = (root * (p - q)).cast<float>();
-    }
-    transform_.forward(values_.data(), spectrum_.data());
-    const float* matrix = current_->matrices.data();
-    std::vector<float> re(static_cast<std::size_t>(ny)), im(re.size());
-    for (int k = 0; k < transform_.wavenumbers(); ++k) {
-        std::fill(re.begin(), re.end(), 0.0F);
-        std::fill(im.begin(), im.end(), 0.0F);
-        const auto* x = reinterpret_cast<const float*>(spectrum_.data() + k * ny);
-        multiply(matrix, ne, x, re.data(), im.data());
-        multiply(matrix + ne * ne, no, x + 2 * ne, re.data() + ne, im.data() + ne);
-        matrix += ne * ne + no * no;
-        for (int j = 0; j < ny; ++j) {
-            const auto i = static_cast<std::size_t>(j);
-            image_[static_cast<std::size_t>(k * ny + j)] = {re[i], im[i]};
-        }
-    }
-    transform_.backward(image_.data(), values_.data());
-    displacement.resize(pressure.size());
-    for (int a = 0; a < ne; ++a) {
-        const int up = ny / 2 + a, down = ny - 1 - up;
-        const Eigen::ArrayXd even = parts.col(a).cast<double>();
-        if (up == down) {
-            displacement.segment(up * nx, nx) = even;
-            continue;
-        }
-        const Eigen::ArrayXd odd = parts.col(ne + a - shift).cast<double>();
-        displacement.segment(up * nx, nx) = root * (even + odd);
-        displacement.segment(down * nx, nx) = root * (even - odd);
-    }
-}
-
 std::string WheelRim::describe() const {
-    return describe_design(kReadable) +
-           (key_.empty() ? "" : " (cached as " + rim_cache_name(key_) + ")");
+    return describe_design(kReadable);
 }
 
 std::string WheelRim::describe_design(int digits) const {

@@ -1,3 +1,5 @@
+#include <cstdlib>
+#include <filesystem>
 #include <numbers>
 
 #include "contact/half_space.h"
@@ -78,6 +80,18 @@ Workpiece workpiece_from(const py::dict& given) {
     return workpiece;
 }
 
+/// Where rims are kept: $XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding; null if the user
+/// has no such place.
+std::shared_ptr<RimCache> user_cache() {
+    const auto in = [](const char* variable, const char* folder) -> std::shared_ptr<RimCache> {
+        const char* place = std::getenv(variable);
+        if (place == nullptr || *place == '\0') return nullptr;
+        return std::make_shared<FolderRimCache>(std::filesystem::path(place) / folder);
+    };
+    if (auto cache = in("XDG_CACHE_HOME", "beltgrinding")) return cache;
+    return in("HOME", ".cache/beltgrinding");
+}
+
 }  // namespace
 
 std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
@@ -97,7 +111,7 @@ std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const Conta
     ContactFeatures features{take(d, "cell", 1.0), thickness};
     const WheelRimDesign design = rim_from(d, wheel, elasticity, thickness);
     refuse_rest(d, "compliance");
-    if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt);
+    if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt, user_cache());
     if (model == "bonded_layer") return std::make_unique<BondedLayer>(elasticity, thickness);
     if (model == "half_space") return std::make_unique<HalfSpace>(elasticity);
     if (model == "surrogate") {
@@ -106,7 +120,7 @@ std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const Conta
     if (model == "geometric") return std::make_unique<Geometric>();
     if (model == "elastic_foundation") {
         if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
-        WheelRim rim(design, belt);
+        const WheelRim rim(design, belt, user_cache());
         return std::make_unique<ElasticFoundation>(
             foundation_stiffness(wheel, rim, force, design.softest()));
     }
@@ -173,7 +187,7 @@ void bind_contact(py::module_& m) {
             d["coverage"] = cells(result.grid, result.coverage);
             d["beyond_placed"] = 0.0;
             d["time"] = result.time;
-            d["model"] = elastic->describe();
+            d["model"] = result.model;
             return d;
         },
         py::arg("wheel"), py::arg("workpiece"), py::arg("compliance"),

@@ -317,7 +317,7 @@ void bind_simulation(py::module_& m) {
                                   context != nullptr ? *context : RunContext());
             }
             py::dict d = to_dict(result);
-            d["compliance"] = elastic->describe();
+            d["compliance"] = result.model;
             d["law"] = removal->describe() + ", " + o.wear.describe();
             return d;
         },
@@ -344,7 +344,7 @@ void bind_simulation(py::module_& m) {
             d["commanded_force"] = contact.commanded;
             d["gap"] = cells(contact.grid, contact.gap);
             d["coverage"] = cells(contact.grid, contact.coverage);
-            d["model"] = elastic->describe();
+            d["model"] = contact.model;
             return d;
         },
         py::arg("field"), py::arg("path"), py::arg("pose"), py::arg("wheel"), py::arg("compliance"),

@@ -8,16 +8,24 @@ namespace {
 
 using Cells = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-ContactProblem problem_from(const Cells& gap, const Cells& coverage, double ds, double width) {
+ContactGrid grid_of(const Cells& gap, double ds, double width) {
+    if (gap.ndim() != 2 || gap.size() == 0) {
+        throw InputError("contact: gap and coverage must be arrays (ny, nx)");
+    }
+    ContactGrid grid;
+    grid.nx = static_cast<int>(gap.shape(1));
+    grid.ny = static_cast<int>(gap.shape(0));
+    grid.ds = ds;
+    grid.dy = width / grid.ny;
+    return grid;
+}
+
+ContactProblem problem_from(const Cells& gap, const Cells& coverage) {
     if (gap.ndim() != 2 || coverage.ndim() != 2 || gap.size() != coverage.size()) {
         throw InputError("call.contact_arrays",
                          "contact: gap and coverage must be arrays (ny, nx)");
     }
     ContactProblem problem;
-    problem.grid.nx = static_cast<int>(gap.shape(1));
-    problem.grid.ny = static_cast<int>(gap.shape(0));
-    problem.grid.ds = ds;
-    problem.grid.dy = width / problem.grid.ny;
     problem.gap = Eigen::Map<const Eigen::ArrayXd>(gap.data(), gap.size());
     problem.coverage = Eigen::Map<const Eigen::ArrayXd>(coverage.data(), gap.size());
     return problem;
@@ -57,24 +65,27 @@ void bind_surrogate(py::module_& m) {
         [](const Cells& gap, const Cells& coverage, double ds, const py::dict& wheel,
            const py::dict& compliance, double force, double tolerance) {
             const ContactWheel shape = wheel_from(wheel);
-            ContactProblem problem = problem_from(gap, coverage, ds, shape.width);
+            const ContactGrid grid = grid_of(gap, ds, shape.width);
+            ContactProblem problem = problem_from(gap, coverage);
             problem.force = force;
             problem.tolerance = tolerance;
             const auto elastic = compliance_from(compliance, shape, force);
             ContactSolution solution;
             double seconds = 0.0;
+            std::string model;
             {
                 const py::gil_scoped_release release;
-                elastic->set_grid(problem.grid);
+                const auto prepared = elastic->prepare(grid);
+                model = prepared->describe();
                 const Stopwatch watch(seconds);
-                solution = elastic->solve(problem);
+                solution = prepared->solve(problem);
             }
-            py::dict d = contact_to_dict(problem.grid, solution);
-            d["gap"] = cells(problem.grid, problem.gap);
-            d["coverage"] = cells(problem.grid, problem.coverage);
+            py::dict d = contact_to_dict(grid, solution);
+            d["gap"] = cells(grid, problem.gap);
+            d["coverage"] = cells(grid, problem.coverage);
             d["beyond_placed"] = solution.approach;
             d["time"] = seconds;
-            d["model"] = elastic->describe();
+            d["model"] = model;
             return d;
         },
         py::arg("gap"), py::arg("coverage"), py::arg("ds"), py::arg("wheel"), py::arg("compliance"),
@@ -87,15 +98,17 @@ void bind_surrogate(py::module_& m) {
         "surrogate_features",
         [](const Cells& gap, const Cells& coverage, double ds, double width, double approach,
            double cell, double rim_thickness) {
-            const ContactProblem problem = problem_from(gap, coverage, ds, width);
-            problem.validate();
+            const ContactGrid grid = grid_of(gap, ds, width);
+            grid.validate();
+            const ContactProblem problem = problem_from(gap, coverage);
+            problem.validate(grid);
             const ContactFeatures features{cell, rim_thickness};
             if (!(approach > problem.gap.minCoeff())) {
                 throw InputError("call.approach",
                                  "surrogate: the approach must exceed the smallest gap");
             }
-            std::vector<int> cells = features.candidates(problem, approach);
-            const Eigen::MatrixXf values = features.of(problem, approach, cells).transpose();
+            std::vector<int> cells = features.candidates(grid, problem, approach);
+            const Eigen::MatrixXf values = features.of(grid, problem, approach, cells).transpose();
             return py::make_tuple(own(std::move(cells)), values);
         },
         py::arg("gap"), py::arg("coverage"), py::arg("ds"), py::arg("width"), py::arg("approach"),

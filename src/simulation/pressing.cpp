@@ -20,7 +20,7 @@ constexpr double kAhead = 0.5;
 
 }  // namespace
 
-Pressing::Pressing(const SimulationOptions& options, double spacing, ContactModel& model)
+Pressing::Pressing(const SimulationOptions& options, double spacing, const ContactModel& model)
     : options_(options), model_(model), map_(options.wheel, spacing) {}
 
 Frame Pressing::placed_frame() const {
@@ -48,9 +48,14 @@ void Pressing::map_gap(const HeightField& field, double reach, SimulationResult&
 
 void Pressing::solve(bool force_control, double force, SimulationResult& result) {
     const Stopwatch watch(result.contact_s);
-    model_.set_grid(map_.grid());
+    const ContactGrid& grid = map_.grid();
+    Eigen::ArrayXd start;
+    if (warm_) start = recentre(solution_.pressure, contact_->grid(), grid);
+    if (!contact_ || contact_->grid() != grid) {
+        contact_.reset();  // its memory is taken again
+        contact_ = model_.prepare(grid);
+    }
     ContactProblem problem;
-    problem.grid = map_.grid();
     problem.gap = map_.gap();
     problem.coverage = map_.coverage();
     problem.force_control = force_control;
@@ -63,10 +68,7 @@ void Pressing::solve(bool force_control, double force, SimulationResult& result)
         }
     }
     problem.tolerance = options_.contact_tolerance;
-    Eigen::ArrayXd start;
-    if (warm_) start = recentre(solution_.pressure, solution_grid_, problem.grid);
-    solution_ = model_.solve(problem, warm_ ? &start : nullptr);
-    solution_grid_ = problem.grid;
+    solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
     warm_ = solution_.force > 0.0;
 }
 

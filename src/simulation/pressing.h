@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "beltgrinding/contact_model.h"
@@ -14,7 +16,7 @@ namespace beltgrinding {
 /// contact. Keeps the approach and the pressure of the last pose to start the next one from.
 class Pressing {
   public:
-    Pressing(const SimulationOptions& options, double spacing, ContactModel& model);
+    Pressing(const SimulationOptions& options, double spacing, const ContactModel& model);
 
     /// What pressing ended in. `kBeyondTravel`: force control met its end stop, the force is what
     /// the wheel has there.
@@ -35,6 +37,8 @@ class Pressing {
     double approach() const { return placed_ + solution_.approach; }
     GapMap& map() { return map_; }
     const GapMap& map() const { return map_; }
+    /// What the model says of itself as it was used last.
+    std::string describe() const { return contact_ ? contact_->describe() : model_.describe(); }
     std::size_t localised() const { return hits_.size(); }
 
   private:
@@ -48,10 +52,10 @@ class Pressing {
     bool find_touch(const HeightField& field, const SegmentTree& tree, SimulationResult& result);
 
     const SimulationOptions& options_;
-    ContactModel& model_;
+    const ContactModel& model_;
     GapMap map_;
+    std::unique_ptr<PreparedContact> contact_;  // on the grid of the last solution
     ContactSolution solution_;
-    ContactGrid solution_grid_;
     std::vector<std::uint32_t> hits_;
     Frame programmed_ = Frame::Identity();
     double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap

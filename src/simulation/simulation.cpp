@@ -196,7 +196,7 @@ double grind(HeightField& field, Pressing& pressing, const RemovalLaw& law, cons
 
 }  // namespace
 
-SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
+SimulationResult simulate(HeightField& field, const ToolPath& path, const ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context) {
     validate(field, options);
@@ -292,6 +292,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
     }
     context.report(1.0);
     result.events = monitor.take();
+    result.model = pressing.describe();
     if (options.recording != nullptr) options.recording->end(field);
     if (trace) {
         trace->keep(field);
@@ -304,7 +305,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel
 }
 
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
-                       ContactModel& model, const SimulationOptions& options) {
+                       const ContactModel& model, const SimulationOptions& options) {
     validate(field, options);
     if (pose >= path.poses().size()) {
         throw InputError("simulation.no_such_pose", "there is no pose {pose}; the path has {count}",
@@ -330,6 +331,7 @@ PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size
     contact.gap = pressing.map().gap();
     contact.coverage = pressing.map().coverage();
     contact.solution = pressing.solution();
+    contact.model = pressing.describe();
     contact.placed = pressing.approach() - contact.solution.approach;
     return contact;
 }

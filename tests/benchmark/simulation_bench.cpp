@@ -22,8 +22,8 @@ void step_cost(benchmark::State& state) {
     WheelRimDesign design;
     design.layers = {{15.0, {5.0, 0.45}}};
     WheelRim rim(design);
-    ComplianceOperator& elastic = state.range(1) == 0 ? static_cast<ComplianceOperator&>(foundation)
-                                                      : static_cast<ComplianceOperator&>(rim);
+    const ContactModel& elastic = state.range(1) == 0 ? static_cast<const ContactModel&>(foundation)
+                                                      : static_cast<const ContactModel&>(rim);
     const LocalLaw law({1e-5});
     SimulationOptions options;
     options.wheel = {100.0, 50.0, 0.0};

@@ -1,4 +1,5 @@
-#include "contact_solver.h"
+// The solver for compliance operators of any kind.
+#include "beltgrinding/compliance.h"
 
 #include <gtest/gtest.h>
 
@@ -12,15 +13,18 @@
 namespace beltgrinding {
 namespace {
 
-ContactProblem parabola(int cells, double spacing, double radius) {
+ContactGrid rows_of(int cells, double spacing) {
+    return {cells, 5, spacing, 2.0};
+}
+
+ContactProblem parabola(const ContactGrid& grid, double radius) {
     ContactProblem problem;
-    problem.grid = {cells, 5, spacing, 2.0};
-    problem.gap.resize(problem.grid.cells());
-    problem.coverage = Eigen::ArrayXd::Ones(problem.grid.cells());
-    for (int j = 0; j < problem.grid.ny; ++j) {
-        for (int i = 0; i < cells; ++i) {
-            const double s = problem.grid.s(i);
-            problem.gap[j * cells + i] = s * s / (2.0 * radius);
+    problem.gap.resize(grid.cells());
+    problem.coverage = Eigen::ArrayXd::Ones(grid.cells());
+    for (int j = 0; j < grid.ny; ++j) {
+        for (int i = 0; i < grid.nx; ++i) {
+            const double s = grid.s(i);
+            problem.gap[j * grid.nx + i] = s * s / (2.0 * radius);
         }
     }
     return problem;
@@ -29,8 +33,8 @@ ContactProblem parabola(int cells, double spacing, double radius) {
 /// A dense symmetric operator of the kind that later rooms bring: u = C (coverage p).
 class SmoothCompliance final : public ComplianceOperator {
   public:
-    void set_grid(const ContactGrid& grid) override {
-        matrix_.resize(grid.cells(), grid.cells());
+    explicit SmoothCompliance(const ContactGrid& grid)
+        : ComplianceOperator(grid, "test kernel"), matrix_(grid.cells(), grid.cells()) {
         for (int b = 0; b < grid.cells(); ++b) {
             for (int a = 0; a < grid.cells(); ++a) {
                 const double ds = grid.s(a % grid.nx) - grid.s(b % grid.nx);
@@ -39,14 +43,14 @@ class SmoothCompliance final : public ComplianceOperator {
             }
         }
     }
-    void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-               Eigen::ArrayXd& displacement) const override {
-        displacement = (matrix_ * (pressure * coverage).matrix()).array();
-    }
     double diagonal() const override { return matrix_(0, 0); }
-    std::string describe() const override { return "test kernel"; }
 
   private:
+    void do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
+                  Eigen::ArrayXd& displacement) override {
+        displacement = (matrix_ * (pressure * coverage).matrix()).array();
+    }
+
     Eigen::MatrixXd matrix_;
 };
 
@@ -57,11 +61,11 @@ TEST(ContactSolver, FoundationLineContactConvergesToTheory) {
     const double a = std::cbrt(1.5 * load * radius / stiffness);
     double last = 1.0;
     for (const int cells : {33, 129}) {
-        ContactProblem problem = parabola(cells, 3.0 * a / cells, radius);
-        problem.force = load * problem.grid.ny * problem.grid.dy;
+        const ContactGrid grid = rows_of(cells, 3.0 * a / cells);
+        ContactProblem problem = parabola(grid, radius);
+        problem.force = load * grid.ny * grid.dy;
         problem.tolerance = 1e-8;
-        const ElasticFoundation foundation(stiffness);
-        const ContactSolution solution = solve_contact(problem, foundation);
+        const ContactSolution solution = ElasticFoundation(stiffness).prepare(grid)->solve(problem);
         EXPECT_TRUE(solution.converged);
         EXPECT_NEAR(solution.force, problem.force, 1e-9 * problem.force);
         const double p0 = stiffness * a * a / (2.0 * radius);
@@ -73,14 +77,15 @@ TEST(ContactSolver, FoundationLineContactConvergesToTheory) {
 }
 
 TEST(ContactSolver, PositionControlReturnsTheForceOfForceControl) {
-    const ElasticFoundation foundation(0.5);
-    ContactProblem problem = parabola(65, 0.4, 60.0);
+    const ContactGrid grid = rows_of(65, 0.4);
+    const auto foundation = ElasticFoundation(0.5).prepare(grid);
+    ContactProblem problem = parabola(grid, 60.0);
     problem.force = 40.0;
     problem.tolerance = 1e-9;
-    const ContactSolution forced = solve_contact(problem, foundation);
+    const ContactSolution forced = foundation->solve(problem);
     problem.force_control = false;
     problem.approach = forced.approach;
-    const ContactSolution placed = solve_contact(problem, foundation);
+    const ContactSolution placed = foundation->solve(problem);
     EXPECT_NEAR(placed.force, 40.0, 1e-5);
     EXPECT_LT((placed.pressure - forced.pressure).abs().maxCoeff(), 1e-7);
 }
@@ -91,7 +96,8 @@ TEST(ContactSolver, KeepsTheSignoriniConditionsOnRandomContacts) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (int trial = 0; trial < 40; ++trial) {
-        ContactProblem problem = parabola(21, 0.8, 30.0 + 50.0 * uniform(random));
+        const ContactGrid grid = rows_of(21, 0.8);
+        ContactProblem problem = parabola(grid, 30.0 + 50.0 * uniform(random));
         for (Eigen::Index c = 0; c < problem.gap.size(); ++c) {
             problem.gap[c] += 0.1 * uniform(random);
             if (uniform(random) < 0.1) problem.gap[c] = std::numeric_limits<double>::infinity();
@@ -102,18 +108,15 @@ TEST(ContactSolver, KeepsTheSignoriniConditionsOnRandomContacts) {
         problem.force_control = trial % 2 == 0;
         problem.force = 5.0 + 40.0 * uniform(random);
         problem.approach = 0.1 + 0.3 * uniform(random);
-        ElasticFoundation foundation(0.3 + uniform(random));
-        SmoothCompliance smooth;
-        smooth.set_grid(problem.grid);
-        for (const ComplianceOperator* compliance :
-             {static_cast<const ComplianceOperator*>(&foundation),
-              static_cast<const ComplianceOperator*>(&smooth)}) {
-            const ContactSolution solution = solve_contact(problem, *compliance);
+        const auto foundation = ElasticFoundation(0.3 + uniform(random)).compliance(grid);
+        SmoothCompliance smooth(grid);
+        for (ComplianceOperator* compliance :
+             {foundation.get(), static_cast<ComplianceOperator*>(&smooth)}) {
+            const ContactSolution solution = compliance->solve(problem);
             ASSERT_TRUE(solution.converged) << trial;
             Eigen::ArrayXd u;
             compliance->apply(solution.pressure, problem.coverage, u);
-            const double sum =
-                (solution.pressure * problem.coverage).sum() * problem.grid.cell_area();
+            const double sum = (solution.pressure * problem.coverage).sum() * grid.cell_area();
             EXPECT_NEAR(sum, solution.force, 1e-9 * sum);
             if (problem.force_control) {
                 EXPECT_NEAR(sum, problem.force, 1e-9 * problem.force);
@@ -133,38 +136,38 @@ TEST(ContactSolver, KeepsTheSignoriniConditionsOnRandomContacts) {
 }
 
 TEST(ContactSolver, WarmStartGivesTheSameInFewerIterations) {
-    SmoothCompliance smooth;
-    ContactProblem problem = parabola(31, 0.6, 50.0);
-    smooth.set_grid(problem.grid);
+    const ContactGrid grid = rows_of(31, 0.6);
+    SmoothCompliance smooth(grid);
+    ContactProblem problem = parabola(grid, 50.0);
     problem.force = 30.0;
     problem.tolerance = 1e-6;
-    const ContactSolution cold = solve_contact(problem, smooth);
+    const ContactSolution cold = smooth.solve(problem);
     problem.gap += 0.01 * Eigen::ArrayXd::Random(problem.gap.size());
-    const ContactSolution again = solve_contact(problem, smooth);
-    const ContactSolution warm = solve_contact(problem, smooth, &cold.pressure);
+    const ContactSolution again = smooth.solve(problem);
+    const ContactSolution warm = smooth.solve(problem, &cold.pressure);
     EXPECT_LE(warm.iterations, again.iterations);
     EXPECT_LT((warm.pressure - again.pressure).abs().sum(), 1e-4 * again.pressure.sum());
 }
 
 TEST(ContactSolver, RefusesNonsense) {
-    const ElasticFoundation foundation(1.0);
-    ContactProblem problem = parabola(5, 1.0, 10.0);
+    const auto foundation = ElasticFoundation(1.0).prepare(rows_of(5, 1.0));
+    ContactProblem problem = parabola(foundation->grid(), 10.0);
     problem.force = -1.0;
-    EXPECT_THROW(solve_contact(problem, foundation), InputError);
+    EXPECT_THROW(foundation->solve(problem), InputError);
     problem.force = 1.0;
     problem.gap[0] = std::nan("");
-    EXPECT_THROW(solve_contact(problem, foundation), InputError);
+    EXPECT_THROW(foundation->solve(problem), InputError);
     problem.gap.resize(3);
-    EXPECT_THROW(solve_contact(problem, foundation), InputError);
+    EXPECT_THROW(foundation->solve(problem), InputError);
     EXPECT_THROW(ElasticFoundation(0.0), InputError);
 }
 
 TEST(ContactSolver, NothingThereIsNoContact) {
-    const ElasticFoundation foundation(1.0);
-    ContactProblem problem = parabola(5, 1.0, 10.0);
+    const auto foundation = ElasticFoundation(1.0).prepare(rows_of(5, 1.0));
+    ContactProblem problem = parabola(foundation->grid(), 10.0);
     problem.gap.setConstant(std::numeric_limits<double>::infinity());
     problem.force_control = false;
-    EXPECT_EQ(solve_contact(problem, foundation).force, 0.0);
+    EXPECT_EQ(foundation->solve(problem).force, 0.0);
 }
 
 TEST(ContactWheel, CrownDropsTowardsTheEdges) {

@@ -48,7 +48,7 @@ TEST(Curve, IsExactOnALineAndThirdOrderOnASmoothFunction) {
         }
         return worst;
     };
-    EXPECT_LT(error(40), error(10) / 16.0);
+    EXPECT_NEAR(std::log2(error(40) / error(80)), 3.0, 0.1);
 }
 
 TEST(Curve, RefusesPointsThatAreNone) {

@@ -12,6 +12,8 @@
 namespace beltgrinding {
 namespace {
 
+const ContactGrid kGrid{33, 24, 1.0, 1.0};
+
 TEST(Regression, LearnsASmoothFunctionOfFewVariables) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -39,20 +41,19 @@ TEST(Regression, RefusesWhatItCannotLearn) {
 /// The gap of a wheel on a sphere-like bump, random in size and place.
 ContactProblem bump(double radius, double s, double y) {
     ContactProblem problem;
-    problem.grid = {33, 24, 1.0, 1.0};
-    problem.gap.resize(problem.grid.cells());
-    for (int j = 0; j < problem.grid.ny; ++j) {
-        for (int i = 0; i < problem.grid.nx; ++i) {
-            const double u = problem.grid.s(i) - s, v = problem.grid.y(j) - y;
-            problem.gap[j * problem.grid.nx + i] = (u * u + v * v) / (2 * radius);
+    problem.gap.resize(kGrid.cells());
+    for (int j = 0; j < kGrid.ny; ++j) {
+        for (int i = 0; i < kGrid.nx; ++i) {
+            const double u = kGrid.s(i) - s, v = kGrid.y(j) - y;
+            problem.gap[j * kGrid.nx + i] = (u * u + v * v) / (2 * radius);
         }
     }
-    problem.coverage = Eigen::ArrayXd::Ones(problem.grid.cells());
+    problem.coverage = Eigen::ArrayXd::Ones(kGrid.cells());
     return problem;
 }
 
 TEST(Surrogate, LearnsAnElasticFoundationAndHoldsTheForce) {
-    const ElasticFoundation foundation(0.7);
+    const auto foundation = ElasticFoundation(0.7).prepare(kGrid);
     const ContactFeatures features{1.0, 4.0};
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -62,9 +63,9 @@ TEST(Surrogate, LearnsAnElasticFoundationAndHoldsTheForce) {
         ContactProblem problem =
             bump(20 + 80 * uniform(random), 6 * uniform(random) - 3, 16 * uniform(random) - 8);
         problem.force = 2 + 20 * uniform(random);
-        const ContactSolution solution = foundation.solve(problem);
-        const auto cells = features.candidates(problem, solution.approach);
-        seen.push_back(features.of(problem, solution.approach, cells));
+        const ContactSolution solution = foundation->solve(problem);
+        const auto cells = features.candidates(kGrid, problem, solution.approach);
+        seen.push_back(features.of(kGrid, problem, solution.approach, cells));
         for (const int cell : cells) {
             targets.push_back(static_cast<float>(solution.pressure[cell] /
                                                  (solution.approach - problem.gap.minCoeff())));
@@ -76,14 +77,15 @@ TEST(Surrogate, LearnsAnElasticFoundationAndHoldsTheForce) {
         all.middleCols(column, part.cols()) = part;
         column += part.cols();
     }
-    const Surrogate surrogate(
+    const Surrogate model(
         features,
         train_regression(all, Eigen::Map<Eigen::VectorXf>(targets.data(), all.cols()),
                          {10.0, 0.02, 0.02}),
         "test");
+    const auto surrogate = model.prepare(kGrid);
     ContactProblem problem = bump(45, 1.3, 2.4);
     problem.force = 12;
-    const ContactSolution truth = foundation.solve(problem), found = surrogate.solve(problem);
+    const ContactSolution truth = foundation->solve(problem), found = surrogate->solve(problem);
     EXPECT_TRUE(found.converged);
     EXPECT_NEAR(found.force, 12, 1e-9);
     EXPECT_NEAR(found.approach, truth.approach, 0.02 * truth.approach);
@@ -93,23 +95,23 @@ TEST(Surrogate, LearnsAnElasticFoundationAndHoldsTheForce) {
     // The contact is homogeneous: twice the gap and the approach, twice the pressure.
     problem.force_control = false;
     problem.approach = truth.approach;
-    const ContactSolution single = surrogate.solve(problem);
+    const ContactSolution single = surrogate->solve(problem);
     problem.gap *= 2.0;
     problem.approach *= 2.0;
-    const ContactSolution twice = surrogate.solve(problem);
+    const ContactSolution twice = surrogate->solve(problem);
     EXPECT_LT((twice.pressure - 2.0 * single.pressure).abs().maxCoeff(), 1e-4);
 
     // A robot that gives way stands where its force and the wheel's agree.
     problem.robot_compliance = 0.05;
-    const ContactSolution soft = surrogate.solve(problem);
+    const ContactSolution soft = surrogate->solve(problem);
     EXPECT_NEAR(soft.approach + 0.05 * soft.force, problem.approach, 0.01 * problem.approach);
 
     // Nothing within reach, and an unloaded wheel.
     problem.approach = -1.0;
-    EXPECT_EQ(surrogate.solve(problem).force, 0.0);
+    EXPECT_EQ(surrogate->solve(problem).force, 0.0);
     problem.force_control = true;
     problem.force = 0.0;
-    EXPECT_EQ(surrogate.solve(problem).force, 0.0);
+    EXPECT_EQ(surrogate->solve(problem).force, 0.0);
 }
 
 TEST(Surrogate, RefusesARegressionOfOtherFeatures) {

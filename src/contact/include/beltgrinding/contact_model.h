@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 
 namespace beltgrinding {
@@ -19,13 +20,15 @@ struct ContactGrid {
     double s(int i) const { return (i - 0.5 * (nx - 1)) * ds; }
     double y(int j) const { return (j - 0.5 * (ny - 1)) * dy; }
     bool operator==(const ContactGrid&) const = default;
+
+    /// Throws InputError unless there are cells, of positive and finite sides.
+    void validate() const;
 };
 
-/// The unilateral (Signorini) contact of the wheel with a rigid surface on the wheel's grid:
-/// find p >= 0 with g + u(p) - delta >= 0 and p (g + u - delta) = 0, u the displacement of the
-/// wheel's surface under p.
+/// The unilateral (Signorini) contact of the wheel with a rigid surface on the grid that it was
+/// prepared for: find p >= 0 with g + u(p) - delta >= 0 and p (g + u - delta) = 0, u the
+/// displacement of the wheel's surface under p.
 struct ContactProblem {
-    ContactGrid grid;
     Eigen::ArrayXd gap;       ///< mm, undeformed wheel to surface, per cell; +inf: nothing there
     Eigen::ArrayXd coverage;  ///< share of the cell that the workpiece covers, [0, 1]
     bool force_control = true;
@@ -36,8 +39,8 @@ struct ContactProblem {
     double tolerance = 1e-4;  ///< relative error of the pressure field, L1
     int max_iterations = 500;
 
-    /// Throws InputError on arrays of the wrong size, NaN, or a negative force.
-    void validate() const;
+    /// Throws InputError on arrays of another size than the grid's, NaN, or a negative force.
+    void validate(const ContactGrid& grid) const;
 };
 
 struct ContactSolution {
@@ -50,33 +53,64 @@ struct ContactSolution {
     bool converged = false;
 };
 
+/// A contact model on one grid, with the work space to solve there: one thread at a time. It needs
+/// the model that prepared it no longer.
+class PreparedContact {
+  public:
+    virtual ~PreparedContact() = default;
+    PreparedContact(const PreparedContact&) = delete;
+    PreparedContact& operator=(const PreparedContact&) = delete;
+
+    const ContactGrid& grid() const { return grid_; }
+    /// Name and parameters of the model as it is used here, for the report.
+    const std::string& describe() const { return description_; }
+    /// `start`, if not null, is a pressure (MPa per cell) to start from. Throws InputError for a
+    /// problem that is none, or not of this grid.
+    ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd* start = nullptr);
+
+  protected:
+    /// Throws InputError for a grid that is none.
+    PreparedContact(const ContactGrid& grid, std::string description);
+
+  private:
+    /// The problem and the start are of this grid.
+    virtual ContactSolution do_solve(const ContactProblem& problem,
+                                     const Eigen::ArrayXd* start) = 0;
+
+    ContactGrid grid_;
+    std::string description_;
+};
+
 /// What a wheel does when it is pressed on a surface: an elasticity to solve the contact with
-/// (ComplianceOperator), a prediction learnt from solved contacts (Surrogate), or a rigid tool.
+/// (ElasticModel), a prediction learnt from solved contacts (Surrogate), or a rigid tool. It does
+/// not change: contacts are solved by what it prepares, on one grid each.
 class ContactModel {
   public:
     virtual ~ContactModel() = default;
 
-    /// Fits the model to a grid; cheap if the grid is the one of the last call.
-    virtual void set_grid(const ContactGrid& grid) = 0;
-    /// Solves on the grid set last. `start`, if not null and of the right size, is a pressure to
-    /// start from. Throws InputError for a problem that is none.
-    virtual ContactSolution solve(const ContactProblem& problem,
-                                  const Eigen::ArrayXd* start = nullptr) const = 0;
+    /// The model on a grid. What depends on the cells is kept, so that another number of cells
+    /// along the circumference is prepared quickly. Safe from several threads. Throws InputError
+    /// for a grid that is none.
+    std::unique_ptr<PreparedContact> prepare(const ContactGrid& grid) const;
     /// True if there is no elasticity at all: no pressure can be solved for, and the tool's
     /// envelope is what remains.
     virtual bool rigid() const { return false; }
     /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
+
+  private:
+    virtual std::unique_ptr<PreparedContact> do_prepare(const ContactGrid& grid) const = 0;
 };
 
 /// A rigid tool that cuts all that its envelope meets, as a milling cutter does (Jerard et al., The
 /// Visual Computer 5, 1989). Under position control only; there is no pressure and no force.
 class Geometric final : public ContactModel {
   public:
-    void set_grid(const ContactGrid&) override {}
-    ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd*) const override;
     bool rigid() const override { return true; }
     std::string describe() const override { return "geometric: rigid envelope of the tool"; }
+
+  private:
+    std::unique_ptr<PreparedContact> do_prepare(const ContactGrid& grid) const override;
 };
 
 }  // namespace beltgrinding

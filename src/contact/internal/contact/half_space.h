@@ -1,11 +1,11 @@
 #pragma once
 
-#include <complex>
-#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "beltgrinding/compliance.h"
-#include "contact/convolution.h"
+#include "contact/spectrum_cache.h"
 
 namespace beltgrinding {
 
@@ -22,53 +22,43 @@ struct Elasticity {
 
 /// Compliance that is one and the same influence function everywhere: u = K * p over the grid laid
 /// flat, without periodic images (zero padding). Base of the half-space and the bonded layer.
-class ConvolutionCompliance : public ComplianceOperator {
+class ConvolutionModel : public ElasticModel {
   public:
-    void set_grid(const ContactGrid& grid) override;
-    void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-               Eigen::ArrayXd& displacement) const override;
-    double diagonal() const override { return centre_; }
+    /// Of the influence function, on a padded grid.
+    struct Spectrum {
+        std::vector<float> values;  ///< real, as the function is even
+        double centre = 1.0;        ///< mm/MPa, of a cell on itself
+    };
 
-  protected:
+  private:
+    std::unique_ptr<ComplianceOperator> make_operator(const ContactGrid& grid) const final;
+    Spectrum build(const ContactGrid& grid, int length, int rows) const;
     /// Displacement (mm/MPa) at the distance (x, y) from the middle of a cell of `grid` under unit
     /// pressure.
     virtual double influence(const ContactGrid& grid, double x, double y) const = 0;
 
-  private:
-    void build(const ContactGrid& grid);
-
-    ContactGrid grid_;
-    int rows_ = 0;  // padded
-    double centre_ = 1.0;
-    // Spectra of the influence function by padded length: the grid's length changes from step to
-    // step. Real, as the function is even.
-    std::map<int, std::vector<float>> symbols_;
-    const std::vector<float>* symbol_ = nullptr;  // one of them
-    mutable RowTransform transform_;
-    mutable std::vector<float> values_;
-    mutable std::vector<std::complex<float>> spectrum_;
+    mutable SpectrumCache<Spectrum> spectra_;
 };
 
 /// Elastic half-space (Boussinesq): u(q) = 2 p(q) / (E* q); uniform pressure on a rectangle by
 /// Love's formula (Johnson: Contact Mechanics, eq. 3.25). Valid for contacts that are small against
 /// the rim's thickness and width.
-class HalfSpace final : public ConvolutionCompliance {
+class HalfSpace final : public ConvolutionModel {
   public:
     /// Throws InputError for a modulus or ratio that is none.
     explicit HalfSpace(Elasticity elasticity);
     std::string describe() const override;
 
-  protected:
+  private:
     double influence(const ContactGrid& grid, double x, double y) const override;
 
-  private:
     Elasticity elasticity_;
 };
 
 /// Elastic layer of constant thickness bonded to a rigid base, without friction on top, of infinite
 /// width: u(q) = 2 S(q h) p(q) / (E* q) with S after Johnson: Contact Mechanics, section 5.8. Valid
 /// for contacts that stay a rim's thickness away from the wheel's side faces.
-class BondedLayer final : public ConvolutionCompliance {
+class BondedLayer final : public ConvolutionModel {
   public:
     /// `thickness` in mm. Throws InputError for values that are none.
     BondedLayer(Elasticity elasticity, double thickness);
@@ -77,10 +67,8 @@ class BondedLayer final : public ConvolutionCompliance {
     /// S(x) for x = q h >= 0; goes to 1 for large x.
     static double shape(double x, double poissons_ratio);
 
-  protected:
-    double influence(const ContactGrid& grid, double x, double y) const override;
-
   private:
+    double influence(const ContactGrid& grid, double x, double y) const override;
     /// mm/MPa per mm2 at distance r: what the layer gives beyond the half-space (negative).
     double correction(double r) const;
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +16,30 @@ struct RimSamples {
 /// A short name for `key`, the text of all that a rim's samples depend on (FNV-1a, 64 bit).
 std::string rim_cache_name(const std::string& key);
 
-/// Reads samples from the user's cache ($XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding).
-/// False if there are none, or if the file is damaged or belongs to another key.
-bool read_rim_cache(const std::string& key, RimSamples& samples);
+/// Where a rim's samples, which take seconds to compute, outlive the process. Called from any
+/// thread, several at a time.
+class RimCache {
+  public:
+    virtual ~RimCache() = default;
 
-/// Writes samples to the cache, whole or not at all. A cache that cannot be written is no error.
-void write_rim_cache(const std::string& key, const RimSamples& samples);
+    /// What was written for `key`; none if there is nothing, or nothing sound.
+    virtual std::optional<RimSamples> read(const std::string& key) const = 0;
+    /// Keeps the samples. Where they cannot be kept is no error: they are computed again.
+    virtual void write(const std::string& key, const RimSamples& samples) = 0;
+};
+
+/// A file per key in a folder, which is made when there is something to write. A file is written
+/// whole or not at all, and not taken if it is damaged or belongs to another key.
+class FolderRimCache final : public RimCache {
+  public:
+    explicit FolderRimCache(std::filesystem::path folder);
+    std::optional<RimSamples> read(const std::string& key) const override;
+    void write(const std::string& key, const RimSamples& samples) override;
+
+  private:
+    std::filesystem::path path(const std::string& key) const;
+
+    std::filesystem::path folder_;
+};
 
 }  // namespace beltgrinding

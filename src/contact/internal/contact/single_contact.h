@@ -38,17 +38,18 @@ struct SingleContactResult {
     Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where it stands; +inf: nothing there
     Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
     double time = 0.0;         ///< s of all solves, without setting up the model
+    std::string model;         ///< what the model says of itself as it was used
 };
 
 /// Presses a wheel on a workpiece. The gap is radial from the wheel where it stands when pressed:
 /// the wheel is placed anew until what the solution asks of it beyond that is negligible. The grid
 /// grows until the footprint does not reach its ends. Throws InputError.
-SingleContactResult press(const SingleContact& contact, ContactModel& model);
+SingleContactResult press(const SingleContact& contact, const ContactModel& model);
 
 /// Stiffness (MPa/mm) of the elastic foundation that meets a plane under `force` (N) at the same
 /// approach as `model` does. Its patch is still another: see docs/methods.md. `softest`: MPa/mm,
 /// below what `model` can have; the grid is made to hold the contact of such a foundation.
-double foundation_stiffness(const ContactWheel& wheel, ContactModel& model, double force,
+double foundation_stiffness(const ContactWheel& wheel, const ContactModel& model, double force,
                             double softest);
 
 }  // namespace beltgrinding

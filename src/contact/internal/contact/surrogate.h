@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,13 @@ struct ContactFeatures {
     int levels() const;
     /// Number of features of a cell.
     int size() const;
-    /// Cells that may bear pressure: where the interference is not far below zero.
-    std::vector<int> candidates(const ContactProblem& problem, double approach) const;
-    /// (size(), cells.size()); `approach` must exceed the smallest gap.
-    Eigen::MatrixXf of(const ContactProblem& problem, double approach,
+    /// Cells that may bear pressure: where the interference is not far below zero. Throws
+    /// std::invalid_argument for a problem of another grid.
+    std::vector<int> candidates(const ContactGrid& grid, const ContactProblem& problem,
+                                double approach) const;
+    /// (size(), cells.size()); `approach` must exceed the smallest gap. Throws
+    /// std::invalid_argument for a problem or cells of another grid.
+    Eigen::MatrixXf of(const ContactGrid& grid, const ContactProblem& problem, double approach,
                        const std::vector<int>& cells) const;
 };
 
@@ -33,23 +37,19 @@ struct ContactFeatures {
 ///
 /// The contact is homogeneous: gap and approach n times as large give n times the pressure. So the
 /// regression learns pressure over greatest interference (MPa/mm). The approach that gives the
-/// commanded force is searched for.
+/// commanded force is searched for; a solution's `iterations` counts predictions.
 class Surrogate final : public ContactModel {
   public:
     /// `name`: for the report. Throws InputError if the regression does not fit the features.
     Surrogate(ContactFeatures features, TrainedRegression regression, std::string name);
 
-    void set_grid(const ContactGrid&) override {}
-    /// `iterations` counts predictions.
-    ContactSolution solve(const ContactProblem& problem,
-                          const Eigen::ArrayXd* start = nullptr) const override;
     std::string describe() const override { return name_; }
 
   private:
-    Eigen::ArrayXd predict(const ContactProblem& problem, double approach) const;
+    std::unique_ptr<PreparedContact> do_prepare(const ContactGrid& grid) const override;
 
     ContactFeatures features_;
-    TrainedRegression regression_;
+    std::shared_ptr<const TrainedRegression> regression_;
     std::string name_;
 };
 

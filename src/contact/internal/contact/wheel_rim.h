@@ -1,12 +1,13 @@
 #pragma once
 
-#include <complex>
-#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "contact/convolution.h"
+#include "beltgrinding/compliance.h"
 #include "contact/rim_cache.h"
 #include "contact/rim_section.h"
+#include "contact/spectrum_cache.h"
 
 namespace beltgrinding {
 
@@ -21,43 +22,43 @@ struct BeltPlate {
 ///
 /// The section's compliance is solved at some wavenumbers, splined between them, and summed over
 /// the wheel's whole circumference into an influence function along it, with the means over
-/// loaded and displaced cells; apply() convolves without periodic images (zero padding) by Fourier
-/// transforms, with one dense product a wavenumber for each symmetry.
-class WheelRim final : public ComplianceOperator {
+/// loaded and displaced cells; the operator convolves without periodic images (zero padding) by
+/// Fourier transforms, with one dense product a wavenumber for each symmetry.
+class WheelRim final : public ElasticModel {
   public:
-    /// Throws InputError for a design that is none.
-    explicit WheelRim(WheelRimDesign design, BeltPlate belt = {});
+    /// `cache`: where the section's compliance is read from and kept; none: nowhere, it is computed
+    /// for every object and size of cells. Throws InputError for a design that is none.
+    explicit WheelRim(WheelRimDesign design, BeltPlate belt = {},
+                      std::shared_ptr<RimCache> cache = nullptr);
 
-    void set_grid(const ContactGrid& grid) override;
-    void apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-               Eigen::ArrayXd& displacement) const override;
-    double diagonal() const override { return current_ ? current_->diagonal : 1.0; }
-    /// Also names the cache's entry, once a grid is set.
+    /// What the operator of a grid says also names the cache's entry.
     std::string describe() const override;
 
-  private:
-    std::string describe_design(int digits) const;
+    /// The section's compliance for some cells.
+    struct Samples {
+        std::vector<double> waves;  ///< sampled wavenumbers, 1/mm
+        RimSamples compliance;      ///< mm/MPa, there
+        std::string description;    ///< of the rim, and of the cache's entry
+    };
     /// What belongs to one padded length: for each wavenumber both matrices, one after the other.
     struct Spectrum {
         std::vector<float> matrices;
-        double diagonal = 1.0;  // mm/MPa, mean over the cells
+        double diagonal = 1.0;  ///< mm/MPa, mean over the cells
     };
-    /// The samples for a grid's cells: from the user's cache, or computed and put there.
-    void sample(const ContactGrid& grid);
-    void compute(const ContactGrid& grid);
-    Spectrum build(int length) const;
+
+  private:
+    std::unique_ptr<ComplianceOperator> make_operator(const ContactGrid& grid) const override;
+    std::string describe_design(int digits) const;
+    /// The samples for a grid's cells: from the cache, or computed and put there.
+    Samples sample(const ContactGrid& grid) const;
+    RimSamples compute(const ContactGrid& grid, const std::vector<double>& waves) const;
+    Spectrum build(const ContactGrid& grid, const Samples& samples, int length) const;
 
     WheelRimDesign design_;
     BeltPlate belt_;
-    ContactGrid grid_;
-    std::vector<double> waves_;          // sampled wavenumbers, 1/mm
-    RimSamples samples_;                 // compliance there
-    std::string key_;                    // of the samples in the cache
-    std::map<int, Spectrum> spectra_;    // by padded length
-    const Spectrum* current_ = nullptr;  // one of them
-    mutable RowTransform transform_;
-    mutable std::vector<float> values_;
-    mutable std::vector<std::complex<float>> spectrum_, image_;
+    std::shared_ptr<RimCache> cache_;
+    mutable SpectrumCache<Samples> samples_;  // for any length
+    mutable SpectrumCache<Spectrum> spectra_;
 };
 
 }  // namespace beltgrinding

@@ -68,6 +68,7 @@ struct SimulationResult {
     /// order (the pressures as they are). Independent: they add up as squares.
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
+    std::string model;             ///< what the contact model says of itself as it was used
     /// s of wall time by phase
     double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0,
            trace_s = 0, events_s = 0;
@@ -78,7 +79,7 @@ struct SimulationResult {
 /// the field is left as it was before the call.
 /// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
 /// path, bad options) and Cancelled.
-SimulationResult simulate(HeightField& field, const ToolPath& path, ContactModel& model,
+SimulationResult simulate(HeightField& field, const ToolPath& path, const ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});
 
@@ -89,12 +90,13 @@ struct PoseContact {
     Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
     ContactSolution solution;  ///< its approach counts from `placed`
     double placed = 0.0;       ///< mm along z from the programmed pose
+    std::string model;         ///< what the contact model says of itself as it was used
     double commanded = 0.0;    ///< N; what is missing to it lies beyond the travel
 };
 
 /// Presses the wheel at the pose number `pose` (from 0) without grinding. Throws InputError if the
 /// wheel does not touch there.
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
-                       ContactModel& model, const SimulationOptions& options);
+                       const ContactModel& model, const SimulationOptions& options);
 
 }  // namespace beltgrinding

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "beltgrinding/error.h"
@@ -128,40 +127,27 @@ void write_hdf5(const HeightField& field, const std::string& path, const std::st
 HeightField read_hdf5(const std::string& path, std::string* attributes) {
     const auto lock = hdf5_lock();
     try {
-        std::error_code error;
-        const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
-        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
-                {{"reason", error.message()}});
-        const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-        require(file.ok(), "hdf5.no_file", "is no HDF5 file");
-        int format = 0;
-        read_scalar(file, "format", H5T_NATIVE_INT, &format);
-        require(format == kFormat, "hdf5.format", "has format {format}, this version reads {known}",
-                {{"format", format}, {"known", kFormat}});
+        const InputFile file(path, "format", kFormat);
         HeightField field;
         read_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
         read_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
         each_array(field, [&](const char* name, auto& data, hid_t type, hsize_t row) {
-            read_array(file, bytes, name, data, type, row);
+            read_array(file, name, data, type, row);
         });
         if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
-            read_array(file, bytes, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
+            read_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
         }
         if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
-            read_array(file, bytes, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+            read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
         }
         if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
             each_trace_array(field.trace, [&](const char* name, auto& data, hid_t type) {
-                read_array(file, bytes, name, data, type, 1);
+                read_array(file, name, data, type, 1);
             });
         }
         check(field);
         check(field.trace, field.size());
-        if (attributes != nullptr) {
-            std::vector<char> text;
-            read_array(file, bytes, "attributes", text, H5T_NATIVE_CHAR, 1);
-            attributes->assign(text.begin(), text.end());
-        }
+        if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return field;
     } catch (const FileFault& fault) {
         throw InputError(fault.fact, {within(path)});

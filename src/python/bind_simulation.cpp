@@ -86,31 +86,31 @@ BeltState belt_from(const py::dict& given) {
 
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
-    o.wheel = wheel_from(wheel_given);
+    o.process.wheel = wheel_from(wheel_given);
     py::dict d = copy_of(given);
-    o.force_control = take(d, "force_control", o.force_control);
-    o.force = take(d, "force", o.force);
-    o.force_travel = take(d, "force_travel", o.force_travel);
-    o.robot_stiffness = take(d, "robot_stiffness", o.robot_stiffness);
-    o.belt_speed = take(d, "belt_speed", o.belt_speed);
-    o.belt_wear = take(d, "belt_wear", o.belt_wear);
-    o.wear = wear_from(take(d, "wear", py::dict()));
-    o.belt = belt_from(take(d, "belt", py::dict()));
-    o.heat_limit = take(d, "heat_limit", o.heat_limit);
-    o.pressure_limit = take(d, "pressure_limit", o.pressure_limit);
-    o.orientation_jump = take(d, "orientation_jump", o.orientation_jump);
-    o.tilt_limit = take(d, "tilt_limit", o.tilt_limit);
+    o.process.force_control = take(d, "force_control", o.process.force_control);
+    o.process.force = take(d, "force", o.process.force);
+    o.process.force_travel = take(d, "force_travel", o.process.force_travel);
+    o.process.robot_stiffness = take(d, "robot_stiffness", o.process.robot_stiffness);
+    o.process.belt_speed = take(d, "belt_speed", o.process.belt_speed);
+    o.process.belt_wear = take(d, "belt_wear", o.process.belt_wear);
+    o.process.wear = wear_from(take(d, "wear", py::dict()));
+    o.process.belt = belt_from(take(d, "belt", py::dict()));
+    o.limits.heat = take(d, "heat_limit", o.limits.heat);
+    o.limits.pressure = take(d, "pressure_limit", o.limits.pressure);
+    o.limits.orientation_jump = take(d, "orientation_jump", o.limits.orientation_jump);
+    o.limits.tilt = take(d, "tilt_limit", o.limits.tilt);
     const Eigen::ArrayXf limits = take(d, "lower_limits", Eigen::ArrayXf());
-    o.lower_limits.assign(limits.begin(), limits.end());
+    o.limits.lower.assign(limits.begin(), limits.end());
     for (const auto& shifted : take(d, "shifted_laws", py::list())) {
-        o.shifted_laws.push_back(law_from(shifted.cast<py::dict>()));
+        o.outputs.shifted_laws.push_back(law_from(shifted.cast<py::dict>()));
     }
-    o.contact_spacing = take(d, "contact_spacing", o.contact_spacing);
-    o.contact_tolerance = take(d, "contact_tolerance", o.contact_tolerance);
-    o.stepping.max_travel = take(d, "max_travel", o.stepping.max_travel);
-    o.stepping.max_angle = take(d, "max_angle", o.stepping.max_angle);
-    o.trace = take(d, "trace", o.trace);
-    o.first_motion = take(d, "first_motion", o.first_motion);
+    o.resolution.contact_spacing = take(d, "contact_spacing", o.resolution.contact_spacing);
+    o.resolution.contact_tolerance = take(d, "contact_tolerance", o.resolution.contact_tolerance);
+    o.resolution.max_travel = take(d, "max_travel", o.resolution.max_travel);
+    o.resolution.max_angle = take(d, "max_angle", o.resolution.max_angle);
+    o.outputs.trace = take(d, "trace", o.outputs.trace);
+    o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
     return o;
@@ -143,14 +143,14 @@ py::dict to_dict(const SimulationResult& result) {
     steps["removal_rate"] = column<float>(s, [](const StepRecord& r) { return r.removal_rate; });
     steps["segments"] = column<std::uint32_t>(s, [](const StepRecord& r) { return r.segments; });
     py::dict wall;
-    wall["build"] = result.build_s;
-    wall["localise"] = result.localise_s;
-    wall["gap"] = result.gap_s;
-    wall["contact"] = result.contact_s;
-    wall["removal"] = result.removal_s;
-    wall["refit"] = result.refit_s;
-    wall["trace"] = result.trace_s;
-    wall["events"] = result.events_s;
+    wall["build"] = result.wall.build;
+    wall["localise"] = result.wall.localise;
+    wall["gap"] = result.wall.gap;
+    wall["contact"] = result.wall.contact;
+    wall["removal"] = result.wall.removal;
+    wall["refit"] = result.wall.refit;
+    wall["trace"] = result.wall.trace;
+    wall["events"] = result.wall.events;
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;
@@ -307,8 +307,8 @@ void bind_simulation(py::module_& m) {
            const py::dict& compliance, const py::dict& law, const py::dict& options,
            const RunContext* context, Recording* recording) {
             SimulationOptions o = options_from(wheel, options);
-            o.recording = recording;
-            const auto elastic = compliance_from(compliance, o.wheel, o.force);
+            o.outputs.recording = recording;
+            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
             const auto removal = law_from(law);
             SimulationResult result;
             {
@@ -318,7 +318,7 @@ void bind_simulation(py::module_& m) {
             }
             py::dict d = to_dict(result);
             d["compliance"] = result.model;
-            d["law"] = removal->describe() + ", " + o.wear.describe();
+            d["law"] = removal->describe() + ", " + o.process.wear.describe();
             return d;
         },
         py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),
@@ -332,11 +332,11 @@ void bind_simulation(py::module_& m) {
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,
            const py::dict& compliance, const py::dict& options) {
             const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = compliance_from(compliance, o.wheel, o.force);
+            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
             PoseContact contact;
             {
                 const py::gil_scoped_release release;
-                contact = contact_at(field, path, pose, *elastic, o);
+                contact = contact_at(field, path, pose, *elastic, o.process, o.resolution);
             }
             py::dict d = contact_to_dict(contact.grid, contact.solution);
             d["approach"] = contact.placed + contact.solution.approach;

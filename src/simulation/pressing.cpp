@@ -20,34 +20,34 @@ constexpr double kAhead = 0.5;
 
 }  // namespace
 
-Pressing::Pressing(const SimulationOptions& options, double spacing, const ContactModel& model)
-    : options_(options), model_(model), map_(options.wheel, spacing) {}
+Pressing::Pressing(const ProcessSettings& process, double spacing, double tolerance,
+                   const ContactModel& model)
+    : process_(process), tolerance_(tolerance), model_(model), map_(process.wheel, spacing) {}
 
 Frame Pressing::placed_frame() const {
     return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
 }
 
-void Pressing::localise(const HeightField& field, const SegmentTree& tree, double margin,
-                        SimulationResult& result) {
-    const Stopwatch watch(result.localise_s);
+void Pressing::localise(const HeightField& field, const SegmentTree& tree, double margin) {
+    const Stopwatch watch(times_.localise);
     const Frame frame = placed_frame();
     WheelReach reach;
-    reach.centre = frame * Vec3(0.0, 0.0, -options_.wheel.radius);
+    reach.centre = frame * Vec3(0.0, 0.0, -process_.wheel.radius);
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
-    reach.radius = options_.wheel.radius + margin;
-    reach.half_width = 0.5 * (options_.wheel.width + field.spacing);
-    reach.min_along = kAhead * options_.wheel.radius;
+    reach.radius = process_.wheel.radius + margin;
+    reach.half_width = 0.5 * (process_.wheel.width + field.spacing);
+    reach.min_along = kAhead * process_.wheel.radius;
     tree.query(field, reach, hits_);
 }
 
-void Pressing::map_gap(const HeightField& field, double reach, SimulationResult& result) {
-    const Stopwatch watch(result.gap_s);
+void Pressing::map_gap(const HeightField& field, double reach) {
+    const Stopwatch watch(times_.gap);
     map_.update(field, hits_, placed_frame(), reach);
 }
 
-void Pressing::solve(bool force_control, double force, SimulationResult& result) {
-    const Stopwatch watch(result.contact_s);
+void Pressing::solve(bool force_control, double force) {
+    const Stopwatch watch(times_.contact);
     const ContactGrid& grid = map_.grid();
     Eigen::ArrayXd start;
     if (warm_) start = recentre(solution_.pressure, contact_->grid(), grid);
@@ -61,35 +61,33 @@ void Pressing::solve(bool force_control, double force, SimulationResult& result)
     problem.force_control = force_control;
     problem.force = force;
     // The programmed pose, seen from where the wheel is placed; at an end stop that is the pose.
-    if (!options_.force_control) {
+    if (!process_.force_control) {
         problem.approach = -placed_;
-        if (options_.robot_stiffness > 0.0) {
-            problem.robot_compliance = 1.0 / options_.robot_stiffness;
+        if (process_.robot_stiffness > 0.0) {
+            problem.robot_compliance = 1.0 / process_.robot_stiffness;
         }
     }
-    problem.tolerance = options_.contact_tolerance;
+    problem.tolerance = tolerance_;
     solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
     warm_ = solution_.force > 0.0;
 }
 
-bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree,
-                          SimulationResult& result) {
-    const double travel = options_.force_travel;
+bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree) {
+    const double travel = process_.force_travel;
     placed_ = 0.0;
-    localise(field, tree, travel + kMargin, result);
-    map_gap(field, travel + kMargin, result);
+    localise(field, tree, travel + kMargin);
+    map_gap(field, travel + kMargin);
     if (map_.empty() || !(map_.lowest() <= travel)) return false;
     placed_ = std::clamp(map_.lowest(), -travel, travel);
     return true;
 }
 
-Pressing::State Pressing::press_position(const HeightField& field, const SegmentTree& tree,
-                                         SimulationResult& result) {
+Pressing::State Pressing::press_position(const HeightField& field, const SegmentTree& tree) {
     placed_ = 0.0;
     for (int i = 0; i < kMaxPlacements; ++i) {
-        localise(field, tree, kMargin, result);
-        map_gap(field, kMargin, result);
-        solve(false, 0.0, result);
+        localise(field, tree, kMargin);
+        map_gap(field, kMargin);
+        solve(false, 0.0);
         if (solution_.area <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
         if (std::abs(solution_.approach) <= kPlacement) break;
@@ -99,10 +97,9 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
 }
 
 Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tree,
-                                const Frame& work_from_contact, double force,
-                                SimulationResult& result) {
+                                const Frame& work_from_contact, double force) {
     programmed_ = work_from_contact;
-    if (!options_.force_control) return press_position(field, tree, result);
+    if (!process_.force_control) return press_position(field, tree);
     const auto nothing = [&] {
         warm_ = false;
         placed_ = 0.0;
@@ -112,24 +109,24 @@ Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tre
     if (force <= 0.0) return nothing();
     bool searched = false;
     if (!warm_) {
-        if (!find_touch(field, tree, result)) return nothing();
+        if (!find_touch(field, tree)) return nothing();
         searched = true;
     }
     for (int i = 0; i < kMaxPlacements; ++i) {
-        localise(field, tree, kMargin, result);
-        map_gap(field, kMargin, result);
-        if (!map_.empty()) solve(true, force, result);
+        localise(field, tree, kMargin);
+        map_gap(field, kMargin);
+        if (!map_.empty()) solve(true, force);
         if (map_.empty() || solution_.force <= 0.0) {
             // The surface fell away from where it was at the last pose.
-            if (searched || !find_touch(field, tree, result)) return nothing();
+            if (searched || !find_touch(field, tree)) return nothing();
             searched = true;
             continue;
         }
         const double wanted = placed_ + solution_.approach;
-        if (std::abs(wanted) > options_.force_travel) {
-            const double stop = std::copysign(options_.force_travel, wanted);
+        if (std::abs(wanted) > process_.force_travel) {
+            const double stop = std::copysign(process_.force_travel, wanted);
             if (std::abs(placed_ - stop) < 1e-9) {
-                solve(false, 0.0, result);
+                solve(false, 0.0);
                 return solution_.force > 0.0 ? State::kBeyondTravel : nothing();
             }
             placed_ = stop;
@@ -143,10 +140,9 @@ Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tre
     return State::kPressed;
 }
 
-Pressing::State Pressing::press_again(const HeightField& field, double force,
-                                      SimulationResult& result) {
-    map_gap(field, kMargin, result);
-    solve(options_.force_control, force, result);
+Pressing::State Pressing::press_again(const HeightField& field, double force) {
+    map_gap(field, kMargin);
+    solve(process_.force_control, force);
     return solution_.force > 0.0 ? State::kPressed : State::kNoContact;
 }
 

@@ -16,17 +16,20 @@ namespace beltgrinding {
 /// contact. Keeps the approach and the pressure of the last pose to start the next one from.
 class Pressing {
   public:
-    Pressing(const SimulationOptions& options, double spacing, const ContactModel& model);
+    /// `spacing`: mm, cell of the wheel's grid; `tolerance`: relative error of the pressure field.
+    /// The process and the model must outlive it.
+    Pressing(const ProcessSettings& process, double spacing, double tolerance,
+             const ContactModel& model);
 
     /// What pressing ended in. `kBeyondTravel`: force control met its end stop, the force is what
     /// the wheel has there.
     enum class State { kNoContact, kPressed, kBeyondTravel };
 
-    /// Presses at the programmed pose. Adds its wall time to `result`'s phases.
+    /// Presses at the programmed pose.
     State press(const HeightField& field, const SegmentTree& tree, const Frame& work_from_contact,
-                double force, SimulationResult& result);
+                double force);
     /// Solves again at the same place after the surface was lowered (no new localisation).
-    State press_again(const HeightField& field, double force, SimulationResult& result);
+    State press_again(const HeightField& field, double force);
 
     /// A rigid tool: `solution` has an area and no pressure.
     bool rigid() const { return model_.rigid(); }
@@ -39,19 +42,20 @@ class Pressing {
     const GapMap& map() const { return map_; }
     /// What the model says of itself as it was used last.
     std::string describe() const { return contact_ ? contact_->describe() : model_.describe(); }
+    /// s of wall time for localise, gap and contact so far.
+    const PhaseTimes& times() const { return times_; }
     std::size_t localised() const { return hits_.size(); }
 
   private:
-    State press_position(const HeightField& field, const SegmentTree& tree,
-                         SimulationResult& result);
+    State press_position(const HeightField& field, const SegmentTree& tree);
     Frame placed_frame() const;
-    void localise(const HeightField& field, const SegmentTree& tree, double margin,
-                  SimulationResult& result);
-    void map_gap(const HeightField& field, double reach, SimulationResult& result);
-    void solve(bool force_control, double force, SimulationResult& result);
-    bool find_touch(const HeightField& field, const SegmentTree& tree, SimulationResult& result);
+    void localise(const HeightField& field, const SegmentTree& tree, double margin);
+    void map_gap(const HeightField& field, double reach);
+    void solve(bool force_control, double force);
+    bool find_touch(const HeightField& field, const SegmentTree& tree);
 
-    const SimulationOptions& options_;
+    const ProcessSettings& process_;
+    double tolerance_;
     const ContactModel& model_;
     GapMap map_;
     std::unique_ptr<PreparedContact> contact_;  // on the grid of the last solution
@@ -60,6 +64,7 @@ class Pressing {
     Frame programmed_ = Frame::Identity();
     double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap
     bool warm_ = false;
+    PhaseTimes times_;
 };
 
 }  // namespace beltgrinding

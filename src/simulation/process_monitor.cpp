@@ -28,22 +28,23 @@ constexpr double kStill = 1e-9;      // mm, no way
 }  // namespace
 
 ProcessMonitor::ProcessMonitor(const HeightField& field, const ToolPath& path,
-                               const std::vector<PathStep>& steps, const SimulationOptions& options,
-                               const RemovalLaw& law)
+                               const std::vector<PathStep>& steps, const ProcessSettings& process,
+                               const MonitorLimits& limits, const RemovalLaw& law)
     : field_(field),
       path_(path),
       steps_(steps),
-      options_(options),
+      process_(process),
+      limits_(limits),
       law_(law),
       events_(path, kPause),
       touched_(steps.size(), 0) {
-    if (options.lower_limits.empty()) return;
+    if (limits.lower.empty()) return;
     below_.resize(field.size());
     for (std::uint32_t s = 0; s < field.size(); ++s) below_[s] = field.height[s] < lower_limit(s);
 }
 
 double ProcessMonitor::lower_limit(std::uint32_t sample) const {
-    const auto& limits = options_.lower_limits;
+    const auto& limits = limits_.lower;
     return limits[limits.size() == 1 ? 0 : sample];
 }
 
@@ -77,7 +78,7 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     if (event == nullptr) return;
     event->limit = step.force;
     const Arguments arguments = {
-        {"force", force}, {"commanded", step.force}, {"travel", options_.force_travel}};
+        {"force", force}, {"commanded", step.force}, {"travel", process_.force_travel}};
     if (pressing.approach() > 0.0) {
         event->facts = {{"event.travel_ends_towards",
                          "{force:.3g} N in place of {commanded:.3g} N: the force control is at the "
@@ -112,18 +113,18 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
         }
     }
     const double peak = contact.peak_pressure;
-    if (options_.pressure_limit > 0.0 && peak > options_.pressure_limit) {
+    if (limits_.pressure > 0.0 && peak > limits_.pressure) {
         if (Event* event = events_.note("over_pressure", index, step, peak)) {
-            event->limit = options_.pressure_limit;
+            event->limit = limits_.pressure;
             event->facts = {
                 {"event.over_pressure",
                  "the pressure reaches {pressure:.3g} MPa, above the limit of {limit:.3g} MPa",
-                 {{"pressure", peak}, {"limit", options_.pressure_limit}}}};
+                 {{"pressure", peak}, {"limit", limits_.pressure}}}};
             put_at_peak(*event);
         }
     }
-    const double heat = kMetre * peak * options_.belt_speed;
-    const double heat_limit = kMetre * options_.heat_limit;
+    const double heat = kMetre * peak * process_.belt_speed;
+    const double heat_limit = kMetre * limits_.heat;
     if (heat_limit > 0.0 && heat > heat_limit) {
         if (Event* event = events_.note("burn_risk", index, step, heat)) {
             event->limit = heat_limit;
@@ -134,7 +135,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
             put_at_peak(*event);
         }
     }
-    const ProcessState state{options_.belt_speed, 1.0, step.feed, contact.force, contact.area};
+    const ProcessState state{process_.belt_speed, 1.0, step.feed, contact.force, contact.area};
     if (const auto outside = law_.outside(peak, state)) {
         const double ratio = outside->value / outside->limit;
         const double badness = ratio > 0.0 ? std::abs(std::log(ratio)) : HUGE_VAL;
@@ -147,7 +148,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
             put_at_peak(*event);
         }
     }
-    if (!options_.wear.measured(belt)) {
+    if (!process_.wear.measured(belt)) {
         if (Event* event = events_.note("belt_out_of_range", index, step, belt.work)) {
             event->facts = {{"event.belt_not_measured",
                              "the belt has done more than its wear was measured for: {work:.4g} J",
@@ -176,10 +177,10 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     for (double& share : by_column) share /= total;
     centre /= total;
     note_edges(index, pressing, by_column);
-    const double tilt = std::abs(centre) / options_.wheel.radius;
-    if (!(options_.tilt_limit > 0.0) || tilt <= options_.tilt_limit) return;
+    const double tilt = std::abs(centre) / process_.wheel.radius;
+    if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
     if (Event* event = events_.note("tilted_contact", index, steps_[index], kDegrees * tilt)) {
-        event->limit = kDegrees * options_.tilt_limit;
+        event->limit = kDegrees * limits_.tilt;
         const Arguments arguments = {{"angle", kDegrees * tilt}};
         if (centre > 0.0) {
             event->facts = {{"event.tilted_along",
@@ -267,7 +268,7 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     const double closing = std::atan(map.slope_near(from.x(), from.y(), reach)[axis]) -
                            std::atan(map.slope_near(to.x(), to.y(), reach)[axis]);
     const double span = (to - from).norm();
-    const double radius = across ? options_.wheel.crown_radius : options_.wheel.radius;
+    const double radius = across ? process_.wheel.crown_radius : process_.wheel.radius;
     const double turn = radius > 0.0 ? 0.5 * span / radius : 0.0;
     // Also false where a slope is not known.
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
@@ -290,11 +291,11 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     }
     put(*event, pressing, middle.x(), middle.y());  // for the face
     // No sample is in reach there: it is the rim's point over the hollow.
-    const double angle = middle.x() / options_.wheel.radius;
-    const double r = options_.wheel.radius - options_.wheel.drop(middle.y());
+    const double angle = middle.x() / process_.wheel.radius;
+    const double r = process_.wheel.radius - process_.wheel.drop(middle.y());
     event->point = steps_[index].work_from_contact *
                    Vec3(r * std::sin(angle), middle.y(),
-                        pressing.approach() - options_.wheel.radius + r * std::cos(angle));
+                        pressing.approach() - process_.wheel.radius + r * std::cos(angle));
 }
 
 void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> changed) {
@@ -334,7 +335,7 @@ void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> ch
 }
 
 void ProcessMonitor::note_orientation_jumps() {
-    if (!(options_.orientation_jump > 0.0)) return;
+    if (!(limits_.orientation_jump > 0.0)) return;
     const auto& poses = path_.poses();
     double time = 0.0;
     for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -344,11 +345,11 @@ void ProcessMonitor::note_orientation_jumps() {
         step.time = time + 0.5 * step.duration;
         time += step.duration;
         const double angle = angle_between(poses[i - 1].base_from_tcp, poses[i].base_from_tcp);
-        if (poses[i].rapid || angle <= options_.orientation_jump) continue;
+        if (poses[i].rapid || angle <= limits_.orientation_jump) continue;
         // Each is a mistake of its own: steps of numbers far apart are never one event.
         Event* event = events_.note("orientation_jump", i * (kPause + 1), step, kDegrees * angle);
         if (event == nullptr) continue;
-        event->limit = kDegrees * options_.orientation_jump;
+        event->limit = kDegrees * limits_.orientation_jump;
         event->facts = {{"event.orientation_jump",
                          "the tool turns by {angle:.1f} deg from pose to pose",
                          {{"angle", kDegrees * angle}}}};
@@ -375,7 +376,7 @@ void ProcessMonitor::note_lost_contact() {
             before > 0 ? Vec3(position(before) - position(before - 1)) : Vec3(Vec3::Zero());
         bool lost = true;
         for (std::size_t k = before + 1; k < i && lost; ++k) {
-            const bool pressing = !options_.force_control || steps_[k].force > 0.0;
+            const bool pressing = !process_.force_control || steps_[k].force > 0.0;
             const bool back = heading.dot(position(k) - position(k - 1)) < -kStill;
             lost = pressing && !steps_[k].plunging && !back;
         }

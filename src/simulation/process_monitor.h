@@ -16,8 +16,8 @@ class ProcessMonitor {
   public:
     /// All of them must outlive it. `field` is the one that is ground.
     ProcessMonitor(const HeightField& field, const ToolPath& path,
-                   const std::vector<PathStep>& steps, const SimulationOptions& options,
-                   const RemovalLaw& law);
+                   const std::vector<PathStep>& steps, const ProcessSettings& process,
+                   const MonitorLimits& limits, const RemovalLaw& law);
 
     /// The wheel is pressed in step `index`, nothing is removed yet. `belt`: what it has done.
     void pressed(std::size_t index, const Pressing& pressing, Pressing::State state,
@@ -43,7 +43,8 @@ class ProcessMonitor {
     const HeightField& field_;
     const ToolPath& path_;
     const std::vector<PathStep>& steps_;
-    const SimulationOptions& options_;
+    const ProcessSettings& process_;
+    const MonitorLimits& limits_;
     const RemovalLaw& law_;
     EventLog events_;
     std::vector<std::uint8_t> touched_;  // by step

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "beltgrinding/error.h"
@@ -49,32 +48,19 @@ struct RecordingFile {
     }
 
     static Recording read(const std::string& path, std::string* attributes) {
-        std::error_code error;
-        const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
-        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
-                {{"reason", error.message()}});
-        const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-        require(file.ok(), "hdf5.no_file", "is no HDF5 file");
-        int format = 0;
-        read_scalar(file, "recording_format", H5T_NATIVE_INT, &format);
-        require(format == kFormat, "hdf5.format", "has format {format}, this version reads {known}",
-                {{"format", format}, {"known", kFormat}});
+        const InputFile file(path, "recording_format", kFormat);
         Recording r;
         std::uint64_t stride = 1;
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
         read_scalar(file, "steps_per_frame", H5T_NATIVE_UINT64, &stride);
         r.stride_ = static_cast<std::size_t>(stride);
         each_array(r, [&](const char* name, auto& data, hid_t type, hsize_t row) {
-            read_array(file, bytes, name, data, type, row);
+            read_array(file, name, data, type, row);
         });
         check(r);
         for (std::size_t frame = 1; frame <= r.last(); ++frame) r.count_frame(frame);
         r.total_steps_ = r.steps_.back();
-        if (attributes != nullptr) {
-            std::vector<char> text;
-            read_array(file, bytes, "attributes", text, H5T_NATIVE_CHAR, 1);
-            attributes->assign(text.begin(), text.end());
-        }
+        if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return r;
     }
 

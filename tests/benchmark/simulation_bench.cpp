@@ -26,8 +26,8 @@ void step_cost(benchmark::State& state) {
                                                       : static_cast<const ContactModel&>(rim);
     const LocalLaw law({1e-5});
     SimulationOptions options;
-    options.wheel = {100.0, 50.0, 0.0};
-    options.force = 100.0;
+    options.process.wheel = {100.0, 50.0, 0.0};
+    options.process.force = 100.0;
     std::vector<PathPose> poses(2);
     for (std::size_t k = 0; k < 2; ++k) {
         poses[k].base_from_tcp =
@@ -40,15 +40,15 @@ void step_cost(benchmark::State& state) {
     for (auto _ : state) {
         result = simulate(field, path, elastic, law, options);
         steps += static_cast<double>(result.steps.size());
-        localise += result.localise_s;
-        gap += result.gap_s;
-        contact += result.contact_s;
-        removal += result.removal_s;
-        refit += result.refit_s;
+        localise += result.wall.localise;
+        gap += result.wall.gap;
+        contact += result.wall.contact;
+        removal += result.wall.removal;
+        refit += result.wall.refit;
         for (const StepRecord& step : result.steps) segments += step.segments;
         // The tree's build is no part of a step.
-        state.SetIterationTime(result.localise_s + result.gap_s + result.contact_s +
-                               result.removal_s + result.refit_s);
+        state.SetIterationTime(result.wall.localise + result.wall.gap + result.wall.contact +
+                               result.wall.removal + result.wall.refit);
     }
     state.counters["segments"] = segments / steps;
     state.counters["step_us"] = 1e6 * (localise + gap + contact + removal + refit) / steps;
@@ -73,8 +73,8 @@ void trace_cost(benchmark::State& state) {
     ElasticFoundation foundation(0.5);
     const LocalLaw law({1e-5});
     SimulationOptions options;
-    options.wheel = {100.0, 50.0, 0.0};
-    options.force = 100.0;
+    options.process.wheel = {100.0, 50.0, 0.0};
+    options.process.force = 100.0;
     std::vector<PathPose> poses;
     for (int k = 0; k < 8; ++k) {  // to and fro, neighbouring passes overlap
         PathPose pose;
@@ -89,12 +89,12 @@ void trace_cost(benchmark::State& state) {
     for (auto _ : state) {
         for (const bool trace : {false, true}) {
             HeightField field = before;
-            options.trace = trace;
+            options.outputs.trace = trace;
             const std::clock_t start = std::clock();
             const SimulationResult result = simulate(field, path, foundation, law, options);
             const auto clocks = static_cast<double>(std::clock() - start);
             seconds[trace ? 1 : 0] += clocks / CLOCKS_PER_SEC;
-            kept += result.trace_s;
+            kept += result.wall.trace;
             steps += static_cast<double>(trace ? result.steps.size() : 0);
             state.counters["bytes_a_sample"] =
                 static_cast<double>(field.trace.bytes()) / static_cast<double>(field.size());

@@ -28,8 +28,8 @@ PathPose at(double x, double y, double z, double tilt_about_x = 0.0) {
 
 SimulationOptions options() {
     SimulationOptions o;
-    o.wheel = {60.0, 20.0, 0.0};
-    o.force = 40.0;
+    o.process.wheel = {60.0, 20.0, 0.0};
+    o.process.force = 40.0;
     return o;
 }
 
@@ -69,14 +69,14 @@ HeightField two_plates() {
 
 TEST(Events, ContactIsLostOnlyBetweenContactsOfAPass) {
     SimulationOptions o = options();
-    o.force_travel = 2.0;
+    o.process.force_travel = 2.0;
     // From beside the first plate to beside the second: only the gap between them counts.
     HeightField field = two_plates();
     const auto lost = of(grind(field, {at(-30, 20, 0), at(150, 20, 0)}, o), "loss_of_contact");
     ASSERT_EQ(lost.size(), 1u);
     const Event& event = lost[0];
     // The wheel's flank still touches the border where its arc is within the travel below.
-    const double flank = std::sqrt(2.0 * 60.0 * (o.force_travel + kAllowance));
+    const double flank = std::sqrt(2.0 * 60.0 * (o.process.force_travel + kAllowance));
     EXPECT_GT(event.value, 40.0 - 2.0 * flank - 2.0);
     EXPECT_LE(event.value, 40.0);
     EXPECT_NEAR(event.point.x(), 60.0, 2.0);
@@ -107,12 +107,12 @@ TEST(Events, PressureBeyondItsLimitHasItsPlace) {
     SimulationOptions o = options();
     const auto poses = {at(20, 20, kAllowance), at(60, 20, kAllowance)};
     EXPECT_TRUE(grind(field, poses, o).empty());
-    o.pressure_limit = 0.05;
+    o.limits.pressure = 0.05;
     const auto events = grind(field, poses, o);
     ASSERT_EQ(events.size(), 1u);
     EXPECT_EQ(events[0].kind, "over_pressure");
-    EXPECT_GT(events[0].value, o.pressure_limit);
-    EXPECT_EQ(events[0].limit, o.pressure_limit);
+    EXPECT_GT(events[0].value, o.limits.pressure);
+    EXPECT_EQ(events[0].limit, o.limits.pressure);
     EXPECT_EQ(events[0].face, 1u);
     EXPECT_NEAR(events[0].duration, 1.0, 1e-9);
     EXPECT_GE(events[0].worst_time, events[0].time);
@@ -158,7 +158,7 @@ HeightField trough(double radius, double arc, double length) {
 
 TEST(Events, AWheelTooLargeForAHollowSpansIt) {
     SimulationOptions o = options();
-    o.force_travel = 10.0;
+    o.process.force_travel = 10.0;
     const auto run = [&](HeightField field) {
         return of(grind(field, {at(-1, 18, kAllowance), at(1, 18, kAllowance)}, o, 0.0),
                   "wheel_too_large");
@@ -197,7 +197,7 @@ TEST(Events, AWheelTooLargeForAHollowSpansIt) {
 TEST(Events, AGougeNamesTheMotionThatMadeIt) {
     HeightField field = testing::plate(80, 40, 0.5, kAllowance);
     SimulationOptions o = options();
-    o.lower_limits = {-0.05f};
+    o.limits.lower = {-0.05f};
     // The second motion dwells: it grinds through, the first and the third do not.
     std::vector<PathPose> poses{at(15, 20, 0), at(35, 20, 0), at(45, 20, 0), at(65, 20, 0)};
     poses[2].feed = kFeed / 8.0;
@@ -220,16 +220,16 @@ TEST(Events, AGougeNamesTheMotionThatMadeIt) {
     EXPECT_TRUE(of(grind(low, {at(15, 20, 0), at(35, 20, 0)}, o), "gouge").empty());
     // One limit a sample: only the half that has one is watched.
     HeightField half = testing::plate(80, 40, 0.5, kAllowance);
-    o.lower_limits.assign(half.size(), -10.0f);
+    o.limits.lower.assign(half.size(), -10.0f);
     EXPECT_TRUE(of(grind(half, poses, o, 1e-4), "gouge").empty());
-    o.lower_limits.assign(3, -10.0f);
+    o.limits.lower.assign(3, -10.0f);
     EXPECT_THROW(grind(half, poses, o), InputError);
 }
 
 TEST(Events, OrientationMayNotJumpAtFeed) {
     HeightField field = testing::plate(80, 40, 0.5, kAllowance);
     SimulationOptions o = options();
-    o.orientation_jump = 0.2;
+    o.limits.orientation_jump = 0.2;
     auto rapid = at(40, 20, kAllowance, 0.0);
     rapid.rapid = true;
     const std::vector<PathPose> poses{at(15, 20, kAllowance), at(20, 20, kAllowance, 0.15),
@@ -245,7 +245,7 @@ TEST(Events, OrientationMayNotJumpAtFeed) {
 TEST(Events, AWheelThatTouchesFarFromTheProgrammedPointIsTilted) {
     HeightField field = testing::plate(80, 40, 0.5, kAllowance);
     SimulationOptions o = options();
-    o.tilt_limit = 0.3;
+    o.limits.tilt = 0.3;
     const auto turned = [](double angle) {
         std::vector<PathPose> poses;
         for (const double x : {30.0, 50.0}) {
@@ -266,8 +266,8 @@ TEST(Events, AWheelThatTouchesFarFromTheProgrammedPointIsTilted) {
 
 TEST(Events, AreTheSameForAnyNumberOfThreads) {
     SimulationOptions o = options();
-    o.pressure_limit = 0.05;
-    o.lower_limits = {0.0f};
+    o.limits.pressure = 0.05;
+    o.limits.lower = {0.0f};
     const auto run = [&](std::size_t count) {
         set_threads(count);
         HeightField field = two_plates();

@@ -23,9 +23,9 @@ PathPose pressing_down(double x, double z) {
 
 SimulationOptions options() {
     SimulationOptions o;
-    o.wheel = {60.0, 20.0, 0.0};
-    o.force = kForce;
-    o.belt_speed = kSpeed;
+    o.process.wheel = {60.0, 20.0, 0.0};
+    o.process.force = kForce;
+    o.process.belt_speed = kSpeed;
     return o;
 }
 
@@ -132,14 +132,14 @@ TEST(Process, TheBeltCarriesItsWorkAndLosesItsCut) {
     BeltWear::Parameters wear;
     wear.model = BeltWear::Model::kExponential;
     wear.scale = work;
-    o.wear = BeltWear(wear);
+    o.process.wear = BeltWear(wear);
     field = plate();
     const SimulationResult first = pass(field, {kCoefficient}, o);
     // Over the pass exp(-W/scale) has the mean 1 - 1/e.
     const double mean = 1.0 - std::exp(-1.0);
     EXPECT_NEAR(first.removed_volume, mean * fresh.removed_volume, 0.01 * fresh.removed_volume);
     field = plate();
-    o.belt = first.belt;
+    o.process.belt = first.belt;
     const SimulationResult second = pass(field, {kCoefficient}, o);
     EXPECT_NEAR(second.removed_volume, std::exp(-1.0) * first.removed_volume,
                 0.01 * first.removed_volume);
@@ -151,12 +151,12 @@ TEST(Process, HeatAndLeavingTheMeasuredRangeAreEvents) {
     SimulationOptions o = options();
     LocalLawParameters law{kCoefficient};
     EXPECT_TRUE(pass(field, law, o).events.empty());
-    o.heat_limit = 1000.0;  // MPa mm/s
+    o.limits.heat = 1000.0;  // MPa mm/s
     law.pressure_curve = Curve({{0.001, 0.01}, {0.02, 0.2}}, "pressure");
     BeltWear::Parameters wear;
     wear.model = BeltWear::Model::kCurve;
     wear.curve = Curve({{0, 1}, {600, 0.9}}, "wear");
-    o.wear = BeltWear(wear);
+    o.process.wear = BeltWear(wear);
     field = plate();
     const SimulationResult result = pass(field, law, o);
     std::map<std::string, Event> events;
@@ -176,7 +176,8 @@ TEST(Process, ShiftedLawsGiveTheUncertaintyOfWhatIsRemoved) {
     SimulationOptions o = options();
     LocalLawParameters more{1.1 * kCoefficient}, steeper{kCoefficient};
     steeper.pressure_exponent = 1.2;
-    o.shifted_laws = {std::make_shared<LocalLaw>(more), std::make_shared<LocalLaw>(steeper)};
+    o.outputs.shifted_laws = {std::make_shared<LocalLaw>(more),
+                              std::make_shared<LocalLaw>(steeper)};
     const SimulationResult result = pass(field, {kCoefficient}, o);
     ASSERT_EQ(result.shifts.rows(), static_cast<Eigen::Index>(field.size()));
     double removed = 0.0, shifted = 0.0;
@@ -194,7 +195,7 @@ TEST(Process, ShiftedLawsGiveTheUncertaintyOfWhatIsRemoved) {
     EXPECT_GT(std::abs(shifted), 1e-3 * removed);
 
     HeightField again = before;
-    o.shifted_laws.clear();
+    o.outputs.shifted_laws.clear();
     const SimulationResult plain = pass(again, {kCoefficient}, o);
     EXPECT_EQ(again.height, field.height);  // looking at the uncertainty changes nothing
     EXPECT_EQ(plain.shifts.cols(), 0);

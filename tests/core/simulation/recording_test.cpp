@@ -149,11 +149,11 @@ struct Grinding {
     LocalLaw law{{1e-4}};
     SimulationOptions options;
     Grinding() {
-        options.wheel = {60.0, 20.0, 0.0};
-        options.force = 40.0;
+        options.process.wheel = {60.0, 20.0, 0.0};
+        options.process.force = 40.0;
     }
     SimulationResult grind(const std::vector<PathPose>& poses, Recording* recording) {
-        options.recording = recording;
+        options.outputs.recording = recording;
         return simulate(field, ToolPath(poses, {}), foundation, law, options);
     }
 };

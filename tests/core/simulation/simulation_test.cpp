@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <thread>
 
 #include "beltgrinding/error.h"
@@ -25,9 +27,9 @@ PathPose pressing_down(double x, double y, double z, double feed, double turn = 
 
 SimulationOptions options() {
     SimulationOptions o;
-    o.wheel = {60.0, 20.0, 0.0};
-    o.force = 40.0;
-    o.belt_speed = 20000.0;
+    o.process.wheel = {60.0, 20.0, 0.0};
+    o.process.force = 40.0;
+    o.process.belt_speed = 20000.0;
     return o;
 }
 
@@ -77,7 +79,7 @@ TEST(Simulation, HalvingTheStepsChangesTheResultByLessThanOnePercent) {
         HeightField field = testing::plate(60.0, 40.0, 0.4, 0.4);
         ElasticFoundation foundation(0.5);
         SimulationOptions o = options();
-        o.stepping.max_travel = travel;
+        o.resolution.max_travel = travel;
         simulate(field, path, foundation, LocalLaw({kCoefficient}), o);
         ground.push_back(std::move(field));
     }
@@ -94,7 +96,7 @@ TEST(Simulation, PositionControlStopsAtTheWheelsEnvelope) {
     HeightField field = testing::plate(40.0, 40.0, 0.4, 0.3);
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.force_control = false;
+    o.process.force_control = false;
     const ToolPath path({pressing_down(20, 20, 0.0, 1e-3), pressing_down(20.0, 20.001, 0.0, 1e-4)},
                         {});
     simulate(field, path, foundation, LocalLaw({1e-3}), o);
@@ -126,7 +128,7 @@ TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.force_travel = 0.2;
+    o.process.force_travel = 0.2;
     const ToolPath path({pressing_down(10, 20, 0.15, 20.0), pressing_down(30, 20, 0.15, 20.0)}, {});
     const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-6}), o);
     ASSERT_EQ(result.events.size(), 1u);
@@ -138,12 +140,12 @@ TEST(Simulation, ForceBeyondTheTravelIsAnEvent) {
 TEST(Simulation, ASoftRobotGivesWayUnderPositionControl) {
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.force_control = false;
+    o.process.force_control = false;
     const ToolPath path({pressing_down(15, 20, -0.5, 20.0), pressing_down(25, 20, -0.5, 20.0)}, {});
     std::vector<double> forces;
     for (const double stiffness : {0.0, 1e5, 100.0}) {
         HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
-        o.robot_stiffness = stiffness;
+        o.process.robot_stiffness = stiffness;
         const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-9}), o);
         forces.push_back(result.steps[5].force);
         if (stiffness > 0.0) {
@@ -159,12 +161,12 @@ TEST(Simulation, NothingIsGroundBelowTheUnloadedWheel) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.3);
     field.depth = 10.0;
     WheelRimDesign design;
-    design.outer_radius = options().wheel.radius;
-    design.width = options().wheel.width;
+    design.outer_radius = options().process.wheel.radius;
+    design.width = options().process.wheel.width;
     design.layers = {{15.0, {5.0, 0.45}}};
     WheelRim rim(design);
     SimulationOptions o = options();
-    o.force_control = false;
+    o.process.force_control = false;
     const ToolPath path({pressing_down(18, 20, -5.0, 5.0), pressing_down(22, 20, -5.0, 5.0)}, {});
     simulate(field, path, rim, LocalLaw({1.0}), o);
     const double lowest = *std::min_element(field.height.begin(), field.height.end());
@@ -172,24 +174,110 @@ TEST(Simulation, NothingIsGroundBelowTheUnloadedWheel) {
     EXPECT_GT(lowest, -5.5);  // the cells' interpolation to the samples
 }
 
-// A rim yields under a sliver of a cell at the plate's end as under a whole one: the sliver's
-// pressure came out at 75 times that amid the plate.
-TEST(Simulation, TheEndOfAPlateBearsNoAbsurdPressure) {
+/// The pressure at a plate's end as theory has it: the wheel stands `overhang` mm beyond the end,
+/// on cells of a quarter of a millimetre with the share that the plate truly covers.
+class EndOfAPlate {
+  public:
+    EndOfAPlate(const ElasticModel& model, const ProcessSettings& process, double overhang)
+        : radius_(process.wheel.radius), overhang_(overhang), contact_(model.prepare(kFine)) {
+        ContactProblem problem;
+        problem.force = process.force;
+        problem.gap.resize(kFine.cells());
+        problem.coverage.resize(kFine.cells());
+        centre_ = std::sqrt(radius_ * radius_ - overhang * overhang);  // touches the end
+        for (int k = 0; k < 20; ++k) {
+            set_cells(problem);
+            solution_ = contact_->solve(problem);
+            centre_ -= solution_.approach;
+            if (std::abs(solution_.approach) < 1e-3) break;
+        }
+        coverage_ = problem.coverage;
+    }
+    /// Where the cells' border at the arc length s lies on the plate, mm from its end.
+    double place(double s) const { return centre_ * std::tan(s / radius_) - overhang_; }
+    /// N/mm across the wheel, that the plate bears within `reach` mm of its end.
+    double load(double reach) const {
+        double sum = 0.0;
+        for (int i = 0; i < kFine.nx; ++i) {
+            const double a = std::max(place(kFine.s(i) - 0.5 * kFine.ds), 0.0);
+            const double b = place(kFine.s(i) + 0.5 * kFine.ds);
+            if (b <= a) continue;
+            const double share = std::clamp((reach - a) / (b - a), 0.0, 1.0);
+            for (int j = 0; j < kFine.ny; ++j) {
+                const int c = j * kFine.nx + i;
+                sum += share * solution_.pressure[c] * coverage_[c] * kFine.ds / kFine.ny;
+            }
+        }
+        return sum;
+    }
+
+  private:
+    static constexpr ContactGrid kFine{225, 20, 0.25, 1.0};
+
+    void set_cells(ContactProblem& problem) const {
+        for (int c = 0; c < kFine.cells(); ++c) {
+            const double s = kFine.s(c % kFine.nx);
+            const double low = place(s - 0.5 * kFine.ds), high = place(s + 0.5 * kFine.ds);
+            const double share = std::clamp(high / (high - low), 0.0, 1.0);
+            const double middle = s + 0.5 * (1.0 - share) * kFine.ds;  // of what is covered
+            problem.coverage[c] = share;
+            problem.gap[c] = share > 0.0 ? centre_ / std::cos(middle / radius_) - radius_
+                                         : std::numeric_limits<double>::infinity();
+        }
+    }
+
+    double radius_, overhang_, centre_ = 0.0;
+    std::unique_ptr<PreparedContact> contact_;
+    ContactSolution solution_;
+    Eigen::ArrayXd coverage_;
+};
+
+// A sharp end is pressed the harder the farther the wheel stands beyond it: its outer millimetre 3
+// times (0 mm beyond) to 6 times (12 mm beyond) as hard as the middle of the plate. The cells there
+// must bear that load and no other, the last two of them together. A rim yields under a sliver of a
+// cell as under a whole one, so that a sliver, which takes a whole cell's load, came out at 75
+// times the pressure amid the plate: no cell bears any that is covered by less than a quarter.
+TEST(Simulation, TheEndOfAPlateBearsItsTrueLoad) {
     WheelRimDesign design;
-    design.outer_radius = options().wheel.radius;
-    design.width = options().wheel.width;
+    design.outer_radius = options().process.wheel.radius;
+    design.width = options().process.wheel.width;
     design.layers = {{15.0, {5.0, 0.45}}};
-    WheelRim rim(design);
-    for (const double length : {60.0, 60.2, 60.4}) {
-        HeightField field = testing::plate(length, 40.0, 0.6, 0.2);
-        const ToolPath path(
-            {pressing_down(-12, 20, 0.2, 30.0), pressing_down(length + 12, 20, 0.2, 30.0)}, {});
-        const auto steps = simulate(field, path, rim, LocalLaw({kCoefficient}), options()).steps;
-        std::vector<float> peaks;
-        for (const auto& step : steps) peaks.push_back(step.peak_pressure);
-        const float amid = peaks[peaks.size() / 2];
-        EXPECT_GT(amid, 0.1);
-        EXPECT_LT(*std::max_element(peaks.begin(), peaks.end()), 12.0 * amid) << length;
+    const WheelRim rim(design);
+    const ProcessSettings process = options().process;
+    for (const double overhang : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5, 7.8, 9.1, 10.4, 11.7}) {
+        const EndOfAPlate truth(rim, process, overhang);
+        for (const double length : {60.0, 60.2, 60.4}) {
+            const HeightField field = testing::plate(length, 40.0, 0.6, 0.2);
+            const ToolPath path({pressing_down(-overhang, 20, 0.2, 30.0),
+                                 pressing_down(length + overhang, 20, 0.2, 30.0)},
+                                {});
+            for (const bool far : {false, true}) {
+                SCOPED_TRACE(::testing::Message() << overhang << " mm beyond " << length << " mm");
+                const PoseContact end = contact_at(field, path, far ? 1 : 0, rim, process);
+                const ContactGrid& grid = end.grid;
+                double load = 0.0;
+                for (int k = 0, columns = 0; columns < 2 && k < grid.nx; ++k) {
+                    const int i = far ? grid.nx - 1 - k : k;  // from the end inwards
+                    double column = 0.0;
+                    for (int j = 0; j < grid.ny; ++j) {
+                        const int c = j * grid.nx + i;
+                        if (end.solution.pressure[c] > 0.0) {
+                            EXPECT_GE(end.coverage[c], 0.25);
+                        }
+                        column += end.solution.pressure[c] * end.coverage[c] * grid.ds / grid.ny;
+                    }
+                    if (column <= 0.0) continue;
+                    ++columns;
+                    load += column;
+                    const double inner = truth.place(std::abs(grid.s(i)) + 0.5 * grid.ds);
+                    if (columns == 1) {  // covered in part, it may take a whole one's load
+                        EXPECT_LT(load, 1.15 * truth.load(std::max(inner, grid.ds)));
+                    } else {
+                        EXPECT_NEAR(load, truth.load(inner), 0.15 * truth.load(inner));
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -199,7 +287,7 @@ TEST(Simulation, ARigidToolLeavesItsEnvelope) {
     SimulationOptions o = options();
     const ToolPath path({pressing_down(10, 20, 0.1, 20.0), pressing_down(30, 20, 0.1, 20.0)}, {});
     EXPECT_THROW(simulate(field, path, tool, LocalLaw({1e-4}), o), InputError);
-    o.force_control = false;
+    o.process.force_control = false;
     const SimulationResult result = simulate(field, path, tool, LocalLaw({1e-4}), o);
     EXPECT_TRUE(result.events.empty());
     EXPECT_NEAR(result.integrated_rate, result.removed_volume, 0.01 * result.removed_volume);
@@ -214,11 +302,43 @@ TEST(Simulation, ARigidToolLeavesItsEnvelope) {
     }
 }
 
+TEST(Simulation, LimitsAndOutputsChangeNothingThatIsGround) {
+    const ToolPath path({pressing_down(10, 20, 0.1, 20.0), pressing_down(30, 22, 0.1, 20.0)}, {});
+    const ElasticFoundation foundation(0.5);
+    const LocalLaw law({kCoefficient});
+    HeightField bare = testing::plate(40.0, 40.0, 0.5, 0.3), full = bare;
+    SimulationOptions o = options();
+    o.outputs.trace = false;
+    const SimulationResult without = simulate(bare, path, foundation, law, o);
+    EXPECT_TRUE(without.events.empty());
+    EXPECT_TRUE(bare.trace.empty());
+    Recording recording;
+    o.limits = {1.0, 1e-3, 1e-4, 1e-4, {0.2f}};
+    o.outputs = {true, 7, &recording, {std::make_shared<LocalLaw>(LocalLawParameters{1e-6})}};
+    const SimulationResult with = simulate(full, path, foundation, law, o);
+    EXPECT_GE(with.events.size(), 3u);
+    EXPECT_EQ(recording.samples(), full.size());
+    EXPECT_EQ(bare.height, full.height);
+    EXPECT_EQ(without.removed_volume, with.removed_volume);
+    ASSERT_EQ(without.steps.size(), with.steps.size());
+    for (std::size_t i = 0; i < with.steps.size(); ++i) {
+        EXPECT_EQ(without.steps[i].force, with.steps[i].force);
+        EXPECT_EQ(without.steps[i].peak_pressure, with.steps[i].peak_pressure);
+        EXPECT_EQ(without.steps[i].removal_rate, with.steps[i].removal_rate);
+    }
+    for (const double phase :
+         {with.wall.build, with.wall.localise, with.wall.gap, with.wall.contact, with.wall.removal,
+          with.wall.refit, with.wall.trace, with.wall.events}) {
+        EXPECT_GT(phase, 0.0);
+    }
+    EXPECT_EQ(without.wall.trace, 0.0);
+}
+
 TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.0);
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.force_travel = 2.0;
+    o.process.force_travel = 2.0;
     // The force falls below the commanded one for a while after the travel has ended.
     const ToolPath path({pressing_down(8, 20, 20.0, 20.0), pressing_down(10, 20, 0.1, 20.0),
                          pressing_down(30, 20, 0.1, 20.0), pressing_down(32, 20, 20.0, 20.0)},
@@ -231,7 +351,7 @@ TEST(Simulation, RunningOffTheEdgeIsLossOfForceAndNotOfConvergence) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.1);
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.force_travel = 0.5;
+    o.process.force_travel = 0.5;
     const ToolPath path({pressing_down(20, 20, 0.1, 20.0), pressing_down(70, 31, 0.1, 20.0),
                          pressing_down(20, 20, 0.1, 20.0)},
                         {});
@@ -258,7 +378,7 @@ TEST(Simulation, CancelLeavesTheFieldAsItWas) {
     ElasticFoundation foundation(0.5);
     const ToolPath path({pressing_down(10, 30, 0.4, 0.1), pressing_down(90, 30, 0.4, 0.1)}, {});
     SimulationOptions o = options();
-    o.stepping.max_travel = 0.001;
+    o.resolution.max_travel = 0.001;
     const RunContext context;
     std::thread other([&] {
         while (context.progress() <= 0.0) std::this_thread::yield();

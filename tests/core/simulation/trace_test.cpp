@@ -25,8 +25,8 @@ PathPose pressing_down(double x, double y, double z, double feed) {
 
 SimulationOptions options() {
     SimulationOptions o;
-    o.wheel = {60.0, 20.0, 0.0};
-    o.force = 40.0;
+    o.process.wheel = {60.0, 20.0, 0.0};
+    o.process.force = 40.0;
     return o;
 }
 
@@ -41,7 +41,7 @@ HeightField ground(std::uint32_t first_motion, const ToolPath& path) {
     HeightField field = testing::plate(60.0, 40.0, 0.5, 0.2);
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.first_motion = first_motion;
+    o.outputs.first_motion = first_motion;
     simulate(field, path, foundation, LocalLaw({1e-5}), o);
     return field;
 }
@@ -84,7 +84,7 @@ TEST(RemovalTrace, TheDominantDepthIsWhatTheMotionAloneRemovedInAllItsSteps) {
     for (std::uint32_t k = 1; k < poses.size(); ++k) {
         const std::vector<double> before = field.height;
         SimulationOptions o = options();
-        o.first_motion = k - 1;
+        o.outputs.first_motion = k - 1;
         simulate(field, ToolPath({poses[k - 1], poses[k]}, {}), foundation, LocalLaw({1e-5}), o);
         for (std::size_t i = 0; i < field.size(); ++i) {
             if (before[i] > field.height[i]) removed[i][k] = before[i] - field.height[i];
@@ -129,7 +129,7 @@ TEST(RemovalTrace, ARigidToolTouchesWhereItCuts) {
     HeightField field = testing::plate(40.0, 40.0, 0.5, 0.3);
     Geometric tool;
     SimulationOptions o = options();
-    o.force_control = false;
+    o.process.force_control = false;
     simulate(field, ToolPath({pressing_down(10, 20, 0.1, 20), pressing_down(30, 20, 0.1, 20)}, {}),
              tool, LocalLaw({1e-4}), o);
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -158,7 +158,7 @@ TEST(RemovalTrace, GoesOnFromPathToPathAndIsKeptOutOfAFailedOne) {
     const RemovalTrace before = field.trace;
     ElasticFoundation foundation(0.5);
     SimulationOptions o = options();
-    o.first_motion = 4;
+    o.outputs.first_motion = 4;
     const ToolPath far({pressing_down(0, 0, 100.0, 20.0), pressing_down(9, 0, 100.0, 20.0)}, {});
     EXPECT_THROW(simulate(field, far, foundation, LocalLaw({1e-4}), o), InputError);
     EXPECT_EQ(field.trace.last, before.last);
@@ -174,7 +174,7 @@ TEST(RemovalTrace, GoesOnFromPathToPathAndIsKeptOutOfAFailedOne) {
         later += field.trace.last[i] == 5 ? 1 : 0;
     }
     EXPECT_GT(later, 500u);
-    o.trace = false;
+    o.outputs.trace = false;
     simulate(field, over, foundation, LocalLaw({1e-5}), o);
     EXPECT_TRUE(field.trace.empty());
 }

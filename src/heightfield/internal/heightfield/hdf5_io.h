@@ -83,6 +83,35 @@ inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
             "hdf5.attribute", "its attribute '{name}' is not a number", {{"name", name}});
 }
 
+/// A file opened for reading.
+class InputFile {
+  public:
+    /// Checks that the file has the format `known`, which its attribute `format_name` tells.
+    InputFile(const std::string& path, const char* format_name, int known)
+        : bytes_(bytes_of(path)),
+          file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
+        require(file_.ok(), "hdf5.no_file", "is no HDF5 file");
+        int format = 0;
+        read_scalar(file_, format_name, H5T_NATIVE_INT, &format);
+        require(format == known, "hdf5.format", "has format {format}, this version reads {known}",
+                {{"format", format}, {"known", known}});
+    }
+    operator hid_t() const { return file_; }
+    hsize_t bytes() const { return bytes_; }
+
+  private:
+    static hsize_t bytes_of(const std::string& path) {
+        std::error_code error;
+        const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
+        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
+                {{"reason", error.message()}});
+        return bytes;
+    }
+
+    hsize_t bytes_;
+    Handle file_;
+};
+
 /// A new file, empty, without times of its own: the same data make the same bytes at any time. In
 /// the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
 /// damaged ones lead it beyond its memory.
@@ -113,8 +142,8 @@ inline void write_array(hid_t file, const char* name, const std::vector<T>& data
 }
 
 template <class T>
-inline void read_array(hid_t file, hsize_t file_bytes, const char* name, std::vector<T>& data,
-                       hid_t type, hsize_t row) {
+inline void read_array(const InputFile& file, const char* name, std::vector<T>& data, hid_t type,
+                       hsize_t row) {
     const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
     require(set.ok(), "hdf5.no_array", "has no array '{name}'", {{"name", name}});
     const Handle space(H5Dget_space(set), H5Sclose);
@@ -126,7 +155,7 @@ inline void read_array(hid_t file, hsize_t file_bytes, const char* name, std::ve
     require(dims[1] == row, "hdf5.array_shape", "its array '{name}' has the wrong shape",
             {{"name", name}});
     // A broken header must not make us ask for memory that no such file can fill.
-    require(dims[0] <= file_bytes, "hdf5.array_too_long",
+    require(dims[0] <= file.bytes(), "hdf5.array_too_long",
             "its array '{name}' is longer than the file", {{"name", name}});
     data.resize(dims[0]);
     if (dims[0] > 0) {
@@ -138,6 +167,12 @@ inline void read_array(hid_t file, hsize_t file_bytes, const char* name, std::ve
 inline void write_text(hid_t file, const char* name, const std::string& text) {
     const std::vector<char> bytes(text.begin(), text.end());
     write_array(file, name, bytes, H5T_NATIVE_CHAR, 1);
+}
+
+inline std::string read_text(const InputFile& file, const char* name) {
+    std::vector<char> bytes;
+    read_array(file, name, bytes, H5T_NATIVE_CHAR, 1);
+    return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace beltgrinding::hdf5

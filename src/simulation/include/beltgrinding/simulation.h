@@ -31,9 +31,10 @@ struct StepRecord {
     std::uint32_t segments = 0;  ///< found by localisation
 };
 
-struct SimulationOptions {
+/// How the wheel is pressed and the belt runs: what decides what is ground.
+struct ProcessSettings {
     ContactWheel wheel;
-    bool force_control = true;
+    bool force_control = true;     ///< else the wheel keeps to the programmed poses
     double force = 50.0;           ///< N, where the path has none
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
     double robot_stiffness = 0.0;  ///< N/mm along z under position control; 0: rigid
@@ -41,21 +42,66 @@ struct SimulationOptions {
     double belt_wear = 1.0;        ///< k_t of the belt as it comes, a factor on `wear`
     BeltWear wear;                 ///< how k_t falls with use
     BeltState belt;                ///< what the belt has done before
-    double heat_limit = 0.0;       ///< MPa mm/s, largest p V_b without a risk of burning; 0: none
-    double pressure_limit = 0.0;   ///< MPa, beyond it is an event; 0: none
-    double orientation_jump = 0.0;  ///< rad between neighbouring poses at feed, an event; 0: none
-    double tilt_limit = 0.0;  ///< rad of the contact's centre round the rim, an event; 0: none
-    /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
-    std::vector<float> lower_limits = {};
-    /// The law, moved by one standard deviation along each direction in which it is uncertain.
-    std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws;
+
+    /// Throws InputError naming the setting that is none.
+    void validate() const;
+};
+
+/// How finely the process is computed.
+struct Resolution {
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
     double contact_tolerance = 1e-3;  ///< relative error of the pressure field
-    bool must_touch = true;           ///< a path that never touches the stock is an error
-    bool trace = true;                ///< keep `field.trace`; without, what it holds is dropped
-    std::uint32_t first_motion = 0;   ///< number of the motion to the path's first pose
-    SteppingOptions stepping;
+    double max_travel = 1.0;          ///< mm, how far the contact point may move in a step
+    double max_angle = 0.02;          ///< rad, how far the wheel may turn against the work in one
+
+    /// Throws InputError naming the setting that is none.
+    void validate() const;
+};
+
+/// What is noted as an event when it is passed. Nothing that is ground depends on it.
+struct MonitorLimits {
+    double heat = 0.0;              ///< MPa mm/s, largest p V_b without a risk of burning; 0: none
+    double pressure = 0.0;          ///< MPa; 0: none
+    double orientation_jump = 0.0;  ///< rad between neighbouring poses at feed; 0: none
+    double tilt = 0.0;              ///< rad of the contact's centre round the rim; 0: none
+    /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
+    std::vector<float> lower = {};
+
+    /// Throws InputError naming the limit that is none. `samples`: of the field.
+    void validate(std::size_t samples) const;
+};
+
+/// What a simulation keeps besides the heights and the time series.
+struct OutputRequest {
+    bool trace = true;  ///< keep `field.trace`; without, what it holds is dropped
+    std::uint32_t first_motion =
+        0;  ///< number of the motion to the path's first pose, in the trace
     Recording* recording = nullptr;  ///< goes on with this path; cleared on cancel or error
+    /// The law, moved by one standard deviation along each direction in which it is uncertain: for
+    /// `SimulationResult::shifts`.
+    std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws = {};
+};
+
+struct SimulationOptions {
+    ProcessSettings process;
+    Resolution resolution;
+    MonitorLimits limits;
+    OutputRequest outputs;
+    bool must_touch = true;  ///< a path that never touches the stock is an error
+};
+
+/// s of wall time by phase of a simulation.
+struct PhaseTimes {
+    double build = 0.0;     ///< of the field's tree
+    double localise = 0.0;  ///< the segments in the wheel's reach
+    double gap = 0.0;
+    double contact = 0.0;
+    double removal = 0.0;
+    double refit = 0.0;  ///< of the tree where heights have changed
+    double trace = 0.0;
+    double events = 0.0;
+
+    PhaseTimes& operator+=(const PhaseTimes& more);
 };
 
 struct SimulationResult {
@@ -69,9 +115,7 @@ struct SimulationResult {
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     std::string model;             ///< what the contact model says of itself as it was used
-    /// s of wall time by phase
-    double localise_s = 0, gap_s = 0, contact_s = 0, removal_s = 0, refit_s = 0, build_s = 0,
-           trace_s = 0, events_s = 0;
+    PhaseTimes wall;
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
@@ -97,6 +141,7 @@ struct PoseContact {
 /// Presses the wheel at the pose number `pose` (from 0) without grinding. Throws InputError if the
 /// wheel does not touch there.
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
-                       const ContactModel& model, const SimulationOptions& options);
+                       const ContactModel& model, const ProcessSettings& process,
+                       const Resolution& resolution = {});
 
 }  // namespace beltgrinding

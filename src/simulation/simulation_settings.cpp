@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include "beltgrinding/error.h"
+#include "beltgrinding/simulation.h"
+
+namespace beltgrinding {
+namespace {
+
+void check_positive(double value, const char* code, const char* form) {
+    if (!std::isfinite(value) || value <= 0.0) throw InputError(code, form);
+}
+
+bool is_limit(double value) {
+    return std::isfinite(value) && value >= 0.0;
+}
+
+}  // namespace
+
+void ProcessSettings::validate() const {
+    wheel.validate();
+    check_positive(belt_speed, "simulation.belt_speed",
+                   "the belt speed must be positive and finite");
+    if (force_control) {
+        check_positive(force_travel, "simulation.force_travel",
+                       "the travel of the force control must be positive and finite");
+    }
+    if (!is_limit(robot_stiffness)) {
+        throw InputError("simulation.robot_stiffness",
+                         "the robot's stiffness must be zero (rigid) or positive");
+    }
+    belt.validate();
+    if (!is_limit(belt_wear)) {
+        throw InputError("simulation.belt_wear", "the belt's wear factor must be zero or positive");
+    }
+}
+
+void Resolution::validate() const {
+    check_positive(contact_spacing, "simulation.contact_spacing",
+                   "the contact grid's spacing must be positive and finite");
+    check_positive(contact_tolerance, "simulation.contact_tolerance",
+                   "the contact tolerance must be positive and finite");
+}
+
+void MonitorLimits::validate(std::size_t samples) const {
+    if (!is_limit(heat)) {
+        throw InputError("simulation.heat_limit",
+                         "the limit of heat must be zero (none) or positive");
+    }
+    if (lower.size() > 1 && lower.size() != samples) {
+        throw InputError("simulation.lower_limits",
+                         "the lower limits are neither one for all nor one per sample");
+    }
+    if (!is_limit(pressure) || !is_limit(orientation_jump) || !is_limit(tilt)) {
+        throw InputError(
+            "simulation.limits",
+            "the limits of pressure, orientation jump and tilt must be zero (none) or positive");
+    }
+}
+
+PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
+    build += more.build;
+    localise += more.localise;
+    gap += more.gap;
+    contact += more.contact;
+    removal += more.removal;
+    refit += more.refit;
+    trace += more.trace;
+    events += more.events;
+    return *this;
+}
+
+}  // namespace beltgrinding

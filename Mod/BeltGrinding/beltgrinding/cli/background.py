@@ -19,20 +19,20 @@ def run(work, quiet=False):
             outcome["result"] = work(context)
         except BaseException as error:  # handed on to the main thread
             outcome["error"] = error
+        finally:
+            done.set()
 
-    worker = threading.Thread(target=guarded, daemon=True)
-    worker.start()
+    threading.Thread(target=guarded, daemon=True).start()
     if sys.stderr.isatty() and not quiet:
         threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
     try:
-        while worker.is_alive():
-            worker.join(0.1)
+        # Not join: Python 3.11's takes a thread for ended when Ctrl-C comes while it waits.
+        while not done.wait(0.1):
+            pass
     except KeyboardInterrupt:
         context.cancel()
-        worker.join(CANCEL_TIME)  # a library that reads a damaged file may never come back
+        done.wait(CANCEL_TIME)
         raise
-    finally:
-        done.set()
     if "error" in outcome:
         raise outcome["error"]
     return outcome["result"]

@@ -1,6 +1,8 @@
 """CAD files are read by a process of its own: nothing that happens there reaches this one."""
 
+import json
 import os
+import signal
 import stat
 import subprocess
 import sys
@@ -14,7 +16,9 @@ from support.freecad import ROOT, SHARED
 
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import Cancelled, InputError, core  # noqa: E402
+from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
+from beltgrinding.job import load, workpiece  # noqa: E402
+from beltgrinding.simulation.run import run  # noqa: E402
 
 PROGRAM = "BELTGRINDING_CAD_READER"
 LIMIT = "BELTGRINDING_CAD_TIME_LIMIT_S"
@@ -280,6 +284,60 @@ def test_a_text_from_elsewhere_is_read_apart(plate, stand_in):
     with pytest.raises(InputError, match="^job: .*SIGSEGV"):
         core.Shape.read_brep(text, "job")
     assert core.Shape.from_brep(text).face_count == 2  # FreeCAD's own need no reader
+
+
+def job_of(design):
+    pose = {"x_mm": 30, "y_mm": 9, "z_mm": 0.2, "qw": 0, "qx": 1, "qy": 0, "qz": 0}
+    return {
+        "design": {**design, "faces": [1]},
+        "sampling": {"spacing_mm": 5.0},
+        "stock": {"kind": "allowance", "allowance_mm": 0.2},
+        "belt_machine": {"wheel": {"radius_mm": 60, "width_mm": 15}, "force_N": 30},
+        "programs": [{"poses": [pose, {**pose, "x_mm": 35}]}],
+        "inspection": {"tolerance_mm": [-0.05, 0.05]},
+    }
+
+
+def test_a_job_s_foreign_text_goes_to_the_reader_and_freecad_s_own_does_not(plate, stand_in):
+    text = plate.read_text()
+    there = run(load.validate(job_of({"brep": text}))).field
+    stand_in("#!/bin/sh\ncat >/dev/null\nkill -SEGV $$\n")
+    with pytest.raises(InputError) as refused:
+        run(load.validate(job_of({"brep": text})))
+    assert refused.value.code == "cad.crash"
+    here = run(load.validate(job_of({"brep": workpiece.OwnBrep(text)}))).field
+    np.testing.assert_array_equal(here.height, there.height)
+    np.testing.assert_array_equal(here.points, there.points)
+
+
+@pytest.mark.parametrize("design", ["file", "brep"])
+def test_a_run_is_cancelled_while_it_reads(plate, stand_in, design):
+    stand_in("#!/bin/sh\nexec sleep 1000\n")
+    given = {"file": str(plate)} if design == "file" else {"brep": plate.read_text()}
+    context = core.RunContext()
+    threading.Timer(0.3, context.cancel).start()
+    with pytest.raises(Cancelled):
+        run(load.validate(job_of(given)), context)
+
+
+@pytest.mark.parametrize("command", ["run", "raster", "contact"])
+def test_ctrl_c_ends_a_command_that_reads(plate, stand_in, tmp_path, command):
+    stand_in(f"#!/bin/sh\necho $$ >{tmp_path}/pid\nexec sleep 1000\n")
+    (tmp_path / "job.json").write_text(json.dumps(job_of({"file": str(plate)})))
+    arguments = {"run": ["-o", "out"], "raster": ["-o", "x.csv"], "contact": ["--pose", "1"]}
+    words = [sys.executable, "-m", "beltgrinding", command, "job.json", *arguments[command]]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "Mod" / "BeltGrinding")}
+    environment["BELTGRINDING_BUILD"] = str(Path(core.__file__).parents[1])
+    host = subprocess.Popen(words, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 60
+    while not (tmp_path / "pid").exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    time.sleep(0.2)
+    host.send_signal(signal.SIGINT)
+    told = host.communicate(timeout=30)[1]
+    assert host.returncode == 130, told
+    assert "Traceback" not in told
+    assert not alive((tmp_path / "pid").read_text().strip())
 
 
 @real_parts

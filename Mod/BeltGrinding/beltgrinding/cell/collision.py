@@ -67,7 +67,7 @@ def bodies(job, shape, warnings, context=None):
 
 def read_body(body, name, warnings, context=None):
     """core.TriangleMesh of a job's body or stock, in its frame. Raises InputError."""
-    from ..job.workpiece import MESH_SUFFIXES
+    from ..job.workpiece import MESH_SUFFIXES, read_shape
 
     try:
         placement = frames.from_data(body.get("placement"))
@@ -75,10 +75,7 @@ def read_body(body, name, warnings, context=None):
         raise InputError(f"{name}: placement: {error}") from None
     if "file" in body and Path(body["file"]).suffix.lower() in MESH_SUFFIXES:
         return core.read_mesh(body["file"], body["unit_mm"], placement)
-    if "brep" in body:
-        shape = core.Shape.from_brep(body["brep"], name)
-    else:
-        shape = core.Shape.read(body["file"])
+    shape = read_shape(body, name, context)
     warnings += [f"{name}: {text}" for text in shape.warnings()]
     mesh = _triangulate(shape, context)
     points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]

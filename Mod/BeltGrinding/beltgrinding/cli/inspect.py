@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+from . import background
+
 
 def add(commands):
     """Adds the commands to the parser's ``commands``."""
@@ -43,7 +45,10 @@ def _verdict(arguments):
 
     result = Result.read(arguments.result)
     given = job.load(arguments.job) if arguments.job else job.validate(result.job)
-    result.verdict = verdict.of_result(result, inspection=given["inspection"])
+    result.verdict = background.run(
+        lambda context: verdict.of_result(result, inspection=given["inspection"], context=context),
+        quiet=True,
+    )
     path = Path(arguments.output or Path(arguments.result) / result.VERDICT)
     try:
         result.write_verdict(path)

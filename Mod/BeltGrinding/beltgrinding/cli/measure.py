@@ -3,6 +3,8 @@
 import json
 import sys
 
+from . import background
+
 
 def add(commands):
     mesh = commands.add_parser("mesh", help="write the whole ground part as a closed mesh")
@@ -44,8 +46,11 @@ def _mesh(arguments):
     from ..simulation.result import Result
 
     result = Result.read(arguments.result)
-    found = closed_mesh.export(
-        result, arguments.output, not arguments.design, arguments.deflection_mm
+    found = background.run(
+        lambda context: closed_mesh.export(
+            result, arguments.output, not arguments.design, arguments.deflection_mm, context
+        ),
+        quiet=True,
     )
     for warning in found.pop("warnings"):
         print(f"warning: {warning}", file=sys.stderr)
@@ -60,18 +65,21 @@ def _scan(arguments):
     faces = None
     if arguments.datum_faces is not None:
         faces = scan_start.face_numbers(arguments.datum_faces)
-    figures = scan.compare(
-        result,
-        arguments.scan,
-        arguments.unit_mm,
-        start="principal" if arguments.principal else scan_start.read_matrix(arguments.matrix),
-        pairs=scan_start.read_pairs(arguments.pairs),
-        datum_faces=faces,
-        fixed=[name for name in arguments.fixed.split(",") if name],
-        max_distance_mm=arguments.max_distance_mm,
-        share=arguments.share,
-        search_mm=arguments.search_mm,
-        aligned=arguments.aligned,
+    options = {
+        "start": "principal" if arguments.principal else scan_start.read_matrix(arguments.matrix),
+        "pairs": scan_start.read_pairs(arguments.pairs),
+        "datum_faces": faces,
+        "fixed": [name for name in arguments.fixed.split(",") if name],
+        "max_distance_mm": arguments.max_distance_mm,
+        "share": arguments.share,
+        "search_mm": arguments.search_mm,
+        "aligned": arguments.aligned,
+    }
+    figures = background.run(
+        lambda context: scan.compare(
+            result, arguments.scan, arguments.unit_mm, context=context, **options
+        ),
+        quiet=True,
     )
     scan.write(result, figures, arguments.result)
     for warning in figures["warnings"]:

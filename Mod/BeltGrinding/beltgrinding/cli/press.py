@@ -3,6 +3,8 @@
 import json
 import sys
 
+from . import background
+
 
 def add(commands):
     """Adds the commands to the parser's ``commands``."""
@@ -36,7 +38,10 @@ def _contact(arguments):
         result = contact.run(given)
     else:
         given = job.load(arguments.contact)
-        result = contact.at_pose(given, arguments.pose, arguments.program)
+        result = background.run(
+            lambda context: contact.at_pose(given, arguments.pose, arguments.program, context),
+            quiet=True,
+        )
     figures, truth = contact.summary(result), None
     if arguments.reference:
         from ..contact import finite_elements as reference

@@ -4,6 +4,8 @@ import json
 import sys
 from pathlib import Path
 
+from . import background
+
 
 def add(commands):
     """Adds the commands to the parser's ``commands``."""
@@ -87,7 +89,8 @@ def _raster(arguments):
             settings[key] = json.loads(value)
         except ValueError:
             settings[key] = value
-    found = raster.raster(raster.load_job(arguments.job), settings)
+    job = raster.load_job(arguments.job)
+    found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
     try:
         write_program(arguments.output, None, raster.program(found))
     except ProgramError as error:

@@ -99,7 +99,7 @@ def at_pose(job, pose, program=1, context=None):
     if not 1 <= pose <= len(path):
         raise InputError(f"there is no pose {pose}; the program has {len(path)}")
     context = context or core.RunContext()
-    field = make_field(job, read_design(job["design"]), warnings, context)
+    field = make_field(job, read_design(job["design"], context), warnings, context)
     apply_stock(field, job["stock"], warnings, context)
     wheel, compliance, law, options = engine_input.engine_arguments(job)
     before = [tool_paths.tool_path(job, i, warnings) for i in range(program - 1)]

@@ -42,7 +42,7 @@ def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
     """
     design = result.job["design"]
     return core.ground_mesh(
-        workpiece.read_design(design),
+        workpiece.read_design(design, context),
         result.field,
         ground,
         deflection_mm,

@@ -316,7 +316,7 @@ def _other_faces(job, field, shape, notes, context):
 
     sampled = set(np.unique(field.faces).tolist())
     try:  # what cannot be had here must not cost the result
-        shape = shape or workpiece.read_design(job["design"])
+        shape = shape or workpiece.read_design(job["design"], context)
         others = [face for face in range(shape.face_count) if face not in sampled]
         if others:
             return core.triangulate(shape, DEFLECTION, context, faces=others)

@@ -8,13 +8,25 @@ from ..engine import InputError, core
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 
 
-def read_design(design):
-    """The design's core.Shape; a mesh becomes a faceted B-rep."""
-    if "brep" in design:
-        return core.Shape.from_brep(design["brep"], "design")
-    if Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
+class OwnBrep(str):
+    """The BREP text of a shape that this process has, as a job's "brep": it is read here. Any other
+    text is foreign, as files are, and is read by a process of its own."""
+
+
+def read_design(design, context=None):
+    """The design's core.Shape; a mesh becomes a faceted B-rep. Raises InputError, Cancelled."""
+    if "file" in design and Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
         return core.shape_from_mesh(core.read_mesh(design["file"], design["unit_mm"]))
-    return core.Shape.read(design["file"])
+    return read_shape(design, "design", context)
+
+
+def read_shape(data, name, context=None):
+    """core.Shape of what a job gives as "brep" or as "file". Raises InputError, Cancelled."""
+    if "brep" not in data:
+        return core.Shape.read(data["file"], context)
+    if isinstance(data["brep"], OwnBrep):
+        return core.Shape.from_brep(data["brep"], name)
+    return core.Shape.read_brep(data["brep"], name, context)
 
 
 def make_field(job, shape, warnings, context):
@@ -46,7 +58,7 @@ def apply_stock(field, stock, warnings, context):
             placement = frame_of(stock.get("placement"), "stock.placement")
             mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement)
         else:
-            shape = read_design(stock)
+            shape = read_design(stock, context)
             warnings += [f"stock: {text}" for text in shape.warnings()]
             mesh = core.triangulate(shape, stock["deflection_mm"], context)
         report = core.apply_mesh(

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..base import frames
 from ..engine import InputError, core
+from ..job.workpiece import OwnBrep
 
 GRID = 5  # points per direction and face, and per edge, that tell shapes apart
 RESOLUTION = 1e-6  # mm; below it, two shapes are the same
@@ -34,7 +35,7 @@ def export_solid(obj, folder, name):
     """{"brep": ...} of a Part object, {"file": ...} of a Mesh object, written to ``folder`` under
     ``name``; in the document's coordinates, mm. Raises InputError."""
     if not hasattr(obj, "Mesh"):
-        return {"brep": placed_shape(obj).exportBrepToString()}
+        return {"brep": OwnBrep(placed_shape(obj).exportBrepToString())}
     mesh = obj.Mesh.copy()
     mesh.Placement = obj.getGlobalPlacement()
     path = Path(folder) / f"{name}.ply"

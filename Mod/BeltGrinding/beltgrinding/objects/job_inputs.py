@@ -9,6 +9,7 @@ import numpy as np
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs
 from ..job.poses import list_poses
+from ..job.workpiece import OwnBrep
 from . import bodies
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
@@ -70,7 +71,7 @@ def to_data(job, folder):
     """
     data = without_geometry(job)
     shape, data["design"]["faces"] = design(job)
-    data["design"]["brep"] = shape.exportBrepToString()
+    data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.to_job(stock, folder)
     data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), folder)

@@ -5,6 +5,7 @@ import json
 
 from ..engine import InputError
 from ..job import load as jobs
+from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster
 from . import job_data, job_object
 from .belt_machine import BeltMachine
@@ -79,7 +80,7 @@ def generate(obj):
     job, settings, digest = _inputs(obj)
     if digest == obj.Inputs:
         return
-    job["design"]["brep"] = job["design"]["brep"].exportBrepToString()
+    job["design"]["brep"] = OwnBrep(job["design"]["brep"].exportBrepToString())
     found = raster.raster(jobs.validate(job), settings)
     set_arrays(obj, found)
     obj.Language = "raster"

@@ -5,6 +5,7 @@ import os
 from functools import lru_cache
 
 from ..engine import InputError
+from ..job.workpiece import OwnBrep
 from .geometry import export_solid, faces_digest, geometry_digest, placed_shape, placement_to_job
 from .properties import Key, add_keys, check_limits, get_value
 from .proxy import Proxy, checking
@@ -76,7 +77,7 @@ class Stock(Proxy):
         """The part of a job under 'stock'; a mesh of the document is written to ``folder``."""
         job = self.settings(obj)
         if obj.Kind == "solid":
-            job["brep"] = _shape(obj).exportBrepToString()
+            job["brep"] = OwnBrep(_shape(obj).exportBrepToString())
         elif obj.Kind == "mesh":
             _require_mesh(obj)
             if obj.Source is not None:

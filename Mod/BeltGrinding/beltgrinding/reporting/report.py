@@ -43,7 +43,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     words = Language(language)
     printer = _printer() if pdf is not None else None
     context = context or core.RunContext()
-    html = render(load(result, title, notes), words, context)
+    html = render(load(result, title, notes, context), words, context)
     context.throw_if_cancelled()
     try:
         write_whole(output, html.encode())
@@ -56,14 +56,14 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     return output
 
 
-def load(result, title=None, notes=()):
+def load(result, title=None, notes=(), context=None):
     """The ``Content`` of a folder that a run wrote, or of a ``Result``. Raises InputError."""
     source = ""
     if not isinstance(result, Result):
         source, result = str(result), Result.read(result)
     notes = list(notes)
     try:
-        shape = workpiece.read_design(result.job["design"])
+        shape = workpiece.read_design(result.job["design"], context)
     except InputError as error:
         shape = None
         notes.append(str(error))

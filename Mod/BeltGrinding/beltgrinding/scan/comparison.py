@@ -42,7 +42,7 @@ def extension():
     return beltgrinding_scan
 
 
-def datum(result, faces=None):
+def datum(result, faces=None, context=None):
     """The surface that a scan is laid on: dict(points (n, 3), normals (n, 3), spacing, faces,
     predicted), mm, work frame.
 
@@ -51,7 +51,7 @@ def datum(result, faces=None):
     height as well.
     """
     design = result.job["design"]
-    shape = workpiece.read_design(design)
+    shape = workpiece.read_design(design, context)
     ground = sorted({int(face) for face in np.unique(result.field.faces)})
     if faces is None:
         others = [i for i in range(shape.face_count) if i not in set(ground)]
@@ -248,13 +248,14 @@ def compare(
     share=SHARE,
     search_mm=None,
     aligned=False,
+    context=None,
 ):
     """Reads a scan's file, aligns it (``aligned``: it lies where the design does already), measures
     it at each sample and puts the heights into ``result.field.measured``.
 
     pairs: (k, 2, 3) of a place on the scan (its unit) and the same place on the design (mm), in
-    place of ``start``. Returns the figures that ``write`` keeps. Raises InputError; the result is
-    then as it was.
+    place of ``start``. Returns the figures that ``write`` keeps. Raises InputError, and Cancelled
+    while the design is read; the result is then as it was.
     """
     scan = scan_file.read(path, unit_mm)
     figures = {"file": str(path), "unit_mm": float(unit_mm), "points": len(scan.points)}
@@ -262,7 +263,7 @@ def compare(
     if aligned:
         matrix, found = np.eye(4), None
     else:
-        surface = datum(result, datum_faces)
+        surface = datum(result, datum_faces, context)
         if pairs is not None:
             if start is not None:
                 raise InputError("scan: give pairs of points or a start, not both")

@@ -59,7 +59,7 @@ def _run(job, context, warnings, recording):
     phases.end("programs")
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))
     phases.end("reach")
-    shape = read_design(job["design"])
+    shape = read_design(job["design"], context)
     warnings += shape.warnings()
     phases.end("read")
     field = make_field(job, shape, warnings, context.part(0.0, 0.2))

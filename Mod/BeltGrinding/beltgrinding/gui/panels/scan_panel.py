@@ -163,8 +163,8 @@ class ScanPanel(Panel):
         self.tell(translate("BeltGrinding", "Aligning and measuring..."))
         work = SimpleNamespace(result=result)
 
-        def run(_):
-            return work.result, scan.compare(work.result, path, **options)
+        def run(context):
+            return work.result, scan.compare(work.result, path, context=context, **options)
 
         self.work = Background(run, self._done)
 

@@ -85,7 +85,7 @@ def check(folder):
         """The file that an address in ``path`` names, None if there is nothing to look for."""
         parts = urlsplit(address)
         here = path.relative_to(folder)
-        if parts.scheme == "data" or (not fetched and (parts.scheme or parts.netloc)):
+        if parts.scheme in ("data", "javascript") or (not fetched and (parts.scheme or parts.netloc)):
             return None
         if parts.scheme or parts.netloc:
             wrong.append(f"{here} would fetch {address}")
@@ -106,8 +106,7 @@ def check(folder):
         for address in page.fetched:
             look(path, address, True)
         for address in page.links:
-            if not address.startswith(("javascript:", "mailto:")):
-                reached[path].add(look(path, address, False))
+            reached[path].add(look(path, address, False))
     for path in sorted(folder.rglob("*.css")):
         for address in in_style(path.read_text("utf-8", errors="replace")):
             look(path, address.partition("#")[0] or path.name, True)

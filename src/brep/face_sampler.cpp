@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "base/parallel.h"
+#include "beltgrinding/error.h"
 #include "delaunay.h"
 #include "face_lattice.h"
 #include "face_surface.h"
@@ -33,12 +33,17 @@ class FaceSampler {
         surface_.s0 = trim.u0, surface_.s1 = trim.u1;
         surface_.t0 = trim.v0, surface_.t1 = trim.v1;
         if (!(trim.u1 > trim.u0) || !(trim.v1 > trim.v0))
-            throw std::runtime_error("its trimming edges enclose nothing");
+            throw InputError(
+                "brep.empty_trim",
+                "its trimming edges enclose nothing; repair the shape or leave the face out");
         const SurfaceMetric metric(surface_, request_.spacing);
         if (!std::isfinite(metric.max_length() + metric.height()))
-            throw std::runtime_error("its surface evaluates to NaN");
+            throw InputError(
+                "brep.surface_nan",
+                "its surface evaluates to NaN; repair the shape or leave the face out");
         if (!(metric.max_length() > 0) || !(metric.height() > 0))
-            throw std::runtime_error("its surface has no extent");
+            throw InputError("brep.no_extent",
+                             "its surface has no extent; repair the shape or leave the face out");
         singular_ = kSingularJacobian * metric.mean_jacobian();
         const double largest = std::max(metric.mean_length(), metric.height());
         grid_.x_scale = std::max(4.0, kGridHalf * (metric.mean_length() / largest));
@@ -71,7 +76,9 @@ class FaceSampler {
             point_[i] = point;
             const double jacobian = cross.norm();
             if (!std::isfinite(jacobian + point.sum()))
-                throw std::runtime_error("its surface evaluates to NaN");
+                throw InputError(
+                    "brep.surface_nan",
+                    "its surface evaluates to NaN; repair the shape or leave the face out");
             cross_[i] = singular ? 0.0 : jacobian;
             if (singular || jacobian <= singular_) {
                 flags_[i] |= kDegenerate;
@@ -365,7 +372,10 @@ class FaceSampler {
             total += area_[i];
         }
         out.sampled_area = triangles_.empty() ? request_.area : total;
-        if (!(total > 0)) throw std::runtime_error("its trimming edges enclose nothing");
+        if (!(total > 0))
+            throw InputError(
+                "brep.empty_trim",
+                "its trimming edges enclose nothing; repair the shape or leave the face out");
         out.point.resize(count);
         out.normal.resize(count);
         out.area.resize(count);

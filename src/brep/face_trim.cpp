@@ -11,7 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
+
+#include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {
@@ -74,7 +75,10 @@ std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surfa
             last = p;
         }
         const double total = length.back();
-        if (!std::isfinite(total)) throw std::runtime_error("an edge of it evaluates to NaN");
+        if (!std::isfinite(total))
+            throw InputError(
+                "brep.edge_nan",
+                "an edge of it evaluates to NaN; repair the shape or leave the face out");
         if (total < kZeroLength) {
             degenerate = true;
             return even(kPoleNodes);
@@ -240,13 +244,18 @@ TrimCurves collect_trim_curves(const TopoDS_Face& oriented) {
             continue;
         TrimCurve c;
         c.curve = BRep_Tool::CurveOnSurface(edge, face, c.first, c.last);
-        if (c.curve.IsNull()) throw std::runtime_error("an edge has no curve on the surface");
+        if (c.curve.IsNull())
+            throw InputError(
+                "brep.edge_without_curve",
+                "an edge has no curve on the surface; repair the shape or leave the face out");
         c.edge = edges.Add(edge) - 1;
         result.uses.resize(static_cast<std::size_t>(edges.Extent()), 0);
         ++result.uses[static_cast<std::size_t>(c.edge)];
         const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
         const TopoDS_Vertex from = TopExp::FirstVertex(forward), to = TopExp::LastVertex(forward);
-        if (from.IsNull() || to.IsNull()) throw std::runtime_error("an edge has no vertices");
+        if (from.IsNull() || to.IsNull())
+            throw InputError("brep.edge_without_vertices",
+                             "an edge has no vertices; repair the shape or leave the face out");
         c.vertex_first = vertices.Add(from) - 1;
         c.vertex_last = vertices.Add(to) - 1;
         c.tolerance = std::max(BRep_Tool::Tolerance(from), BRep_Tool::Tolerance(to));
@@ -255,7 +264,9 @@ TrimCurves collect_trim_curves(const TopoDS_Face& oriented) {
         for (int i = 0; i <= n; ++i) {
             const gp_Pnt2d p = c.curve->Value(c.first + (c.last - c.first) * i / n);
             if (!std::isfinite(p.X()) || !std::isfinite(p.Y()))
-                throw std::runtime_error("an edge's curve on the surface evaluates to NaN");
+                throw InputError("brep.edge_curve_nan",
+                                 "an edge's curve on the surface evaluates to NaN; repair the "
+                                 "shape or leave the face out");
             if (!any) {
                 result.u0 = result.u1 = p.X();
                 result.v0 = result.v1 = p.Y();
@@ -268,7 +279,9 @@ TrimCurves collect_trim_curves(const TopoDS_Face& oriented) {
         }
         result.curves.push_back(c);
     }
-    if (!any) throw std::runtime_error("it has no edges");
+    if (!any)
+        throw InputError("brep.no_edges",
+                         "it has no edges; repair the shape or leave the face out");
     result.vertices = vertices.Extent();
     return result;
 }

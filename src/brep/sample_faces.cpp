@@ -105,6 +105,12 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
     });
 }
 
+Fact not_sampled(const Shape::Impl& impl, std::size_t face) {
+    return {"brep.not_sampled",
+            "face {face} of {shape} cannot be sampled: ",
+            {{"face", face + 1}, {"shape", impl.name}}};
+}
+
 }  // namespace
 
 HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
@@ -182,20 +188,11 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                                     {"area", job.area},
                                     {"sampled", job.samples.sampled_area}}};
             } catch (const Standard_Failure& failure) {
-                throw InputError("brep.not_sampled",
-                                 "face {face} of {shape} cannot be sampled: {reason}; repair the "
-                                 "shape or leave the face out",
-                                 {{"face", job.face + 1},
-                                  {"shape", impl.name},
-                                  {"reason", failure.GetMessageString()}});
-            } catch (const Cancelled&) {
-                throw;
-            } catch (const std::runtime_error& error) {
-                throw InputError(
-                    "brep.not_sampled",
-                    "face {face} of {shape} cannot be sampled: {reason}; repair the shape or leave "
-                    "the face out",
-                    {{"face", job.face + 1}, {"shape", impl.name}, {"reason", error.what()}});
+                throw InputError("brep.failure", "{reason}; repair the shape or leave the face out",
+                                 {{"reason", failure.GetMessageString()}})
+                    .within(not_sampled(impl, job.face));
+            } catch (const InputError& error) {
+                throw error.within(not_sampled(impl, job.face));
             }
             context.report(0.05 + 0.9 * double(++done) / double(jobs.size()));
         }

@@ -55,7 +55,7 @@ double integrate_area(const TopoDS_Face& face) {
         const double judge = sampled_area(face, std::max(f, a));
         if (std::abs(a - judge) <= kJudgeTolerance * judge) return a;
         return judge;
-    } catch (const std::runtime_error&) {
+    } catch (const InputError&) {
         return a;
     }
 }

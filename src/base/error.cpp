@@ -25,10 +25,6 @@ InputError::InputError(Fact fact, std::vector<Fact> context)
     : std::runtime_error(whole_sentence(fact, context)),
       told_(std::make_shared<const Told>(Told{std::move(fact), std::move(context)})) {}
 
-InputError::InputError(const std::string& message)
-    : std::runtime_error(message),
-      told_(std::make_shared<const Told>(Told{{"", message, {}}, {}})) {}
-
 Arguments InputError::culprit() const {
     Arguments found;
     const auto add = [&](const Fact& fact) {

@@ -51,8 +51,10 @@ std::unique_ptr<PreparedContact> ElasticModel::do_prepare(const ContactGrid& gri
 
 ElasticFoundation::ElasticFoundation(double stiffness) : stiffness_(stiffness) {
     if (!std::isfinite(stiffness) || stiffness <= 0.0) {
-        throw InputError("elastic foundation: stiffness is " + std::to_string(stiffness) +
-                         " MPa/mm; give a positive one");
+        throw InputError(
+            "contact.foundation",
+            "elastic foundation: stiffness is {stiffness:f} MPa/mm; give a positive one",
+            {{"stiffness", stiffness}});
     }
 }
 

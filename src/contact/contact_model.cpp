@@ -19,7 +19,8 @@ class PreparedGeometric final : public PreparedContact {
   private:
     ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd*) override {
         if (problem.force_control)
-            throw InputError("contact: a rigid tool has no force to command");
+            throw InputError("contact.rigid_force",
+                             "contact: a rigid tool has no force to command");
         ContactSolution solution;
         solution.pressure = Eigen::ArrayXd::Zero(problem.gap.size());
         solution.approach = problem.approach;
@@ -36,27 +37,33 @@ void ContactGrid::validate() const {
     const bool sides = std::isfinite(ds) && std::isfinite(dy) && ds > 0.0 && dy > 0.0;
     if (nx <= 0 || ny <= 0 || nx > kMostCells / ny || !sides) {
         throw InputError(
-            "contact: the grid needs cells of positive sides, in millimetres, at most " +
-            std::to_string(kMostCells));
+            "contact.grid",
+            "contact: the grid needs cells of positive sides, in millimetres, at most {most}",
+            {{"most", kMostCells}});
     }
 }
 
 void ContactProblem::validate(const ContactGrid& grid) const {
     const Eigen::Index n = grid.cells();
     if (gap.size() != n || coverage.size() != n) {
-        throw InputError("contact: gap and coverage must have one value per cell of the grid");
+        throw InputError("contact.cells",
+                         "contact: gap and coverage must have one value per cell of the grid");
     }
     if (gap.isNaN().any() || !coverage.isFinite().all()) {
-        throw InputError("contact: the gap or the coverage holds a value that is not a number");
+        throw InputError("contact.not_a_number",
+                         "contact: the gap or the coverage holds a value that is not a number");
     }
     if (force_control && (!std::isfinite(force) || force < 0.0)) {
-        throw InputError("contact: the commanded force must be zero or positive, in newtons");
+        throw InputError("contact.force",
+                         "contact: the commanded force must be zero or positive, in newtons");
     }
     if (!(robot_compliance >= 0.0) || !std::isfinite(robot_compliance)) {
-        throw InputError("contact: the robot's compliance must be zero or positive, in mm/N");
+        throw InputError("contact.robot_compliance",
+                         "contact: the robot's compliance must be zero or positive, in mm/N");
     }
     if (!force_control && !std::isfinite(approach)) {
-        throw InputError("contact: the commanded approach must be finite, in millimetres");
+        throw InputError("contact.approach",
+                         "contact: the commanded approach must be finite, in millimetres");
     }
 }
 
@@ -68,7 +75,8 @@ PreparedContact::PreparedContact(const ContactGrid& grid, std::string descriptio
 ContactSolution PreparedContact::solve(const ContactProblem& problem, const Eigen::ArrayXd* start) {
     problem.validate(grid_);
     if (start != nullptr && start->size() != grid_.cells()) {
-        throw InputError("contact: the pressure to start from must have one value per cell");
+        throw InputError("contact.start",
+                         "contact: the pressure to start from must have one value per cell");
     }
     return do_solve(problem, start);
 }

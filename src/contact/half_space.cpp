@@ -91,13 +91,14 @@ void ConvolutionOperator::do_apply(const Eigen::ArrayXd& pressure, const Eigen::
 
 void Elasticity::validate(double largest_ratio) const {
     if (!std::isfinite(youngs_modulus) || youngs_modulus <= 0.0) {
-        throw InputError("Young's modulus is " + std::to_string(youngs_modulus) +
-                         " MPa; give a positive one");
+        throw InputError("contact.youngs_modulus",
+                         "Young's modulus is {modulus:f} MPa; give a positive one",
+                         {{"modulus", youngs_modulus}});
     }
     if (!(poissons_ratio >= 0.0) || poissons_ratio > largest_ratio) {
-        std::ostringstream text;
-        text << "Poisson's ratio is " << poissons_ratio << "; give one from 0 to " << largest_ratio;
-        throw InputError(text.str());
+        throw InputError("contact.poissons_ratio",
+                         "Poisson's ratio is {ratio:g}; give one from 0 to {largest:g}",
+                         {{"ratio", poissons_ratio}, {"largest", largest_ratio}});
     }
 }
 
@@ -171,8 +172,9 @@ BondedLayer::BondedLayer(Elasticity elasticity, double thickness)
     : elasticity_(elasticity), thickness_(thickness), table_(kTable + 1) {
     elasticity_.validate(0.5);
     if (!std::isfinite(thickness) || thickness <= 0.0) {
-        throw InputError("bonded layer: the thickness is " + std::to_string(thickness) +
-                         " mm; give a positive one");
+        throw InputError("contact.layer_thickness",
+                         "bonded layer: the thickness is {thickness:f} mm; give a positive one",
+                         {{"thickness", thickness}});
     }
     // Inverse Hankel transform of 2 (S - 1) / (E* q).
     const double step = kLastWave / kWaves;

@@ -43,11 +43,13 @@ class Press {
         : contact_(contact), model_(model) {}
 
     SingleContactResult run() {
-        if (model_.rigid()) throw InputError("contact: a rigid tool has no pressure");
+        if (model_.rigid())
+            throw InputError("contact.rigid_pressure", "contact: a rigid tool has no pressure");
         contact_.wheel.validate();
         contact_.workpiece.validate();
         if (!std::isfinite(contact_.spacing) || contact_.spacing <= 0.0) {
-            throw InputError("contact: the grid's spacing must be positive, in millimetres");
+            throw InputError("contact.spacing",
+                             "contact: the grid's spacing must be positive, in millimetres");
         }
         const double across = std::round(contact_.wheel.width / contact_.spacing);
         grid_.ny = static_cast<int>(std::clamp(across, 1.0, 1.0 * kMaxCells));
@@ -103,7 +105,7 @@ class Press {
         set_gap(0.0);
         const double touch = problem_.gap.minCoeff();
         if (!std::isfinite(touch))
-            throw InputError("contact: the wheel meets the workpiece nowhere");
+            throw InputError("contact.none", "contact: the wheel meets the workpiece nowhere");
         SingleContactResult result;
         result.grid = grid_;
         result.model = prepared->describe();
@@ -175,12 +177,15 @@ double Workpiece::depth(double x, double y) const {
 void Workpiece::validate() const {
     const bool round = shape == Shape::kCylinder || shape == Shape::kSphere;
     if (round && (!std::isfinite(radius) || radius == 0.0)) {
-        throw InputError("workpiece: the radius must not be zero, in millimetres");
+        throw InputError("contact.workpiece_radius",
+                         "workpiece: the radius must not be zero, in millimetres");
     }
     if (shape == Shape::kStrip && (!std::isfinite(width) || width <= 0.0)) {
-        throw InputError("workpiece: the strip's width must be positive, in millimetres");
+        throw InputError("contact.strip_width",
+                         "workpiece: the strip's width must be positive, in millimetres");
     }
-    if (!std::isfinite(axis_angle)) throw InputError("workpiece: the axis angle is no number");
+    if (!std::isfinite(axis_angle))
+        throw InputError("contact.axis_angle", "workpiece: the axis angle is no number");
 }
 
 double foundation_stiffness(const ContactWheel& wheel, const ContactModel& model, double force,

@@ -239,7 +239,8 @@ ContactSolution PreparedSurrogate::do_solve(const ContactProblem& problem, const
 Surrogate::Surrogate(ContactFeatures features, TrainedRegression regression, std::string name)
     : features_(features), name_(std::move(name)) {
     if (!(features_.cell > 0.0) || !(features_.rim_thickness > 0.0)) {
-        throw InputError("surrogate: its cell and rim thickness must be positive");
+        throw InputError("surrogate.sizes",
+                         "surrogate: its cell and rim thickness must be positive");
     }
     regression.validate(features_.size());
     regression_ = std::make_shared<const TrainedRegression>(std::move(regression));

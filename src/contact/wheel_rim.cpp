@@ -188,7 +188,7 @@ WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt, std::shared_ptr<RimCac
     design_.validate();
     if (!(belt_.tension >= 0.0) || !(belt_.bending >= 0.0)) {
         throw InputError(
-            "wheel rim: the belt's tension and bending stiffness must not be negative");
+            "rim.belt", "wheel rim: the belt's tension and bending stiffness must not be negative");
     }
 }
 

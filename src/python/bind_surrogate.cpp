@@ -10,7 +10,8 @@ using Cells = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 ContactGrid grid_of(const Cells& gap, double ds, double width) {
     if (gap.ndim() != 2 || gap.size() == 0) {
-        throw InputError("contact: gap and coverage must be arrays (ny, nx)");
+        throw InputError("call.contact_arrays",
+                         "contact: gap and coverage must be arrays (ny, nx)");
     }
     ContactGrid grid;
     grid.nx = static_cast<int>(gap.shape(1));

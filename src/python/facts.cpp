@@ -61,8 +61,7 @@ py::list to_list(const std::vector<Fact>& facts) {
 
 void raise(const InputError& error, py::handle type) noexcept {
     try {
-        py::object value =
-            error.code().empty() ? type(text(error.what())) : made(type, error.fact());
+        py::object value = made(type, error.fact());
         const std::vector<Fact>& context = error.context();
         for (auto outer = context.rbegin(); outer != context.rend(); ++outer) {
             value = value.attr("within")(text(outer->code), text(outer->text),

@@ -22,8 +22,6 @@ class InputError : public std::runtime_error {
     /// for nothing else; face and pose are counted from 1, as the user does.
     InputError(std::string code, std::string text, Arguments arguments = {});
     explicit InputError(Fact fact, std::vector<Fact> context = {});
-    /// Without a code.
-    explicit InputError(const std::string& message);
 
     const std::string& code() const { return told_->fact.code; }
     const std::string& text() const { return told_->fact.text; }

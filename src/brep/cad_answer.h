@@ -10,7 +10,7 @@
 namespace beltgrinding {
 
 enum class CadAnswerKind : std::uint32_t {
-    kShape,       ///< pack_shape's bytes follow
+    kShape,       ///< CadFacts and pack_shape's bytes follow
     kUnreadable,  ///< not of the format
     kNullShape,   ///< of the format, but nothing in it
     kFailure,     ///< OpenCASCADE's words follow
@@ -24,6 +24,13 @@ struct CadAnswerHead {
     std::int32_t signal = 0;
     std::uint64_t size = 0;   ///< of what follows, bytes
     std::uint64_t check = 0;  ///< cad_answer_check of it
+};
+
+/// What is known of a shape before its bytes.
+struct CadFacts {
+    std::array<double, 6> extents{};  ///< mm, least then greatest x, y, z
+    std::uint32_t valid = 0;
+    std::uint32_t meshed = 0;  ///< 0: no extents
 };
 
 /// FNV-1a. Half an answer, or another program's, must not reach OpenCASCADE.

@@ -147,8 +147,8 @@ Fact outer(const std::string& name, const std::string* text) {
     }
 }
 
-TopoDS_Shape shape_of(const ChildAnswer& answer, const std::string& program,
-                      const std::string& format, bool text) {
+CadShape shape_of(const ChildAnswer& answer, const std::string& program, const std::string& format,
+                  bool text) {
     const CadAnswerHead head =
         answer.output.size() < sizeof(CadAnswerHead) ? CadAnswerHead() : head_of(answer.output);
     const std::string_view body =
@@ -168,7 +168,13 @@ TopoDS_Shape shape_of(const ChildAnswer& answer, const std::string& program,
             {{"format", format}, {"signal", signal_name(whole ? head.signal : answer.signal)}});
     if (head.kind != CadAnswerKind::kShape) refuse(head.kind, format, body, text);
     try {
-        return unpack_shape(body);
+        CadFacts facts;
+        if (body.size() < sizeof facts) throw Standard_Failure("no facts");
+        std::memcpy(&facts, body.data(), sizeof facts);
+        CadShape found{unpack_shape(body.substr(sizeof facts)), facts.valid != 0, std::nullopt};
+        const auto& e = facts.extents;
+        if (facts.meshed != 0) found.extents = Box(Vec3(e[0], e[1], e[2]), Vec3(e[3], e[4], e[5]));
+        return found;
     } catch (const Standard_Failure& failure) {
         refuse(CadAnswerKind::kFailure, format, failure.GetMessageString(), text);
     }
@@ -185,8 +191,8 @@ const char* cad_format_name(CadFormat format) {
     return format == CadFormat::kStep ? "STEP" : format == CadFormat::kIges ? "IGES" : "BREP";
 }
 
-TopoDS_Shape read_in_child(CadFormat format, const std::string& path, const std::string* text,
-                           const std::string& name, const RunContext& context) {
+CadShape read_in_child(CadFormat format, const std::string& path, const std::string* text,
+                       const std::string& name, const RunContext& context) {
     const std::string kind = cad_format_name(format);
     ChildRequest request;
     request.arguments = {std::to_string(getpid()), kind};

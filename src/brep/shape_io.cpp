@@ -36,6 +36,13 @@ class QuietMessenger {
     Message_SequenceOfPrinters printers_;
 };
 
+Shape shape_of(const CadShape& read, const std::string& name) {
+    const Shape shape = make_shape(read.shape, name, MissingCurves::kAreDone);
+    shape.impl().valid = read.valid;
+    if (read.extents) shape.impl().extents = std::make_unique<Box>(*read.extents);
+    return shape;
+}
+
 std::string lower_suffix(const std::string& path) {
     std::string suffix = std::filesystem::path(path).extension().string();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(),
@@ -78,14 +85,13 @@ Shape Shape::read(const std::string& path, const RunContext& context) {
                          "and .brp are read",
                          {{"file", path}, {"suffix", suffix}});
     }
-    return make_shape(read_in_child(format, path, nullptr, path, context),
-                      std::filesystem::path(path).filename().string(), MissingCurves::kAreDone);
+    return shape_of(read_in_child(format, path, nullptr, path, context),
+                    std::filesystem::path(path).filename().string());
 }
 
 Shape Shape::read_brep(const std::string& text, const std::string& name,
                        const RunContext& context) {
-    return make_shape(read_in_child(CadFormat::kBrep, "", &text, name, context), name,
-                      MissingCurves::kAreDone);
+    return shape_of(read_in_child(CadFormat::kBrep, "", &text, name, context), name);
 }
 
 Shape Shape::from_brep(const std::string& text, const std::string& name) {

@@ -358,3 +358,10 @@ def test_the_reader_dies_with_its_host(tmp_path):
     host.wait()
     time.sleep(0.2)
     assert not alive(found[0])
+
+
+@pytest.mark.skipif(not (SHARED / "attack").is_dir(), reason=f"no shared data at {SHARED}")
+def test_a_shape_whose_check_crashes_is_refused():
+    """It is read without a fault, and OpenCASCADE's check follows a pointer into nowhere."""
+    text = message(SHARED / "attack" / "d71.brep")
+    assert "SIGSEGV" in text

@@ -25,6 +25,7 @@
 #include <string>
 #include <string_view>
 
+#include "beltgrinding/error.h"
 #include "cad_answer.h"
 #include "child_process.h"
 #include "shape_impl.h"
@@ -123,6 +124,21 @@ TopoDS_Shape read(std::string_view format, const char* path) {
     return shape;
 }
 
+CadFacts facts_of(const TopoDS_Shape& handed_over) {
+    CadFacts facts;
+    try {
+        const Shape shape = make_shape(handed_over, "", MissingCurves::kAreDone);
+        facts.valid = shape.valid();
+        const Box box = shape.extents();
+        facts.extents = {box.min().x(), box.min().y(), box.min().z(),
+                         box.max().x(), box.max().y(), box.max().z()};
+        facts.meshed = 1;
+    } catch (const InputError&) {
+        // The host says so when it is asked.
+    }
+    return facts;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -139,8 +155,10 @@ int main(int count, char** arguments) {
         if (shape.IsNull()) answer(CadAnswerKind::kNullShape);
         add_missing_curves(shape);
         const std::string bytes = pack_shape(shape);
-        unpack_shape(bytes);  // what fails in the host must fail here
-        answer(CadAnswerKind::kShape, bytes);
+        // What fails in the host must fail here: it is tried on what the host will have.
+        const CadFacts facts = facts_of(unpack_shape(bytes));
+        answer(CadAnswerKind::kShape,
+               std::string(reinterpret_cast<const char*>(&facts), sizeof facts) + bytes);
     } catch (const Standard_OutOfMemory&) {
         answer(CadAnswerKind::kMemory);
     } catch (const Standard_Failure& failure) {

@@ -1,3 +1,6 @@
+// Own code, because it must be exact and give the same everywhere, and be free for all to use:
+// CGAL's is GPL, and Triangle's is not for trade.
+
 #include "delaunay.h"
 
 #include <algorithm>

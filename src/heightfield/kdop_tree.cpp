@@ -1,3 +1,6 @@
+// Own code, because no library has boxes of K slabs that are asked for the reach of a wheel, and
+// refitted at each step where heights changed and nowhere else.
+
 #include "heightfield/kdop_tree.h"
 
 #include <algorithm>

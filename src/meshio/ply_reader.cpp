@@ -1,3 +1,5 @@
+// Own code, because assimp crashes on every second damaged PLY, and rounds its doubles to floats.
+
 #include "beltgrinding/mesh_reader.h"
 
 #include <algorithm>

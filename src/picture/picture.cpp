@@ -1,3 +1,6 @@
+// Own code, because reports are made without a display and their pictures are compared to the
+// pixel: OpenGL needs the one and, from driver to driver, does not give the other.
+
 #include "picture/picture.h"
 
 #if __has_include(<embree4/rtcore.h>)

@@ -15,7 +15,7 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libcoin-dev libgl-dev qttools5-dev-tools
-    libnanoflann-dev libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
+    libnanoflann-dev lib3mf-dev libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib python3-pil xvfb xauth libgl1-mesa-dri)
 packages_docs=(mkdocs mkdocs-material doxygen)

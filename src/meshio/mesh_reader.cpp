@@ -4,12 +4,16 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "beltgrinding/error.h"
+#include "meshio/mesh_3mf.h"
 
 namespace beltgrinding {
 namespace {
@@ -68,6 +72,18 @@ bool is_ply(const std::string& path) {
     return file.read(magic, 3) && std::string_view(magic, 3) == "ply";
 }
 
+bool is_3mf(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string();
+    for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return suffix == ".3mf";
+}
+
+/// By lib3mf, which says what is wrong with a damaged package; assimp ends the process.
+RawMesh read_3mf_file(const std::string& path) {
+    std::optional<RawMesh> mesh = read_3mf(path);
+    return mesh ? std::move(*mesh) : read_by_assimp(path);
+}
+
 }  // namespace
 
 TriangleMesh read_mesh(const std::string& path, double unit_mm, const Frame& work_from_mesh) {
@@ -79,7 +95,7 @@ TriangleMesh read_mesh(const std::string& path, double unit_mm, const Frame& wor
     if (!std::filesystem::is_regular_file(path))
         throw InputError("mesh.no_such_file", "{file}: there is no such file", {{"file", path}});
     const bool ply = std::filesystem::path(path).extension() == ".ply" || is_ply(path);
-    RawMesh raw = ply ? read_ply(path) : read_by_assimp(path);
+    RawMesh raw = ply ? read_ply(path) : is_3mf(path) ? read_3mf_file(path) : read_by_assimp(path);
     if (raw.triangles.empty())
         throw InputError("mesh.no_triangle", "{file}: the mesh has no triangle", {{"file", path}});
     TriangleMesh mesh;

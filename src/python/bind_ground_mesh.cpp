@@ -5,6 +5,7 @@
 #include "brep/surface_mesh.h"
 #include "facts.h"
 #include "inspection/ground_mesh.h"
+#include "meshio/mesh_3mf.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -69,12 +70,19 @@ void bind_ground_mesh(py::module_& m) {
             py::arg("scale") = py::none(),
             "Binary PLY; scale: (lower, upper, limit) of the colours, mm.")
         .def(
-            "model_3mf",
+            "three_mf",
             [](const GroundMesh& mesh, const Scale& scale) {
-                const auto colours = scale_of(scale);
-                return py::bytes(mesh_3mf_model(mesh, colours ? &*colours : nullptr));
+                std::string file;
+                {
+                    const py::gil_scoped_release release;
+                    const auto colours = scale_of(scale);
+                    file = write_3mf(
+                        mesh.vertices, mesh.triangles,
+                        colours ? mesh_colours(mesh, *colours) : std::vector<std::uint32_t>());
+                }
+                return py::bytes(file);
             },
-            py::arg("scale") = py::none(), "The part 3D/3dmodel.model of a 3MF package.")
+            py::arg("scale") = py::none(), "3MF; scale: (lower, upper, limit) of the colours, mm.")
         .def(
             "colours",
             [](const GroundMesh& mesh, double lower, double upper, double limit) {

@@ -102,7 +102,8 @@ def test_a_3mf_is_a_package_in_millimetres(result, tmp_path):
     beltgrinding.ground_mesh(result, tmp_path / "part.3mf")
     with zipfile.ZipFile(tmp_path / "part.3mf") as package:
         assert package.testzip() is None
-        assert package.namelist() == ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]
+        parts = {"[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"}
+        assert set(package.namelist()) == parts
         model = package.read("3D/3dmodel.model")
     assert b'unit="millimeter"' in model and b"<m:colorgroup" in model
 
@@ -125,3 +126,33 @@ def test_a_field_of_another_shape_is_refused(result):
     far = core.shape_from_mesh(core.TriangleMesh(corners, np.array([[0, 1, 2]], np.uint32)))
     with pytest.raises(InputError, match="not of this shape"):
         core.ground_mesh(far, result.field)
+
+
+def test_a_damaged_3mf_is_refused_by_name(result, tmp_path):
+    beltgrinding.ground_mesh(result, tmp_path / "part.3mf")
+    whole = (tmp_path / "part.3mf").read_bytes()
+    with zipfile.ZipFile(tmp_path / "part.3mf") as package:
+        parts = {name: package.read(name) for name in package.namelist()}
+    damaged = {"half": whole[: len(whole) // 2], "empty": b"", "text": b"no package"}
+    for name in parts:
+        path = tmp_path / "less.3mf"
+        with zipfile.ZipFile(path, "w") as package:
+            for other in parts:
+                if other != name:
+                    package.writestr(other, parts[other])
+        damaged[f"without {name}"] = path.read_bytes()
+    changed = {**parts, "_rels/.rels": parts["_rels/.rels"].replace(b"3dmodel.model", b"gone")}
+    with zipfile.ZipFile(tmp_path / "less.3mf", "w") as package:
+        for name, data in changed.items():
+            package.writestr(name, data)
+    damaged["relation to nothing"] = (tmp_path / "less.3mf").read_bytes()
+    refused = 0
+    for what, data in damaged.items():
+        path = tmp_path / "damaged.3mf"
+        path.write_bytes(data)
+        try:
+            core.read_mesh(str(path))
+        except InputError as error:
+            refused += 1
+            assert "damaged.3mf" in str(error) and "\n" not in str(error), what
+    assert refused >= len(damaged) - 1  # it may be read without its list of content types

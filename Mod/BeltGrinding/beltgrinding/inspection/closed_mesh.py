@@ -1,7 +1,5 @@
 """The ground part as one closed mesh: STL, PLY and 3MF for those who measure with other tools."""
 
-import io
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -14,22 +12,6 @@ from ..job.tolerances import colour_scale
 DEFLECTION = 0.05  # mm, chord error on faces that are not ground
 SUFFIXES = (".stl", ".ply", ".3mf")
 STANDING = ("design", "ground", "missed", "border")  # the values of GroundMesh.standing
-
-# Open Packaging Conventions: the two parts that lead to a 3MF package's model.
-_CONTENT_TYPES = (
-    '<?xml version="1.0" encoding="UTF-8"?>\n'
-    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
-    '<Default Extension="rels" '
-    'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-    '<Default Extension="model" '
-    'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>\n'
-)
-_RELATIONSHIPS = (
-    '<?xml version="1.0" encoding="UTF-8"?>\n'
-    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
-    '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
-    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n'
-)
 
 
 def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
@@ -53,7 +35,8 @@ def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
 
 def file_bytes(mesh, suffix, scale=None):
     """The mesh as a file: suffix ".stl" (binary), ".ply" (binary) or ".3mf". scale: (lower, upper,
-    limit) mm of the deviation's colours, for PLY and 3MF. Raises InputError for another suffix.
+    limit) mm of the deviation's colours, for PLY and 3MF. Raises InputError for another suffix, and for .3mf where the core was
+    built without lib3mf.
     """
     if suffix == ".stl":
         return mesh.stl()
@@ -61,12 +44,7 @@ def file_bytes(mesh, suffix, scale=None):
         return mesh.ply(scale)
     if suffix != ".3mf":
         raise InputError(f"a mesh is written as {', '.join(SUFFIXES)}, not as '{suffix}'")
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as package:
-        package.writestr("[Content_Types].xml", _CONTENT_TYPES)
-        package.writestr("_rels/.rels", _RELATIONSHIPS)
-        package.writestr("3D/3dmodel.model", mesh.model_3mf(scale))
-    return data.getvalue()
+    return mesh.three_mf(scale)
 
 
 def write(mesh, path, scale=None):

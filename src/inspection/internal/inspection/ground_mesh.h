@@ -73,9 +73,6 @@ std::string mesh_stl(const GroundMesh& mesh);
 /// Binary PLY; with a scale also the vertices' colours (red green blue alpha) and the float
 /// property `deviation` (mm; NaN where not ground).
 std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale);
-/// The part 3D/3dmodel.model of a 3MF package (3MF Core Specification 1.3), millimetres; with a
-/// scale a colour for each vertex (Materials Extension, colorgroup).
-std::string mesh_3mf_model(const GroundMesh& mesh, const ColourScale* scale);
 
 /// 0xRRGGBBAA of each vertex.
 std::vector<std::uint32_t> mesh_colours(const GroundMesh& mesh, const ColourScale& scale);

@@ -18,8 +18,8 @@ struct RawMesh {
 /// Throws InputError naming the file and what is wrong with it.
 RawMesh read_ply(const std::string& path);
 
-/// Reads STL, OBJ, OFF or 3MF by assimp, PLY by `read_ply`, scaled by `unit_mm` (1: millimetres,
-/// 1000: metres) and moved by `work_from_mesh`. Throws InputError naming the file.
+/// Reads STL, OBJ or OFF by assimp, 3MF by lib3mf, PLY by `read_ply`, scaled by `unit_mm` (1:
+/// millimetres, 1000: metres) and moved by `work_from_mesh`. Throws InputError naming the file.
 TriangleMesh read_mesh(const std::string& path, double unit_mm = 1.0,
                        const Frame& work_from_mesh = Frame::Identity());
 

@@ -46,7 +46,7 @@ assert "tutorial" in field("BeltGrinding_ManualView").toPlainText().lower()
 
 
 def test_its_package_xml_holds_what_freecad_demands(freecad, content):
-    version = re.search(r"VERSION (\S+) LANG", (ROOT / "CMakeLists.txt").read_text()).group(1)
+    version = re.search(r"<version>(.*)</version>", (ROOT / "package.xml").read_text()).group(1)
     freecad.run(
         f"""
 import re

@@ -1,7 +1,9 @@
 """Task panel of a belt: what it has done, a new one, and the count of a run."""
 
 from ...engine import InputError
-from ...objects import belt_machine, job_data, job_object
+from ...objects import belt_machine, job_data
+from ...objects.job_object import BeltGrindingJob
+from ...objects.proxy import type_of
 from ...objects.simulation import Simulation
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
@@ -66,7 +68,7 @@ class BeltPanel(Panel):
 
     def _simulations(self):
         for job in self.document.Objects:
-            if job_object.type_of(job) != job_object.BeltGrindingJob.TYPE:
+            if type_of(job) != BeltGrindingJob.TYPE:
                 continue
             machine = job_data.child(job, belt_machine.BeltMachine)
             simulation = job_data.child(job, Simulation)

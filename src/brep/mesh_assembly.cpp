@@ -15,35 +15,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mesh/topology.h"
+
 namespace beltgrinding {
 namespace {
 
 constexpr double kSameParameters = 1e-2;  // of an edge's extent in the face's parameters
-
-/// Disjoint sets of numbers that grow together.
-class Union {
-  public:
-    std::uint32_t add() {
-        parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
-        return parent_.back();
-    }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    /// The lower number stands for both: the result does not depend on the order of calls.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
-std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t(std::min(a, b)) << 32U | std::max(a, b);
-}
 
 /// Takes OpenCASCADE's triangulation of a shape over into a FaceMesh.
 class Assembly {
@@ -124,7 +101,7 @@ class Assembly {
     std::uint32_t side_of(std::unordered_map<std::uint64_t, std::uint32_t>& sides, std::uint32_t a,
                           std::uint32_t b) {
         const auto [at, is_new] =
-            sides.try_emplace(pair_key(a, b), static_cast<std::uint32_t>(mesh.sides.size()));
+            sides.try_emplace(edge_key(a, b), static_cast<std::uint32_t>(mesh.sides.size()));
         if (is_new) mesh.sides.push_back({a, b, kNone, kNone, kNone, kNone});
         return at->second;
     }
@@ -165,7 +142,7 @@ class Assembly {
         for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
             if (nodes[k] == nodes[k + 1]) continue;
             const auto at = static_cast<std::uint32_t>(mesh.sides.size());
-            if (!sides.try_emplace(pair_key(nodes[k], nodes[k + 1]), at).second) continue;
+            if (!sides.try_emplace(edge_key(nodes[k], nodes[k + 1]), at).second) continue;
             mesh.sides.push_back({nodes[k], nodes[k + 1],
                                   chain.first_segment + static_cast<std::uint32_t>(k), coedge,
                                   kNone, kNone});
@@ -236,8 +213,7 @@ class Assembly {
             s.from = same_place_.find(s.from);
             s.to = same_place_.find(s.to);
         }
-        Union same_node;
-        for (std::size_t i = 0; i < mesh.nodes.size(); ++i) same_node.add();
+        DisjointSets same_node(mesh.nodes.size());
         bool any = false;
         for (const FaceMesh::Corners& t : mesh.triangles) {
             for (std::size_t k = 0; k < 3; ++k) {
@@ -281,13 +257,13 @@ class Assembly {
             for (std::uint32_t& s : t.side) {
                 const FaceMesh::Side& side = mesh.sides[s];
                 if (side.segment != kNone) continue;
-                s = sides.try_emplace(pair_key(side.from, side.to), s).first->second;
+                s = sides.try_emplace(edge_key(side.from, side.to), s).first->second;
             }
         }
     }
 
     /// A vanished triangle that lies on a border hands the border to its neighbour.
-    void keep_border(const FaceMesh::Corners& t, Union& same_node) {
+    void keep_border(const FaceMesh::Corners& t, DisjointSets& same_node) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (mesh.sides[t.side[k]].segment == kNone) continue;
             for (std::size_t l = 0; l < 3; ++l) {
@@ -306,7 +282,7 @@ class Assembly {
     const std::vector<char>& reverse_;
     TopTools_IndexedMapOfShape faces_, edges_, corners_;
     std::vector<Chain> chains_;
-    Union same_place_;
+    DisjointSets same_place_;
     std::unordered_map<std::uint32_t, std::uint32_t> replaced_;  ///< sides
 };
 

@@ -16,12 +16,14 @@
 #include <TopoDS_Solid.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gp_Pln.hxx>
 #include <map>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
+#include "mesh/topology.h"
 #include "shape_impl.h"
 
 namespace beltgrinding {
@@ -67,21 +69,16 @@ void append_face(const TopoDS_Face& face, TriangleMesh& mesh) {
 }
 
 /// Vertices of a triangle soup welded where they are equal.
-std::vector<std::uint32_t> weld(const TriangleMesh& mesh, std::vector<Vec3f>& welded) {
-    std::vector<std::uint32_t> order(mesh.vertices.size()), index(mesh.vertices.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::uint32_t i) {
-        const Vec3f& v = mesh.vertices[i];
-        return std::array<float, 3>{v.x(), v.y(), v.z()};
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(key(a), a) < std::pair(key(b), b);
-    });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i == 0 || key(order[i]) != key(order[i - 1])) welded.push_back(mesh.vertices[order[i]]);
-        index[order[i]] = static_cast<std::uint32_t>(welded.size() - 1);
-    }
-    return index;
+std::vector<std::uint32_t> weld_vertices(const TriangleMesh& mesh, std::vector<Vec3f>& welded) {
+    std::vector<std::array<float, 3>> keys;
+    keys.reserve(mesh.vertices.size());
+    for (const Vec3f& v : mesh.vertices) keys.push_back({v.x(), v.y(), v.z()});
+    const std::vector<std::uint32_t> place = weld(keys);
+    std::uint32_t places = 0;
+    for (const std::uint32_t p : place) places = std::max(places, p + 1);
+    welded.resize(places);
+    for (std::size_t i = place.size(); i-- > 0;) welded[place[i]] = mesh.vertices[i];  // the first
+    return place;
 }
 
 using EdgeKey = std::pair<std::uint32_t, std::uint32_t>;
@@ -184,7 +181,7 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
 
 Shape shape_from_mesh(const TriangleMesh& mesh) {
     std::vector<Vec3f> points;
-    const std::vector<std::uint32_t> welded = weld(mesh, points);
+    const std::vector<std::uint32_t> welded = weld_vertices(mesh, points);
     std::vector<Triangle> sound;
     for (const Triangle& t : mesh.triangles) {
         if (t[0] >= welded.size() || t[1] >= welded.size() || t[2] >= welded.size())

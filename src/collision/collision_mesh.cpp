@@ -11,11 +11,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "beltgrinding/error.h"
+#include "mesh/topology.h"
 
 namespace beltgrinding {
 namespace {
@@ -66,14 +66,7 @@ bool is_closed(const TriangleMesh& mesh, double size) {
                 std::llround(mesh.vertices[k][i] / (kSame * size));
         }
     }
-    std::vector<std::uint32_t> order(mesh.vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; });
-    std::vector<std::uint32_t> place(order.size());
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        place[order[k]] = place[order[k - 1]] + (key[order[k - 1]] == key[order[k]] ? 0u : 1u);
-    }
+    const std::vector<std::uint32_t> place = weld(key);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     edges.reserve(3 * mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) {

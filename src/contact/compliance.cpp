@@ -1,4 +1,4 @@
-#include "beltgrinding/compliance.h"
+#include "contact/compliance.h"
 
 #include <cmath>
 #include <sstream>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "beltgrinding/compliance.h"
+#include "contact/compliance.h"
 
 namespace beltgrinding {
 namespace {

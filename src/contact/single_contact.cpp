@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/stopwatch.h"
-#include "beltgrinding/compliance.h"
 #include "beltgrinding/error.h"
+#include "contact/compliance.h"
 
 namespace beltgrinding {
 namespace {
@@ -153,6 +153,16 @@ class Press {
 };
 
 }  // namespace
+
+Workpiece::Shape Workpiece::shape_named(const std::string& name) {
+    if (name == "plane") return Shape::kPlane;
+    if (name == "cylinder") return Shape::kCylinder;
+    if (name == "sphere") return Shape::kSphere;
+    if (name == "strip") return Shape::kStrip;
+    throw InputError("call.workpiece",
+                     "workpiece: there is no shape '{name}'; use plane, cylinder, sphere or strip",
+                     {{"name", name}});
+}
 
 double Workpiece::depth(double x, double y) const {
     const double across = -x * std::sin(axis_angle) + y * std::cos(axis_angle);

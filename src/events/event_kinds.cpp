@@ -1,4 +1,4 @@
-#include "beltgrinding/event_kinds.h"
+#include "beltgrinding/event.h"
 
 #include <array>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "beltgrinding/event_log.h"
+#include "events/event_log.h"
 
 #include <algorithm>
 #include <cmath>

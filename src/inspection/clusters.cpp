@@ -6,28 +6,11 @@
 #include <numeric>
 #include <span>
 
+#include "inspection/zones.h"
+#include "mesh/topology.h"
+
 namespace beltgrinding {
 namespace {
-
-/// Disjoint sets of samples; the smallest number of a set stands for it, so that the outcome does
-/// not depend on the order of the unions.
-class Sets {
-  public:
-    explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t i, std::uint32_t j) {
-        i = find(i);
-        j = find(j);
-        if (i > j) std::swap(i, j);
-        parent_[j] = i;
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// (first sample, number) of a cluster per out-of-tolerance sample, through `members`: samples
 /// sorted by cluster.
@@ -38,9 +21,9 @@ struct Members {
 
 Members connected(const HeightField& field, const std::vector<double>& beyond) {
     const auto side = [&](std::uint32_t i) { return (beyond[i] > 0.0) - (beyond[i] < 0.0); };
-    Sets sets(field.size());
+    DisjointSets sets(field.size());
     const auto join = [&](std::uint32_t i, std::uint32_t j) {
-        if (side(i) != 0 && side(i) == side(j)) sets.unite(i, j);
+        if (side(i) != 0 && side(i) == side(j)) sets.join(i, j);
     };
     for (const Triangle& t : field.triangles) {
         join(t[0], t[1]);

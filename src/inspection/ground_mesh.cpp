@@ -10,10 +10,12 @@
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "height_lookup.h"
+#include "mesh/topology.h"
 
 namespace beltgrinding {
 namespace {
 
+constexpr std::uint32_t kDesignColour = 0xB9BDC4FF;
 constexpr double kMitreLimit = 3.0;  // of the greatest height: how far a thin edge may move
 constexpr double kTangent = 0.06;    // eigenvalue; two normals less than 20 degrees apart are below
 constexpr double kNoDirection = 1e-6;
@@ -151,15 +153,7 @@ void slide_beside_edges(const SurfaceMesh& mesh, const RunContext& context, Grou
             (i + 1 == mesh.meetings.size() || mesh.meetings[i + 1].vertex != m.vertex);
         if (alone) normal[m.vertex] = m.normal;
     }
-    std::vector<std::uint32_t> first(n + std::size_t{1}, 0), around;  // triangles at each vertex
-    for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t) ++first[v + 1];
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    around.resize(3 * mesh.triangles.size());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        for (const std::uint32_t v : mesh.triangles[t]) around[next[v]++] = t;
-
+    const VertexTriangles around(n, mesh.triangles);
     std::vector<char> slides(n, 0);
     std::vector<std::uint32_t> sliding;
     const auto let_slide = [&](std::uint32_t v) {
@@ -172,16 +166,16 @@ void slide_beside_edges(const SurfaceMesh& mesh, const RunContext& context, Grou
         context.throw_if_cancelled();
         for (const std::uint32_t t : turned)
             for (const std::uint32_t v : mesh.triangles[t])
-                for (std::uint32_t k = first[v]; k < first[v + 1]; ++k)
-                    for (const std::uint32_t w : mesh.triangles[around[k]]) let_slide(w);
+                for (const std::uint32_t near : around.of(v))
+                    for (const std::uint32_t w : mesh.triangles[near]) let_slide(w);
         for (int sweep = 0; sweep < kSlideSweeps; ++sweep) {
             moved.clear();
             for (const std::uint32_t v : sliding) {
                 Vec3 mean = Vec3::Zero();
-                for (std::uint32_t k = first[v]; k < first[v + 1]; ++k)
-                    for (const std::uint32_t w : mesh.triangles[around[k]])
+                for (const std::uint32_t t : around.of(v))
+                    for (const std::uint32_t w : mesh.triangles[t])
                         if (w != v) mean += out.vertices[w] - mesh.vertices[w];
-                mean /= 2.0 * (first[v + 1] - first[v]);
+                mean /= 2.0 * static_cast<double>(around.of(v).size());
                 const Vec3 up = normal[v].cast<double>();
                 const double height = (out.vertices[v] - mesh.vertices[v]).dot(up);
                 moved.push_back(mesh.vertices[v] + mean + (height - mean.dot(up)) * up);
@@ -248,6 +242,15 @@ GroundMesh ground_mesh(const SurfaceMesh& mesh, const HeightField& field, bool g
          "{count} vertices lie where no stock was found and stay on the design");
     context.report(1.0);
     return out;
+}
+
+std::vector<std::uint32_t> mesh_colours(const GroundMesh& mesh, const ColourScale& scale) {
+    std::vector<std::uint32_t> colours(mesh.vertices.size(), kDesignColour);
+    for (std::size_t v = 0; v < colours.size(); ++v) {
+        if (mesh.standing[v] == MeshVertex::kMissed) colours[v] = scale.missed_colour();
+        if (mesh.standing[v] == MeshVertex::kGround) colours[v] = scale.colour(mesh.deviation[v]);
+    }
+    return colours;
 }
 
 }  // namespace beltgrinding

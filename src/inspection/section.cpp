@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "beltgrinding/error.h"
+#include "mesh/topology.h"
 
 namespace beltgrinding {
 namespace {
@@ -42,16 +43,13 @@ std::vector<Segment> segments(const HeightField& field, const std::vector<double
     };
     std::vector<Segment> result;
     for (const Triangle& t : field.triangles) {
-        const std::array<bool, 3> side{above(t[0]), above(t[1]), above(t[2])};
-        if (side[0] == side[1] && side[1] == side[2]) continue;
+        // Counter-clockwise triangles: above lies on the left of plane normal x normal.
+        const auto through = triangle_crossing({above(t[0]), above(t[1]), above(t[2])});
+        if (!through) continue;
         Segment s;
         s.face = field.face[t[0]];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t next = (k + 1) % 3;
-            // Counter-clockwise triangles: above lies on the left of plane normal x normal.
-            if (side[k] && !side[next]) s.from = crossing(t[k], t[next], distance);
-            if (!side[k] && side[next]) s.to = crossing(t[k], t[next], distance);
-        }
+        s.from = crossing(t[through->leaves[0]], t[through->leaves[1]], distance);
+        s.to = crossing(t[through->enters[0]], t[through->enters[1]], distance);
         result.push_back(s);
     }
     return result;

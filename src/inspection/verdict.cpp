@@ -5,6 +5,7 @@
 
 #include "beltgrinding/error.h"
 #include "clusters.h"
+#include "inspection/zones.h"
 
 namespace beltgrinding {
 namespace {

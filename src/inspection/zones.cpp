@@ -1,4 +1,4 @@
-#include "beltgrinding/zones.h"
+#include "inspection/zones.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -3,20 +3,15 @@
 
 #include "picture/picture.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
+#include "rays/ray_scene.h"
 
 namespace beltgrinding {
 namespace {
@@ -29,13 +24,6 @@ constexpr float kCreaseCosine = 0.82F;  // 35 degrees: beyond the facets of a sm
 constexpr float kDepthJump = 6.0F;      // rays' distances that a surface leaps at an outline
 constexpr float kOutline = 0.35F;       // what an outline leaves of the colour
 constexpr float kBackground = 255.0F;
-
-struct DeviceDeleter {
-    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
-};
-struct SceneDeleter {
-    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
-};
 
 void validate(const ColouredSurface& surface) {
     for (const Vec3& v : surface.vertices) {
@@ -101,8 +89,7 @@ struct Renderer::Scene {
     std::vector<ColouredSurface> surfaces;
     Vec3 origin = Vec3::Zero();  // of the rays' single precision
     Box extents;
-    std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
-    std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+    std::optional<RayScene> rays;
 
     void build();
     Spot spot(const View& view, float x, float y) const;
@@ -110,36 +97,14 @@ struct Renderer::Scene {
 };
 
 void Renderer::Scene::build() {
-    device.reset(rtcNewDevice("threads=0"));
-    if (!device)
-        throw InputError("rays.no_embree",
-                         "Embree could not be started; is the processor without SSE2?");
-    scene.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbours
-    for (const ColouredSurface& surface : surfaces) {
-        if (surface.triangles.empty()) continue;
-        RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertices = static_cast<Vec3f*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(Vec3f), surface.vertices.size()));
-        void* indices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    sizeof(Triangle), surface.triangles.size());
-        if (vertices == nullptr || indices == nullptr) {
-            rtcReleaseGeometry(geometry);
-            throw InputError("picture.out_of_memory",
-                             "picture: the triangles do not fit in memory");
-        }
-        for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
-            vertices[i] = (surface.vertices[i] - origin).cast<float>();
-        }
-        std::memcpy(indices, surface.triangles.data(), surface.triangles.size() * sizeof(Triangle));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene.get(), geometry,
-                              static_cast<unsigned>(&surface - surfaces.data()));
-        rtcReleaseGeometry(geometry);
+    std::vector<TriangleMesh> meshes(surfaces.size());
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        meshes[k].triangles = surfaces[k].triangles;
+        meshes[k].vertices.reserve(surfaces[k].vertices.size());
+        for (const Vec3& v : surfaces[k].vertices)
+            meshes[k].vertices.push_back((v - origin).cast<float>());
     }
-    rtcCommitScene(scene.get());
+    rays.emplace(meshes, RayScene::Build::kQuick);
 }
 
 View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size_t height) const {
@@ -177,34 +142,15 @@ View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size
 
 Spot Renderer::Scene::spot(const View& view, float x, float y) const {
     const Vec3f from = view.origin + x * view.step * view.right + y * view.step * view.down;
-    RTCRayHit ray{};
-    ray.ray.org_x = from.x();
-    ray.ray.org_y = from.y();
-    ray.ray.org_z = from.z();
-    ray.ray.dir_x = view.into.x();
-    ray.ray.dir_y = view.into.y();
-    ray.ray.dir_z = view.into.z();
-    ray.ray.tfar = std::numeric_limits<float>::infinity();
-    ray.ray.mask = ~0U;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcIntersect1(scene.get(), &ray, &arguments);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect1(scene.get(), &context, &ray);
-#endif
+    const RayScene::Hit hit =
+        rays->first(from, view.into, 0.0F, std::numeric_limits<float>::infinity());
     Spot spot;
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return spot;
-    const ColouredSurface& surface = surfaces[ray.hit.geomID];
-    const Triangle& t = surface.triangles[ray.hit.primID];
-    const float u = ray.hit.u, v = ray.hit.v, w = 1.0F - u - v;
-    spot.depth = ray.ray.tfar - view.start;
-    spot.normal = Vec3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
+    if (hit.distance < 0.0F) return spot;
+    const ColouredSurface& surface = surfaces[hit.mesh];
+    const Triangle& t = surface.triangles[hit.triangle];
+    const float u = hit.u, v = hit.v, w = 1.0F - u - v;
+    spot.depth = hit.distance - view.start;
+    spot.normal = hit.normal.normalized();
     if (spot.normal.dot(view.into) > 0.0F) spot.normal = -spot.normal;
     Vec3f lit = spot.normal;
     if (!surface.normals.empty()) {

@@ -2,10 +2,9 @@
 #include <filesystem>
 #include <numbers>
 
-#include "contact/half_space.h"
+#include "beltgrinding/contact_factory.h"
+#include "contact/regression.h"
 #include "contact/single_contact.h"
-#include "contact/surrogate.h"
-#include "contact/wheel_rim.h"
 #include "dict.h"
 
 namespace beltgrinding::python {
@@ -35,44 +34,10 @@ namespace {
 
 constexpr double kUsualForce = 50.0;  // N, for a foundation as stiff as the rim if none is given
 
-WheelRimDesign rim_from(py::dict& d, const ContactWheel& wheel, const Elasticity& elasticity,
-                        double thickness) {
-    WheelRimDesign design;
-    design.outer_radius = wheel.radius;
-    design.width = wheel.width;
-    const auto layers = take(d, "layers", py::list());
-    if (layers.empty()) {
-        design.layers = {{thickness, elasticity}};
-        return design;
-    }
-    for (const auto& item : layers) {
-        py::dict l = copy_of(item.cast<py::dict>());
-        RimLayer layer;
-        layer.thickness = take(l, "thickness", layer.thickness);
-        layer.elasticity.youngs_modulus = take(l, "youngs_modulus", elasticity.youngs_modulus);
-        layer.elasticity.poissons_ratio = take(l, "poissons_ratio", elasticity.poissons_ratio);
-        refuse_rest(l, "layers");
-        design.layers.push_back(layer);
-    }
-    return design;
-}
-
 Workpiece workpiece_from(const py::dict& given) {
     py::dict d = copy_of(given);
     Workpiece workpiece;
-    const auto shape = take<std::string>(d, "shape", "plane");
-    if (shape == "cylinder") {
-        workpiece.shape = Workpiece::Shape::kCylinder;
-    } else if (shape == "sphere") {
-        workpiece.shape = Workpiece::Shape::kSphere;
-    } else if (shape == "strip") {
-        workpiece.shape = Workpiece::Shape::kStrip;
-    } else if (shape != "plane") {
-        throw InputError(
-            "call.workpiece",
-            "workpiece: there is no shape '{name}'; use plane, cylinder, sphere or strip",
-            {{"name", shape}});
-    }
+    workpiece.shape = Workpiece::shape_named(take<std::string>(d, "shape", "plane"));
     workpiece.radius = take(d, "radius", workpiece.radius);
     workpiece.width = take(d, "width", workpiece.width);
     workpiece.axis_angle = take(d, "axis_angle_deg", 0.0) * std::numbers::pi / 180.0;
@@ -80,16 +45,16 @@ Workpiece workpiece_from(const py::dict& given) {
     return workpiece;
 }
 
-/// Where rims are kept: $XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding; null if the user
-/// has no such place.
-std::shared_ptr<RimCache> user_cache() {
-    const auto in = [](const char* variable, const char* folder) -> std::shared_ptr<RimCache> {
+/// Where solved rims are kept: $XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding; empty if the
+/// user has no such place.
+std::filesystem::path user_cache() {
+    const auto in = [](const char* variable, const char* folder) -> std::filesystem::path {
         const char* place = std::getenv(variable);
-        if (place == nullptr || *place == '\0') return nullptr;
-        return std::make_shared<FolderRimCache>(std::filesystem::path(place) / folder);
+        if (place == nullptr || *place == '\0') return {};
+        return std::filesystem::path(place) / folder;
     };
-    if (auto cache = in("XDG_CACHE_HOME", "beltgrinding")) return cache;
-    return in("HOME", ".cache/beltgrinding");
+    const std::filesystem::path cache = in("XDG_CACHE_HOME", "beltgrinding");
+    return cache.empty() ? in("HOME", ".cache/beltgrinding") : cache;
 }
 
 }  // namespace
@@ -97,37 +62,31 @@ std::shared_ptr<RimCache> user_cache() {
 std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
                                               double force) {
     py::dict d = copy_of(given);
-    const auto model = take<std::string>(d, "model", "wheel_rim");
-    Elasticity elasticity;
-    elasticity.youngs_modulus = take(d, "youngs_modulus", elasticity.youngs_modulus);
-    elasticity.poissons_ratio = take(d, "poissons_ratio", elasticity.poissons_ratio);
-    const double thickness = take(d, "rim_thickness", 15.0);
-    const double stiffness = take(d, "stiffness", 0.0);
-    BeltPlate belt;
-    belt.tension = take(d, "belt_tension", 0.0);
-    belt.bending = take(d, "belt_bending", 0.0);
+    ContactModelParameters p;
+    p.model = take(d, "model", p.model);
+    p.youngs_modulus = take(d, "youngs_modulus", p.youngs_modulus);
+    p.poissons_ratio = take(d, "poissons_ratio", p.poissons_ratio);
+    p.rim_thickness = take(d, "rim_thickness", p.rim_thickness);
+    p.stiffness = take(d, "stiffness", p.stiffness);
+    p.belt_tension = take(d, "belt_tension", p.belt_tension);
+    p.belt_bending = take(d, "belt_bending", p.belt_bending);
     const auto learnt = take(d, "regression", py::dict());
-    const auto name = take<std::string>(d, "name", "surrogate");
-    ContactFeatures features{take(d, "cell", 1.0), thickness};
-    const WheelRimDesign design = rim_from(d, wheel, elasticity, thickness);
+    p.name = take(d, "name", p.name);
+    p.cell = take(d, "cell", p.cell);
+    for (const auto& item : take(d, "layers", py::list())) {
+        py::dict l = copy_of(item.cast<py::dict>());
+        ContactModelParameters::Layer layer;
+        layer.thickness = take(l, "thickness", layer.thickness);
+        layer.youngs_modulus = take(l, "youngs_modulus", p.youngs_modulus);
+        layer.poissons_ratio = take(l, "poissons_ratio", p.poissons_ratio);
+        refuse_rest(l, "layers");
+        p.layers.push_back(layer);
+    }
     refuse_rest(d, "compliance");
-    if (model == "wheel_rim") return std::make_unique<WheelRim>(design, belt, user_cache());
-    if (model == "bonded_layer") return std::make_unique<BondedLayer>(elasticity, thickness);
-    if (model == "half_space") return std::make_unique<HalfSpace>(elasticity);
-    if (model == "surrogate") {
-        return std::make_unique<Surrogate>(features, regression_from(learnt), name);
-    }
-    if (model == "geometric") return std::make_unique<Geometric>();
-    if (model == "elastic_foundation") {
-        if (stiffness > 0.0) return std::make_unique<ElasticFoundation>(stiffness);
-        const WheelRim rim(design, belt, user_cache());
-        return std::make_unique<ElasticFoundation>(
-            foundation_stiffness(wheel, rim, force, design.softest()));
-    }
-    throw InputError("call.compliance",
-                     "compliance: there is no model '{name}'; use wheel_rim, bonded_layer, "
-                     "half_space, elastic_foundation, surrogate or geometric",
-                     {{"name", model}});
+    if (p.model == "surrogate")
+        p.regression = std::make_shared<const TrainedRegression>(regression_from(learnt));
+    p.cache_folder = user_cache();
+    return make_contact_model(p, wheel, force);
 }
 
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {

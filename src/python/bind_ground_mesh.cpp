@@ -6,6 +6,7 @@
 #include "facts.h"
 #include "inspection/ground_mesh.h"
 #include "meshio/mesh_3mf.h"
+#include "meshio/mesh_writer.h"
 
 namespace beltgrinding::python {
 namespace {

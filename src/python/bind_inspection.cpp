@@ -5,6 +5,7 @@
 #include "arrays.h"
 #include "beltgrinding/deviation.h"
 #include "inspection/colour_map.h"
+#include "meshio/mesh_writer.h"
 
 namespace beltgrinding::python {
 namespace {

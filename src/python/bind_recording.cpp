@@ -1,5 +1,5 @@
 #include "arrays.h"
-#include "beltgrinding/recording.h"
+#include "simulation/recording.h"
 
 namespace beltgrinding::python {
 

@@ -5,6 +5,7 @@
 #include "beltgrinding/simulation.h"
 #include "beltgrinding/tool_path.h"
 #include "dict.h"
+#include "simulation/recording.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -18,53 +19,30 @@ std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
     const auto model = take<std::string>(d, "model", "local");
     LocalLawParameters p;
     p.coefficient = take(d, "coefficient", p.coefficient);
-    if (model == "hammann") {
-        refuse_rest(d, "law");
-        return std::make_unique<HammannLaw>(p.coefficient);
+    if (model != "hammann") {
+        p.pressure_threshold = take(d, "pressure_threshold", p.pressure_threshold);
+        p.pressure_exponent = take(d, "pressure_exponent", p.pressure_exponent);
+        p.reference_pressure = take(d, "reference_pressure", p.reference_pressure);
+        p.saturation_pressure = take(d, "saturation_pressure", p.saturation_pressure);
+        p.speed_exponent = take(d, "speed_exponent", p.speed_exponent);
+        p.reference_speed = take(d, "reference_speed", p.reference_speed);
+        p.feed_exponent = take(d, "feed_exponent", p.feed_exponent);
+        p.reference_feed = take(d, "reference_feed", p.reference_feed);
+        p.land_share = take(d, "land_share", p.land_share);
+        p.pressure_curve = curve_from(d, "pressure_curve");
+        p.speed_curve = curve_from(d, "speed_curve");
+        p.feed_curve = curve_from(d, "feed_curve");
+        p.land_curve = curve_from(d, "land_curve");
     }
-    if (model != "local") {
-        throw InputError("call.law", "law: there is no model '{name}'; use local or hammann",
-                         {{"name", model}});
-    }
-    p.pressure_threshold = take(d, "pressure_threshold", p.pressure_threshold);
-    p.pressure_exponent = take(d, "pressure_exponent", p.pressure_exponent);
-    p.reference_pressure = take(d, "reference_pressure", p.reference_pressure);
-    p.saturation_pressure = take(d, "saturation_pressure", p.saturation_pressure);
-    p.speed_exponent = take(d, "speed_exponent", p.speed_exponent);
-    p.reference_speed = take(d, "reference_speed", p.reference_speed);
-    p.feed_exponent = take(d, "feed_exponent", p.feed_exponent);
-    p.reference_feed = take(d, "reference_feed", p.reference_feed);
-    p.land_share = take(d, "land_share", p.land_share);
-    p.pressure_curve = curve_from(d, "pressure_curve");
-    p.speed_curve = curve_from(d, "speed_curve");
-    p.feed_curve = curve_from(d, "feed_curve");
-    p.land_curve = curve_from(d, "land_curve");
     refuse_rest(d, "law");
-    return std::make_unique<LocalLaw>(p);
+    return make_removal_law(model, p);
 }
 
 BeltWear wear_from(const py::dict& given) {
     py::dict d = copy_of(given);
     BeltWear::Parameters p;
-    const auto model = take<std::string>(d, "model", "none");
-    if (model == "exponential") {
-        p.model = BeltWear::Model::kExponential;
-    } else if (model == "two_stage") {
-        p.model = BeltWear::Model::kTwoStage;
-    } else if (model == "curve") {
-        p.model = BeltWear::Model::kCurve;
-    } else if (model != "none") {
-        throw InputError(
-            "call.wear",
-            "wear: there is no model '{name}'; use none, exponential, two_stage or curve",
-            {{"name", model}});
-    }
-    const auto variable = take<std::string>(d, "variable", "work");
-    if (variable != "work" && variable != "volume") {
-        throw InputError("call.wear_variable", "wear: the variable is work or volume, not '{name}'",
-                         {{"name", variable}});
-    }
-    if (variable == "volume") p.variable = BeltWear::Variable::kVolume;
+    p.model = BeltWear::model_named(take<std::string>(d, "model", "none"));
+    p.variable = BeltWear::variable_named(take<std::string>(d, "variable", "work"));
     p.scale = take(d, "scale", p.scale);
     p.rest = take(d, "rest", p.rest);
     p.first_share = take(d, "first_share", p.first_share);
@@ -174,14 +152,7 @@ using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
 TimeLaw time_law_from(const py::dict& given) {
     py::dict d = copy_of(given);
     TimeLaw law;
-    const auto timing = take<std::string>(d, "timing", "constant_feed");
-    if (timing == "trapezoidal") {
-        law.timing = TimeLaw::Timing::kTrapezoidal;
-    } else if (timing != "constant_feed") {
-        throw InputError("call.timing",
-                         "time law: there is no timing '{name}'; use constant_feed or trapezoidal",
-                         {{"name", timing}});
-    }
+    law.timing = TimeLaw::timing_named(take<std::string>(d, "timing", "constant_feed"));
     law.acceleration = take(d, "acceleration", law.acceleration);
     law.angular_acceleration = take(d, "angular_acceleration", law.angular_acceleration);
     law.rotation_speed = take(d, "rotation_speed", law.rotation_speed);
@@ -206,13 +177,7 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
             "joints, zones");
     }
     CellFrames cell;
-    if (holding == "part_in_hand") {
-        cell.holding = Holding::kPartInHand;
-    } else if (holding != "tool_in_hand") {
-        throw InputError("call.holding",
-                         "holding must be tool_in_hand or part_in_hand, not '{name}'",
-                         {{"name", holding}});
-    }
+    cell.holding = holding_named(holding);
     cell.base_from_work = frame_from(base_from_work, "base_from_work");
     cell.tcp_from_contact = frame_from(tcp_from_contact, "tcp_from_contact");
     cell.tcp_from_work = frame_from(tcp_from_work, "tcp_from_work");

@@ -2,9 +2,9 @@
 
 #include "arrays.h"
 #include "beltgrinding/verdict.h"
-#include "beltgrinding/zones.h"
 #include "dict.h"
 #include "inspection/waviness.h"
+#include "inspection/zones.h"
 #include "thickness/thickness.h"
 
 namespace beltgrinding::python {

@@ -6,7 +6,7 @@
 #include "arrays.h"
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/contact_wheel.h"
-#include "beltgrinding/event_log.h"
+#include "beltgrinding/event.h"
 #include "contact/regression.h"
 
 namespace beltgrinding::python {

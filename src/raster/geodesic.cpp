@@ -5,6 +5,8 @@
 #include <queue>
 #include <utility>
 
+#include "mesh/topology.h"
+
 namespace beltgrinding {
 namespace {
 
@@ -34,15 +36,7 @@ double update(const Vec3& c, const Vec3& a, double ta, const Vec3& b, double tb)
 
 void march(const std::vector<Vec3>& point, const std::vector<Triangle>& triangles,
            std::vector<double>& distance, const RunContext& context) {
-    std::vector<std::uint32_t> start(point.size() + 1, 0), around(3 * triangles.size());
-    for (const Triangle& t : triangles)
-        for (const std::uint32_t v : t) ++start[v + 1];
-    for (std::size_t i = 0; i < point.size(); ++i) start[i + 1] += start[i];
-    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        for (const std::uint32_t v : triangles[i])
-            around[next[v]++] = static_cast<std::uint32_t>(i);
-
+    const VertexTriangles around(point.size(), triangles);
     using Entry = std::pair<double, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
     for (std::uint32_t i = 0; i < point.size(); ++i)
@@ -55,8 +49,8 @@ void march(const std::vector<Vec3>& point, const std::vector<Triangle>& triangle
         if (known[vertex] || value > distance[vertex]) continue;
         known[vertex] = 1;
         if (++done % kCancelEvery == 0) context.throw_if_cancelled();
-        for (std::uint32_t k = start[vertex]; k < start[vertex + 1]; ++k) {
-            const Triangle& t = triangles[around[k]];
+        for (const std::uint32_t near : around.of(vertex)) {
+            const Triangle& t = triangles[near];
             const auto at =
                 static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
             for (std::size_t step = 1; step < 3; ++step) {

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "mesh/topology.h"
+
 namespace beltgrinding {
 namespace {
 
@@ -24,10 +26,6 @@ struct Segment {
     std::size_t level = 0;
     Crossing from, to;
 };
-
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-    return (std::uint64_t(std::min(a, b)) << 32) | std::max(a, b);
-}
 
 Crossing crossing(const LevelMesh& mesh, std::size_t triangle, std::size_t i, std::size_t j,
                   double value) {
@@ -63,12 +61,11 @@ std::vector<Segment> segments(const LevelMesh& mesh, const std::vector<Level>& l
                 const double value = it->first + shift;
                 Segment s;
                 s.level = it->second;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::size_t next = (k + 1) % 3;
-                    const bool above = c[k] >= value, then = c[next] >= value;
-                    if (above && !then) s.from = crossing(mesh, i, k, next, value);
-                    if (!above && then) s.to = crossing(mesh, i, k, next, value);
-                }
+                const auto through =
+                    triangle_crossing({c[0] >= value, c[1] >= value, c[2] >= value});
+                if (!through) continue;
+                s.from = crossing(mesh, i, through->leaves[0], through->leaves[1], value);
+                s.to = crossing(mesh, i, through->enters[0], through->enters[1], value);
                 result.push_back(s);
             }
         }

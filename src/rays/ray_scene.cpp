@@ -27,33 +27,43 @@ struct RayScene::Impl {
     std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
 };
 
-RayScene::RayScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const TriangleMesh& mesh) : RayScene({&mesh, 1}, Build::kBest) {}
+
+RayScene::RayScene(std::span<const TriangleMesh> meshes, Build build)
+    : impl_(std::make_unique<Impl>()) {
     impl_->device.reset(rtcNewDevice("threads=0"));
     if (!impl_->device)
         throw InputError("rays.no_embree",
                          "Embree could not be started; is the processor without SSE2?");
     impl_->scene.reset(rtcNewScene(impl_->device.get()));
     RTCScene scene = impl_->scene.get();
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    RTCGeometry geometry = rtcNewGeometry(impl_->device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Vec3f), mesh.vertices.size());
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(Triangle), mesh.triangles.size());
-    if (vertices == nullptr || indices == nullptr) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbours
+    if (build == Build::kBest) rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    for (const TriangleMesh& mesh : meshes) {
+        if (mesh.triangles.empty()) continue;
+        RTCGeometry geometry = rtcNewGeometry(impl_->device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Vec3f), mesh.vertices.size());
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    sizeof(Triangle), mesh.triangles.size());
+        if (vertices == nullptr || indices == nullptr) {
+            rtcReleaseGeometry(geometry);
+            throw InputError("rays.out_of_memory", "the mesh does not fit in memory");
+        }
+        std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+        std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(&mesh - meshes.data()));
         rtcReleaseGeometry(geometry);
-        throw InputError("rays.out_of_memory", "the mesh does not fit in memory");
     }
-    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
-    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
 }
 
 RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float near,
                               float far) const {
@@ -84,7 +94,8 @@ RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float
     const float along = normal.dot(direction);
     const float length = normal.norm() * direction.norm();
     const float cosine = length > 0.0F ? std::abs(along) / length : 0.0F;
-    return {ray.ray.tfar, along > 0.0F, cosine, ray.hit.primID, ray.hit.u, ray.hit.v};
+    return {ray.ray.tfar,   along > 0.0F, cosine,    ray.hit.primID,
+            ray.hit.geomID, normal,       ray.hit.u, ray.hit.v};
 }
 
 }  // namespace beltgrinding

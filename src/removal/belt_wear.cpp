@@ -16,6 +16,23 @@ void BeltState::validate() const {
     }
 }
 
+BeltWear::Model BeltWear::model_named(const std::string& name) {
+    if (name == "none") return Model::kNone;
+    if (name == "exponential") return Model::kExponential;
+    if (name == "two_stage") return Model::kTwoStage;
+    if (name == "curve") return Model::kCurve;
+    throw InputError("call.wear",
+                     "wear: there is no model '{name}'; use none, exponential, two_stage or curve",
+                     {{"name", name}});
+}
+
+BeltWear::Variable BeltWear::variable_named(const std::string& name) {
+    if (name == "work") return Variable::kWork;
+    if (name == "volume") return Variable::kVolume;
+    throw InputError("call.wear_variable", "wear: the variable is work or volume, not '{name}'",
+                     {{"name", name}});
+}
+
 BeltWear::BeltWear(Parameters parameters) : parameters_(std::move(parameters)) {
     const Parameters& p = parameters_;
     const auto share = [](double value) { return value >= 0.0 && value <= 1.0; };

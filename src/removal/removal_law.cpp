@@ -153,6 +153,14 @@ std::string HammannLaw::describe() const {
     return text("Hammann's global law", coefficient_);
 }
 
+std::unique_ptr<RemovalLaw> make_removal_law(const std::string& name,
+                                             const LocalLawParameters& parameters) {
+    if (name == "local") return std::make_unique<LocalLaw>(parameters);
+    if (name == "hammann") return std::make_unique<HammannLaw>(parameters.coefficient);
+    throw InputError("call.law", "law: there is no model '{name}'; use local or hammann",
+                     {{"name", name}});
+}
+
 double hammann_depth(double coefficient, double wear, double belt_speed, double force, double feed,
                      double contact_width) {
     return coefficient * wear * belt_speed * force / (feed * contact_width);

@@ -7,6 +7,7 @@
 
 #include "beltgrinding/error.h"
 #include "configuration.h"
+#include "events/event_log.h"
 
 namespace beltgrinding {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "beltgrinding/event_log.h"
 #include "beltgrinding/simulation.h"
+#include "events/event_log.h"
 #include "pressing.h"
 
 namespace beltgrinding {

@@ -1,4 +1,4 @@
-#include "beltgrinding/recording.h"
+#include "simulation/recording.h"
 
 #include <algorithm>
 #include <string>

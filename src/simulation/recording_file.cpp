@@ -3,8 +3,8 @@
 #include <string>
 
 #include "beltgrinding/error.h"
-#include "beltgrinding/recording.h"
 #include "heightfield/hdf5_io.h"
+#include "simulation/recording.h"
 
 namespace beltgrinding {
 

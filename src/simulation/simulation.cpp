@@ -10,6 +10,7 @@
 #include "heightfield/kdop_tree.h"
 #include "pressing.h"
 #include "process_monitor.h"
+#include "simulation/recording.h"
 #include "trace_keeper.h"
 
 namespace beltgrinding {

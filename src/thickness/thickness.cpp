@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
-#include "beltgrinding/zones.h"
+#include "inspection/zones.h"
 #include "rays/ray_scene.h"
 
 namespace beltgrinding {

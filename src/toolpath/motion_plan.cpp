@@ -1,4 +1,4 @@
-#include "beltgrinding/motion_plan.h"
+#include "motion_plan.h"
 
 #include <algorithm>
 #include <cmath>

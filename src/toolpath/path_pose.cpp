@@ -1,4 +1,4 @@
-#include "beltgrinding/path_pose.h"
+#include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 

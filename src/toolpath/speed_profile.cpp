@@ -1,4 +1,4 @@
-#include "beltgrinding/speed_profile.h"
+#include "speed_profile.h"
 
 #include <algorithm>
 #include <cmath>

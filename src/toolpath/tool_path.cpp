@@ -5,6 +5,7 @@
 #include <string>
 
 #include "beltgrinding/error.h"
+#include "motion_plan.h"
 
 namespace beltgrinding {
 namespace {
@@ -62,6 +63,21 @@ double motion_duration(const PathPose& from, const PathPose& to) {
 
 }  // namespace
 
+TimeLaw::Timing TimeLaw::timing_named(const std::string& name) {
+    if (name == "constant_feed") return Timing::kConstantFeed;
+    if (name == "trapezoidal") return Timing::kTrapezoidal;
+    throw InputError("call.timing",
+                     "time law: there is no timing '{name}'; use constant_feed or trapezoidal",
+                     {{"name", name}});
+}
+
+Holding holding_named(const std::string& name) {
+    if (name == "tool_in_hand") return Holding::kToolInHand;
+    if (name == "part_in_hand") return Holding::kPartInHand;
+    throw InputError("call.holding", "holding must be tool_in_hand or part_in_hand, not '{name}'",
+                     {{"name", name}});
+}
+
 Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
     if (holding == Holding::kToolInHand) {
         return base_from_work.inverse() * base_from_tcp * tcp_from_contact;
@@ -84,7 +100,7 @@ ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw
                              "a frame of the cell is not finite; check the belt machine's set-up");
         }
     }
-    if (trapezoidal()) plan_ = MotionPlan(poses_, law_);
+    if (trapezoidal()) plan_ = std::make_shared<MotionPlan>(poses_, law_);
     ends_.reserve(poses_.size());
     for (std::size_t i = 0; i < poses_.size(); ++i) {
         ends_.push_back((i == 0 ? 0.0 : ends_.back()) + duration(i));
@@ -92,7 +108,7 @@ ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw
 }
 
 double ToolPath::duration() const {
-    if (trapezoidal()) return plan_.duration();
+    if (trapezoidal()) return plan_->duration();
     double time = 0.0;
     for (std::size_t i = 1; i < poses_.size(); ++i)
         time += motion_duration(poses_[i - 1], poses_[i]);
@@ -101,15 +117,15 @@ double ToolPath::duration() const {
 
 double ToolPath::duration(std::size_t i) const {
     if (i == 0) return 0.0;
-    return trapezoidal() ? plan_.duration(i) : motion_duration(poses_[i - 1], poses_[i]);
+    return trapezoidal() ? plan_->duration(i) : motion_duration(poses_[i - 1], poses_[i]);
 }
 
 double ToolPath::elapsed(std::size_t i, double t) const {
-    return trapezoidal() && i > 0 ? plan_.elapsed(i, t) : t * duration(i);
+    return trapezoidal() && i > 0 ? plan_->elapsed(i, t) : t * duration(i);
 }
 
 Frame ToolPath::base_from_tcp(std::size_t i, double t) const {
-    if (trapezoidal() && i > 0) return plan_.frame(poses_, i, t);
+    if (trapezoidal() && i > 0) return plan_->frame(poses_, i, t);
     if (i == 0 || t >= 1.0) return poses_[i].base_from_tcp;
     return interpolate(poses_[i - 1].base_from_tcp, poses_[i].base_from_tcp, t);
 }
@@ -143,7 +159,7 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
         const double duration = this->duration(i);
         if (!to.rapid && duration > 0.0) {
             const auto frame_at = [&](double t) {
-                return trapezoidal() ? plan_.frame(poses_, i, t)
+                return trapezoidal() ? plan_->frame(poses_, i, t)
                                      : interpolate(from.base_from_tcp, to.base_from_tcp, t);
             };
             const Frame start =

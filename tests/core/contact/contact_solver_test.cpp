@@ -1,5 +1,5 @@
 // The solver for compliance operators of any kind.
-#include "beltgrinding/compliance.h"
+#include "contact/compliance.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "beltgrinding/error.h"
 #include "support/synthetic_field.h"
@@ -159,20 +158,6 @@ TEST(ColourScale, ChosenColoursStandInTheMiddleOfTheirRamps) {
     EXPECT_EQ(scale.colour(-0.3), 0x2010C0FFU);
     EXPECT_EQ(scale.colour(0.5), 0x4D0D06FFU);  // two fifths as bright
     EXPECT_EQ(scale.colour(std::nan("")), scale.missed_colour());
-}
-
-TEST(DeviationPly, HasTheSizeThatItsHeaderSays) {
-    const HeightField field = testing::plate(4.0, 3.0, 1.0, 0.2);
-    const std::string ply = deviation_ply(field, {}, true);
-    const std::size_t body = ply.find("end_header\n") + 11;
-    EXPECT_EQ(ply.size() - body, 20 * field.size() + 13 * field.triangles.size());
-    EXPECT_NE(ply.find("property float deviation"), std::string::npos);
-    float z = 0;
-    std::memcpy(&z, ply.data() + body + 8, 4);
-    EXPECT_FLOAT_EQ(z, 0.2F);
-    const std::string plain = mesh_ply(field, false);
-    std::memcpy(&z, plain.data() + plain.find("end_header\n") + 11 + 8, 4);
-    EXPECT_FLOAT_EQ(z, 0.0F);
 }
 
 }  // namespace

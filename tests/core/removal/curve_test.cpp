@@ -97,5 +97,16 @@ TEST(BeltWear, RefusesNonsense) {
     EXPECT_THROW((BeltState{-1.0, 0, 0}.validate()), InputError);
 }
 
+TEST(BeltWear, ModelsAndVariablesHaveNames) {
+    EXPECT_EQ(BeltWear::model_named("none"), BeltWear::Model::kNone);
+    EXPECT_EQ(BeltWear::model_named("exponential"), BeltWear::Model::kExponential);
+    EXPECT_EQ(BeltWear::model_named("two_stage"), BeltWear::Model::kTwoStage);
+    EXPECT_EQ(BeltWear::model_named("curve"), BeltWear::Model::kCurve);
+    EXPECT_EQ(BeltWear::variable_named("work"), BeltWear::Variable::kWork);
+    EXPECT_EQ(BeltWear::variable_named("volume"), BeltWear::Variable::kVolume);
+    EXPECT_THROW(BeltWear::model_named(""), InputError);
+    EXPECT_THROW(BeltWear::variable_named("time"), InputError);
+}
+
 }  // namespace
 }  // namespace beltgrinding

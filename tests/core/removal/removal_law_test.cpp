@@ -117,5 +117,16 @@ TEST(RemovalLaw, RefusesNonsense) {
     EXPECT_THROW(HammannLaw(std::nan("")), InputError);
 }
 
+TEST(RemovalLaw, IsMadeByName) {
+    LocalLawParameters p;
+    p.coefficient = 2e-4;
+    p.pressure_exponent = 0.8;
+    EXPECT_EQ(make_removal_law("local", p)->describe(), LocalLaw(p).describe());
+    EXPECT_EQ(make_removal_law("hammann", p)->describe(), HammannLaw(2e-4).describe());
+    EXPECT_THROW(make_removal_law("Local", p), InputError);
+    p.coefficient = -1.0;
+    EXPECT_THROW(make_removal_law("hammann", p), InputError);
+}
+
 }  // namespace
 }  // namespace beltgrinding

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "base/threads.h"
-#include "beltgrinding/compliance.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
+#include "contact/compliance.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

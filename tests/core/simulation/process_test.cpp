@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "beltgrinding/compliance.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
+#include "contact/compliance.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

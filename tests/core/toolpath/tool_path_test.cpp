@@ -137,5 +137,14 @@ TEST(ToolPath, NamesTheWrongPose) {
     EXPECT_NE(error_of({pose_at(0, 0, 0, 0.0)}).find("feed"), std::string::npos);
 }
 
+TEST(ToolPath, TimingsAndHoldingsHaveNames) {
+    EXPECT_EQ(TimeLaw::timing_named("constant_feed"), TimeLaw::Timing::kConstantFeed);
+    EXPECT_EQ(TimeLaw::timing_named("trapezoidal"), TimeLaw::Timing::kTrapezoidal);
+    EXPECT_EQ(holding_named("tool_in_hand"), Holding::kToolInHand);
+    EXPECT_EQ(holding_named("part_in_hand"), Holding::kPartInHand);
+    EXPECT_THROW(TimeLaw::timing_named("fast"), InputError);
+    EXPECT_THROW(holding_named("none"), InputError);
+}
+
 }  // namespace
 }  // namespace beltgrinding

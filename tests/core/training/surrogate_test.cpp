@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "beltgrinding/compliance.h"
 #include "beltgrinding/error.h"
+#include "contact/compliance.h"
 #include "training/train_regression.h"
 
 namespace beltgrinding {

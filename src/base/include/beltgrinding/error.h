@@ -21,11 +21,16 @@ class InputError : public std::runtime_error {
     /// As in `Fact`. The names `key`, `file`, `line`, `face` and `pose` stand for the culprit and
     /// for nothing else; face and pose are counted from 1, as the user does.
     InputError(std::string code, std::string text, Arguments arguments = {});
+    /// From a fact, and what the sentence begins with.
     explicit InputError(Fact fact, std::vector<Fact> context = {});
 
+    /// As in `Fact`; empty: without a code.
     const std::string& code() const { return told_->fact.code; }
+    /// The English form, as in `Fact`.
     const std::string& text() const { return told_->fact.text; }
+    /// As in `Fact`.
     const Arguments& arguments() const { return told_->fact.arguments; }
+    /// What is told, without the context.
     const Fact& fact() const { return told_->fact; }
     /// What the sentence begins with, such as "{file}: "; the outermost first.
     const std::vector<Fact>& context() const { return told_->context; }

@@ -12,23 +12,29 @@ namespace beltgrinding {
 
 /// A named value of a fact. Lengths are in mm unless the form names another unit.
 struct Argument {
+    /// A whole number, a real one, or words.
     using Value = std::variant<std::int64_t, double, std::string>;
 
+    /// A whole number.
     template <std::integral Whole>
     requires(!std::same_as<Whole, bool> && !std::same_as<Whole, char>)
         Argument(std::string name_, Whole number)
         : name(std::move(name_)), value(static_cast<std::int64_t>(number)) {}
     Argument(std::string, bool) = delete;
     Argument(std::string, char) = delete;
+    /// A real number.
     Argument(std::string name_, double number) : name(std::move(name_)), value(number) {}
+    /// Words.
     Argument(std::string name_, std::string words)
         : name(std::move(name_)), value(std::move(words)) {}
+    /// Words.
     Argument(std::string name_, const char* words)
         : name(std::move(name_)), value(std::string(words)) {}
 
-    std::string name;
-    Value value;
+    std::string name;  ///< as the form has it
+    Value value;       ///< what stands for it
 
+    /// The same name and value.
     bool operator==(const Argument&) const = default;
 };
 
@@ -42,11 +48,12 @@ struct Fact {
     /// format specifications that mean the same to libfmt and to Python's str.format. A real number
     /// always has one, as "{spacing:.4g}"; the argument keeps all its digits.
     std::string text;
-    Arguments arguments;
+    Arguments arguments;  ///< one for each field of the form
 
     /// The English sentence.
     std::string sentence() const;
 
+    /// The same code, form and arguments.
     bool operator==(const Fact&) const = default;
 };
 

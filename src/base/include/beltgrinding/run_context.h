@@ -17,7 +17,9 @@ class RunContext {
 
     /// Asks the call to end; safe from any thread.
     void cancel() const { state_->cancelled.store(true, std::memory_order_relaxed); }
+    /// Somebody asked for the end.
     bool cancelled() const { return state_->cancelled.load(std::memory_order_relaxed); }
+    /// Throws Cancelled if somebody did.
     void throw_if_cancelled() const {
         if (cancelled()) throw Cancelled();
     }

@@ -34,6 +34,7 @@ class Shape {
     static Shape from_brep(const std::string& text, const std::string& name = "shape");
     /// The text that `from_brep` reads, without triangulation.
     std::string write_brep() const;
+    /// Number of faces.
     std::size_t face_count() const;
     /// True if the face bounds a solid (its normal then points out of it); else it is loose.
     bool bounds_solid(std::size_t face) const;
@@ -49,6 +50,7 @@ class Shape {
     /// (a unit mistake), zero-area faces. Each is one sentence that names the face.
     std::vector<Fact> warnings() const;
 
+    /// For this room: OpenCASCADE's data.
     const Impl& impl() const { return *impl_; }
     /// For this room: a shape around OpenCASCADE's data.
     explicit Shape(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
@@ -62,6 +64,7 @@ class Shape {
 /// holds this code, else the one where the library was installed. Thread-safe.
 void set_cad_reader(const std::string& program);
 
+/// How faces are sampled.
 struct SamplingOptions {
     double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions
     bool flip_normals = false;  ///< for loose faces: reverse their normals

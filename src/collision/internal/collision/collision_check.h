@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "beltgrinding/event_log.h"
+#include "beltgrinding/event.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
 

@@ -10,15 +10,20 @@ namespace beltgrinding {
 /// at the contact) by ny along the axis. Cell (i, j) has index j * nx + i and its centre at
 /// s = (i - (nx - 1) / 2) ds, y = (j - (ny - 1) / 2) dy.
 struct ContactGrid {
-    int nx = 0;
-    int ny = 0;
+    int nx = 0;       ///< cells along the circumference
+    int ny = 0;       ///< cells along the axis
     double ds = 1.0;  ///< mm
     double dy = 1.0;  ///< mm
 
+    /// Number of cells.
     int cells() const { return nx * ny; }
+    /// mm2
     double cell_area() const { return ds * dy; }
+    /// Arc length of column i, mm.
     double s(int i) const { return (i - 0.5 * (nx - 1)) * ds; }
+    /// Place of row j along the axis, mm.
     double y(int j) const { return (j - 0.5 * (ny - 1)) * dy; }
+    /// The same cells.
     bool operator==(const ContactGrid&) const = default;
 
     /// Throws InputError unless there are cells, of positive and finite sides.
@@ -29,28 +34,29 @@ struct ContactGrid {
 /// prepared for: find p >= 0 with g + u(p) - delta >= 0 and p (g + u - delta) = 0, u the
 /// displacement of the wheel's surface under p.
 struct ContactProblem {
-    Eigen::ArrayXd gap;       ///< mm, undeformed wheel to surface, per cell; +inf: nothing there
-    Eigen::ArrayXd coverage;  ///< share of the cell that the workpiece covers, [0, 1]
-    bool force_control = true;
-    double force = 0.0;     ///< N, commanded (force control)
-    double approach = 0.0;  ///< mm, commanded (position control)
+    Eigen::ArrayXd gap;         ///< mm, undeformed wheel to surface, per cell; +inf: nothing there
+    Eigen::ArrayXd coverage;    ///< share of the cell that the workpiece covers, [0, 1]
+    bool force_control = true;  ///< else position control
+    double force = 0.0;         ///< N, commanded (force control)
+    double approach = 0.0;      ///< mm, commanded (position control)
     /// mm/N by which the robot gives way under the contact's force (position control); 0: rigid
     double robot_compliance = 0.0;
-    double tolerance = 1e-4;  ///< relative error of the pressure field, L1
-    int max_iterations = 500;
+    double tolerance = 1e-4;   ///< relative error of the pressure field, L1
+    int max_iterations = 500;  ///< then it has not converged
 
     /// Throws InputError on arrays of another size than the grid's, NaN, or a negative force.
     void validate(const ContactGrid& grid) const;
 };
 
+/// What a contact is solved to.
 struct ContactSolution {
     Eigen::ArrayXd pressure;     ///< MPa per cell
     double force = 0.0;          ///< N, sum of pressure x coverage x cell area
     double approach = 0.0;       ///< mm, delta; what the robot gave way is not in it
     double area = 0.0;           ///< mm2 of cells with pressure, coverage counted
     double peak_pressure = 0.0;  ///< MPa
-    int iterations = 0;
-    bool converged = false;
+    int iterations = 0;          ///< done
+    bool converged = false;      ///< to the tolerance asked for
 };
 
 /// A contact model on one grid, with the work space to solve there: one thread at a time. It needs
@@ -61,6 +67,7 @@ class PreparedContact {
     PreparedContact(const PreparedContact&) = delete;
     PreparedContact& operator=(const PreparedContact&) = delete;
 
+    /// The grid that it was prepared for.
     const ContactGrid& grid() const { return grid_; }
     /// Name and parameters of the model as it is used here, for the report.
     const std::string& describe() const { return description_; }

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "beltgrinding/compliance.h"
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/height_field.h"
+#include "contact/compliance.h"
 
 namespace beltgrinding {
 

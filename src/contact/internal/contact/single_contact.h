@@ -11,6 +11,9 @@ namespace beltgrinding {
 /// feed, y along the wheel's axis, z into the workpiece).
 struct Workpiece {
     enum class Shape { kPlane, kCylinder, kSphere, kStrip };
+    /// By its name: plane, cylinder, sphere or strip. Throws InputError for another.
+    static Shape shape_named(const std::string& name);
+
     Shape shape = Shape::kPlane;
     double radius = 50.0;     ///< mm, of cylinder or sphere; negative: concave
     double width = 10.0;      ///< mm, of the strip

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "beltgrinding/compliance.h"
+#include "contact/compliance.h"
 #include "contact/rim_cache.h"
 #include "contact/rim_section.h"
 #include "contact/spectrum_cache.h"

@@ -29,9 +29,11 @@ struct RemovalTrace {
     std::vector<float> dominant_depth;    ///< mm along the normal that the dominant one removed
     std::vector<float> peak_pressure;     ///< MPa, largest that the sample saw; 0: none
 
+    /// Nothing is known.
     bool empty() const { return first.empty(); }
     /// Makes room for n samples that nothing has touched yet.
     void reset(std::size_t n);
+    /// Forgets all.
     void clear() { *this = {}; }
     /// Whether the wheel ever touched sample i, even without removing anything.
     bool touched(std::size_t i) const { return peak_pressure[i] > 0.0F || first[i] != kNever; }
@@ -63,6 +65,7 @@ struct HeightField {
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm
 
+    /// Number of samples.
     std::size_t size() const { return point.size(); }
     /// Current top of segment i, mm, work frame.
     Vec3 top(std::size_t i) const { return point[i] + height[i] * normal[i].cast<double>(); }

@@ -12,14 +12,20 @@ namespace beltgrinding {
 
 /// Tolerance band around the design surface, mm: lower <= deviation <= upper is good.
 struct Tolerance {
-    double lower = -0.05;
-    double upper = 0.05;
+    double lower = -0.05;  ///< mm
+    double upper = 0.05;   ///< mm
 };
 
 /// Area-weighted statistics of the deviation (current height), mm. Missed samples are left out and
 /// counted.
 struct DeviationStatistics {
-    double min = 0, max = 0, mean = 0, rms = 0, p05 = 0, p50 = 0, p95 = 0;
+    double min = 0;                 ///< smallest
+    double max = 0;                 ///< largest
+    double mean = 0;                ///< by area
+    double rms = 0;                 ///< root of the mean square
+    double p05 = 0;                 ///< 5 % of the area lie below
+    double p50 = 0;                 ///< half of the area lies below
+    double p95 = 0;                 ///< 95 % of the area lie below
     double in_tolerance_share = 0;  ///< share of the inspected area
     double above_share = 0;         ///< share with too much left
     double below_share = 0;         ///< share cut too deep
@@ -29,9 +35,12 @@ struct DeviationStatistics {
     double sd_mean = 0;             ///< of the deviation's standard deviation, where it is known
     double sd_p95 = 0;              ///< 95 % of the area lie below
     double expected_in_tolerance_share = 0;  ///< mean probability of lying in the band
-    std::size_t samples = 0, missed = 0, defective = 0;
+    std::size_t samples = 0;                 ///< all
+    std::size_t missed = 0;                  ///< whose rays met no stock
+    std::size_t defective = 0;               ///< whose stock lay below the design
 };
 
+/// Of all samples. Throws InputError for a band that is none.
 DeviationStatistics deviation_statistics(const HeightField& field, const Tolerance& tolerance);
 
 /// Colours that say the verdict and are told apart by colour-blind people: one calm colour inside
@@ -41,16 +50,19 @@ struct ColourScale {
     /// Colours of one's own, 0xRRGGBBAA: a ramp runs from a light tint of its colour to a dark
     /// shade.
     struct Choice {
-        std::uint32_t good, above, below;
+        std::uint32_t good;   ///< in tolerance
+        std::uint32_t above;  ///< too much is left
+        std::uint32_t below;  ///< cut too deep
     };
 
-    Tolerance tolerance;
+    Tolerance tolerance;                ///< mm, what is good
     double limit = 0.5;                 ///< mm, deviation at which the ramps end
     int bands = 0;                      ///< equal steps of each ramp; 0: without steps
     std::optional<Choice> choice = {};  ///< none: the colours described above
 
     /// 0xRRGGBBAA (alpha 255: opaque).
     std::uint32_t colour(double deviation) const;
+    /// Of samples whose rays met no stock.
     std::uint32_t missed_colour() const;
 };
 
@@ -62,13 +74,5 @@ std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double 
 
 /// One packed colour 0xRRGGBBAA per sample.
 std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale);
-
-/// Binary PLY of the samples' tops (`ground` true) or of the design points, with triangles, vertex
-/// colours (red green blue alpha) and the float property `deviation` (mm; NaN where missed).
-std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground);
-
-/// Binary PLY with nothing but vertices and triangles, as FreeCAD's Mesh reads it fastest; vertex i
-/// is sample i.
-std::string mesh_ply(const HeightField& field, bool ground);
 
 }  // namespace beltgrinding

@@ -7,6 +7,7 @@
 #include "beltgrinding/deviation.h"
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/run_context.h"
+#include "mesh/mesh_check.h"
 #include "mesh/surface_mesh.h"
 
 namespace beltgrinding {
@@ -18,23 +19,6 @@ enum class MeshVertex : std::uint8_t {
     kMissed,  ///< on a ground face whose samples there all missed the stock: left on the design
     kBorder,  ///< between a ground face and one that is not
 };
-
-/// Soundness and size of a triangle mesh.
-struct MeshCheck {
-    std::size_t border_edges = 0;        ///< with one triangle; 0: closed
-    std::size_t non_manifold_edges = 0;  ///< with three triangles or more
-    std::size_t turned_edges = 0;        ///< with two triangles that run round oppositely
-    std::size_t components = 0;          ///< pieces connected by edges
-    long long euler = 0;                 ///< vertices - edges + triangles; 2 for a ball
-    double volume = 0;                   ///< mm3, by the divergence theorem; of a closed mesh
-    double area = 0;                     ///< mm2
-    bool closed() const {
-        return border_edges == 0 && non_manifold_edges == 0 && turned_edges == 0;
-    }
-};
-
-/// Throws InputError when a triangle names a vertex that does not exist.
-MeshCheck check_mesh(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
 /// The whole part as ground: the faces of a height field displaced by it, the others as designed.
 /// Frame: work; mm.
@@ -67,12 +51,6 @@ struct GroundMesh {
 /// design. Without `ground` nothing is displaced. Self-intersections are not looked for.
 GroundMesh ground_mesh(const SurfaceMesh& mesh, const HeightField& field, bool ground = true,
                        const RunContext& context = {});
-
-/// Binary STL.
-std::string mesh_stl(const GroundMesh& mesh);
-/// Binary PLY; with a scale also the vertices' colours (red green blue alpha) and the float
-/// property `deviation` (mm; NaN where not ground).
-std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale);
 
 /// 0xRRGGBBAA of each vertex.
 std::vector<std::uint32_t> mesh_colours(const GroundMesh& mesh, const ColourScale& scale);

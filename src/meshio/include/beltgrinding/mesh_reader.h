@@ -9,7 +9,7 @@ namespace beltgrinding {
 
 /// A mesh or cloud as its file has it: vertices in the file's unit and frame.
 struct RawMesh {
-    std::vector<Vec3> vertices;
+    std::vector<Vec3> vertices;       ///< in the file's unit and frame
     std::vector<Triangle> triangles;  ///< indices that lie within `vertices`; none: a cloud
 };
 

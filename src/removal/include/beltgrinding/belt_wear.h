@@ -20,17 +20,25 @@ struct BeltState {
 /// or the volume W. It is exponential in them, faster at first (see docs/methods.md for sources).
 class BeltWear {
   public:
+    /// How the cut falls.
     enum class Model { kNone, kExponential, kTwoStage, kCurve };
+    /// With what it falls.
     enum class Variable { kWork, kVolume };
+    /// What makes up a belt's wear; which are used depends on the model.
     struct Parameters {
-        Model model = Model::kNone;
-        Variable variable = Variable::kWork;
-        double scale = 1e6;        ///< J or mm3 in which the wearing share falls to 1/e
-        double rest = 0.0;         ///< share of the cut that stays
-        double first_share = 0.0;  ///< two-stage: share that goes at first
-        double first_scale = 1e5;  ///< J or mm3, of it
-        Curve curve;               ///< share over J or mm3
+        Model model = Model::kNone;           ///< how the cut falls
+        Variable variable = Variable::kWork;  ///< with what
+        double scale = 1e6;                   ///< J or mm3 in which the wearing share falls to 1/e
+        double rest = 0.0;                    ///< share of the cut that stays
+        double first_share = 0.0;             ///< two-stage: share that goes at first
+        double first_scale = 1e5;             ///< J or mm3, of it
+        Curve curve;                          ///< share over J or mm3
     };
+
+    /// By its name: none, exponential, two_stage or curve. Throws InputError for another.
+    static Model model_named(const std::string& name);
+    /// By its name: work or volume. Throws InputError for another.
+    static Variable variable_named(const std::string& name);
 
     BeltWear() = default;
     /// Throws InputError for parameters that are none.
@@ -41,6 +49,7 @@ class BeltWear {
     double remaining(const BeltState& state) const;
     /// False where the belt has done more than a curve's measurements.
     bool measured(const BeltState& state) const;
+    /// Model and parameters, for the report.
     std::string describe() const;
 
   private:

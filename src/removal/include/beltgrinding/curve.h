@@ -17,10 +17,13 @@ class Curve {
     /// curve. `name` stands for it in messages. Throws InputError.
     Curve(std::vector<Eigen::Vector2d> points, const std::string& name);
 
+    /// It has no points.
     bool empty() const { return points_.empty(); }
+    /// Its value at x; it must not be empty.
     double operator()(double x) const;
     double lower() const { return points_.front().x(); }  ///< end of the measured range
-    double upper() const { return points_.back().x(); }
+    double upper() const { return points_.back().x(); }   ///< the other end
+    /// x lies in the measured range.
     bool measured(double x) const { return x >= lower() && x <= upper(); }
 
   private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -20,7 +21,7 @@ struct ProcessState {
 
 /// A quantity beyond the range that a law was measured in.
 struct OutsideRange {
-    Fact fact;
+    Fact fact;           ///< what lies outside
     std::string unit;    ///< of the values
     double value = 0.0;  ///< of the quantity
     double limit = 0.0;  ///< the end of the range that it is beyond
@@ -35,6 +36,7 @@ class RemovalLaw {
                       Eigen::ArrayXd& rate) const = 0;
     /// What lies outside the range that the law was measured in, the first of several.
     virtual std::optional<OutsideRange> outside(double, const ProcessState&) const { return {}; }
+    /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
 };
 
@@ -93,6 +95,11 @@ class HammannLaw final : public RemovalLaw {
   private:
     double coefficient_;
 };
+
+/// The law that is named: "local" (LocalLaw) or "hammann" (HammannLaw, of the coefficient alone).
+/// Throws InputError for another name, or parameters that are none.
+std::unique_ptr<RemovalLaw> make_removal_law(const std::string& name,
+                                             const LocalLawParameters& parameters);
 
 /// r of Hammann's law, mm: K (mm2/N), V_b and V_w (mm/s), F_A (N), l_w (mm).
 double hammann_depth(double coefficient, double wear, double belt_speed, double force, double feed,

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "beltgrinding/event_log.h"
+#include "beltgrinding/event.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
 #include "robot/robot_arm.h"

@@ -11,17 +11,18 @@ namespace beltgrinding {
 
 /// Points of the surface that a scan is laid on. Frame: work; mm.
 struct DatumSurface {
-    std::vector<Vec3> points;
+    std::vector<Vec3> points;    ///< mm
     std::vector<Vec3f> normals;  ///< unit, outward
     double spacing = 0.5;        ///< mm, between neighbours
 };
 
 /// A scan: points in its own frame, in mm already.
 struct ScanPoints {
-    std::vector<Vec3> points;
+    std::vector<Vec3> points;    ///< mm
     std::vector<Vec3f> normals;  ///< unit, outward; empty: not known
 };
 
+/// How a scan is laid on the datum.
 struct RegistrationOptions {
     Frame start = Frame::Identity();  ///< work_from_scan
     double max_distance = 5.0;        ///< mm; scan points farther from the datum are not of it
@@ -29,20 +30,20 @@ struct RegistrationOptions {
     /// Translations along and rotations about x, y, z of the work frame, through the datum's
     /// centroid, that stay as the start has them.
     std::array<bool, 6> fixed{};
-    int iterations = 100;
+    int iterations = 100;               ///< at most
     std::size_t most_points = 100'000;  ///< of the scan, evenly taken
 };
 
 /// Where the scan lies, and how well that is known.
 struct Registration {
-    Frame work_from_scan = Frame::Identity();
-    double rms = 0;         ///< mm, point to plane, of the pairs that were used
-    double distance = 0;    ///< mm, beyond which pairs were left out in the end
-    std::size_t used = 0;   ///< pairs
-    double used_share = 0;  ///< of the scan's points that were looked at
-    int iterations = 0;
-    bool converged = false;
-    Vec3 centre = Vec3::Zero();  ///< of the rotations below, mm, work frame
+    Frame work_from_scan = Frame::Identity();  ///< where the scan lies
+    double rms = 0;                            ///< mm, point to plane, of the pairs that were used
+    double distance = 0;                       ///< mm, beyond which pairs were left out in the end
+    std::size_t used = 0;                      ///< pairs
+    double used_share = 0;                     ///< of the scan's points that were looked at
+    int iterations = 0;                        ///< done
+    bool converged = false;                    ///< the last one moved nothing that matters
+    Vec3 centre = Vec3::Zero();                ///< of the rotations below, mm, work frame
     /// Standard deviation of each freedom (mm, rad) if the residuals were independent; infinite
     /// where the geometry leaves it open, 0 where it was fixed.
     std::array<double, 6> sd{};

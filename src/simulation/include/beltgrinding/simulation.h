@@ -8,19 +8,20 @@
 #include "beltgrinding/belt_wear.h"
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/contact_wheel.h"
-#include "beltgrinding/event_log.h"
+#include "beltgrinding/event.h"
 #include "beltgrinding/height_field.h"
-#include "beltgrinding/recording.h"
 #include "beltgrinding/removal_law.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 
+class Recording;
+
 /// One row of the time series.
 struct StepRecord {
-    double time = 0.0;  ///< s
-    std::uint32_t pose = 0;
+    double time = 0.0;           ///< s
+    std::uint32_t pose = 0;      ///< programmed pose that the step leads to, from 0
     float duration = 0.0f;       ///< s
     float feed = 0.0f;           ///< mm/s, infeed speed of the contact point over the work
     float force = 0.0f;          ///< N
@@ -33,7 +34,7 @@ struct StepRecord {
 
 /// How the wheel is pressed and the belt runs: what decides what is ground.
 struct ProcessSettings {
-    ContactWheel wheel;
+    ContactWheel wheel;            ///< its shape
     bool force_control = true;     ///< else the wheel keeps to the programmed poses
     double force = 50.0;           ///< N, where the path has none
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
@@ -82,40 +83,43 @@ struct OutputRequest {
     std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws = {};
 };
 
+/// How a simulation is done.
 struct SimulationOptions {
-    ProcessSettings process;
-    Resolution resolution;
-    MonitorLimits limits;
-    OutputRequest outputs;
-    bool must_touch = true;  ///< a path that never touches the stock is an error
+    ProcessSettings process;  ///< what decides what is ground
+    Resolution resolution;    ///< how finely it is computed
+    MonitorLimits limits;     ///< what is noted as an event
+    OutputRequest outputs;    ///< what is kept
+    bool must_touch = true;   ///< a path that never touches the stock is an error
 };
 
 /// s of wall time by phase of a simulation.
 struct PhaseTimes {
     double build = 0.0;     ///< of the field's tree
     double localise = 0.0;  ///< the segments in the wheel's reach
-    double gap = 0.0;
-    double contact = 0.0;
-    double removal = 0.0;
-    double refit = 0.0;  ///< of the tree where heights have changed
-    double trace = 0.0;
-    double events = 0.0;
+    double gap = 0.0;       ///< mapping the surface on the wheel's grid
+    double contact = 0.0;   ///< solving
+    double removal = 0.0;   ///< lowering the samples
+    double refit = 0.0;     ///< of the tree where heights have changed
+    double trace = 0.0;     ///< noting what removed
+    double events = 0.0;    ///< watching for them
 
+    /// Adds each phase.
     PhaseTimes& operator+=(const PhaseTimes& more);
 };
 
+/// What a simulation gives besides the field.
 struct SimulationResult {
-    std::vector<Event> events;
-    std::vector<StepRecord> steps;
-    double process_time = 0.0;    ///< s, what the robot takes
-    double removed_volume = 0.0;  ///< mm3, taken from the field
-    BeltState belt;               ///< what the belt has done in the end
+    std::vector<Event> events;      ///< in order of time
+    std::vector<StepRecord> steps;  ///< one for each step, in order
+    double process_time = 0.0;      ///< s, what the robot takes
+    double removed_volume = 0.0;    ///< mm3, taken from the field
+    BeltState belt;                 ///< what the belt has done in the end
     /// (samples, shifted laws): mm by which each shifted law would have removed more, at first
     /// order (the pressures as they are). Independent: they add up as squares.
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     std::string model;             ///< what the contact model says of itself as it was used
-    PhaseTimes wall;
+    PhaseTimes wall;               ///< of this call
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
@@ -129,7 +133,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
 
 /// The contact at one programmed pose, on the field as it is.
 struct PoseContact {
-    ContactGrid grid;
+    ContactGrid grid;          ///< of the arrays below
     Eigen::ArrayXd gap;        ///< mm, radial, with the wheel where `placed` says; +inf: nothing
     Eigen::ArrayXd coverage;   ///< share of the cell that the workpiece covers
     ContactSolution solution;  ///< its approach counts from `placed`

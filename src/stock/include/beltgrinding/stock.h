@@ -20,10 +20,10 @@ struct StockOptions {
 
 /// What was found, for messages and for the summary.
 struct StockReport {
-    std::size_t missed = 0;     ///< rays without a hit within the search distance
-    std::size_t defective = 0;  ///< samples with stock below the design surface
-    double volume = 0.0;        ///< sum of area x max(height, 0), mm3
-    std::vector<Fact> warnings;
+    std::size_t missed = 0;      ///< rays without a hit within the search distance
+    std::size_t defective = 0;   ///< samples with stock below the design surface
+    double volume = 0.0;         ///< sum of area x max(height, 0), mm3
+    std::vector<Fact> warnings;  ///< what the user should know
 };
 
 /// Sets every height to the uniform `allowance` (mm; negative is defective stock).

@@ -3,26 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "beltgrinding/path_pose.h"
-#include "beltgrinding/speed_profile.h"
+#include "beltgrinding/tool_path.h"
+#include "speed_profile.h"
 
 namespace beltgrinding {
-
-/// How the robot's speed goes along the path.
-struct TimeLaw {
-    enum class Timing {
-        kConstantFeed,  ///< the programmed feed everywhere, sharp corners, zones without meaning
-        kTrapezoidal    ///< speeds up and slows down at the accelerations, rounds corners in zones
-    };
-    Timing timing = Timing::kConstantFeed;
-    double acceleration = 1200.0;       ///< mm/s2, along the path and across it in a zone
-    double angular_acceleration = 2.0;  ///< rad/s2
-    double rotation_speed = 3.5;        ///< rad/s, largest speed of reorientation
-    double default_zone = 1.0;          ///< mm, of poses whose zone is unknown
-
-    /// Throws InputError naming what is not positive (the zone: negative).
-    void validate() const;
-};
 
 /// The robot's motion under a trapezoidal time law: where it is and when.
 ///

@@ -1,9 +1,11 @@
+#include "mesh/mesh_check.h"
+
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <string>
+#include <utility>
 
 #include "beltgrinding/error.h"
-#include "inspection/ground_mesh.h"
+#include "mesh/topology.h"
 
 namespace beltgrinding {
 namespace {
@@ -14,11 +16,6 @@ struct Use {
     std::uint32_t triangle;
     bool forward;
 };
-
-std::uint32_t find(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
 
 }  // namespace
 
@@ -38,7 +35,7 @@ MeshCheck check_mesh(const std::vector<Vec3>& vertices, const std::vector<Triang
                                  "triangle {triangle} names a vertex that is not there",
                                  {{"triangle", t}});
             used[a] = 1;
-            uses.push_back({std::uint64_t(std::min(a, b)) << 32U | std::max(a, b), t, a < b});
+            uses.push_back({edge_key(a, b), t, a < b});
         }
         const Vec3 a = vertices[v[0]] - origin, b = vertices[v[1]] - origin,
                    c = vertices[v[2]] - origin;
@@ -48,23 +45,19 @@ MeshCheck check_mesh(const std::vector<Vec3>& vertices, const std::vector<Triang
     std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
         return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
     });
-    std::vector<std::uint32_t> parent(triangles.size());
-    std::iota(parent.begin(), parent.end(), 0U);
+    DisjointSets pieces(triangles.size());
     std::size_t edges = 0;
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t j = i + 1;
-        for (; j < uses.size() && uses[j].edge == uses[i].edge; ++j) {
-            const std::uint32_t a = find(parent, uses[i].triangle),
-                                b = find(parent, uses[j].triangle);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+        for (; j < uses.size() && uses[j].edge == uses[i].edge; ++j)
+            pieces.join(uses[i].triangle, uses[j].triangle);
         ++edges;
         if (j - i == 1) ++check.border_edges;
         if (j - i > 2) ++check.non_manifold_edges;
         if (j - i == 2 && uses[i].forward == uses[i + 1].forward) ++check.turned_edges;
         i = j;
     }
-    for (std::uint32_t t = 0; t < parent.size(); ++t) check.components += parent[t] == t;
+    for (std::uint32_t t = 0; t < pieces.size(); ++t) check.components += pieces.find(t) == t;
     check.euler = std::count(used.begin(), used.end(), 1) - static_cast<long long>(edges) +
                   static_cast<long long>(triangles.size());
     return check;

@@ -1,22 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "beltgrinding/deviation.h"
 #include "beltgrinding/height_field.h"
+#include "beltgrinding/verdict.h"
 
 namespace beltgrinding {
-
-/// A part of the surface with a tolerance of its own: a profile tolerance of a surface (ISO 1101,
-/// ASME Y14.5), bilateral, unequal or, with 0 on one side, unilateral.
-struct ToleranceZone {
-    Tolerance tolerance;
-    std::vector<std::uint32_t> faces;    ///< index in the shape, from 0; empty: all
-    double edge_radius = 0.0;            ///< mm; 0: the whole faces, else their edges only (below)
-    std::optional<Tolerance> thickness;  ///< of the deviation of the thickness, mm
-};
 
 /// Number of the zone of every sample: of the last one that holds it, or `zones.size()` for none. A
 /// zone with an `edge_radius` holds those samples of its faces where the surface is convex with a

@@ -1,0 +1,104 @@
+#include "meshio/mesh_writer.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+namespace beltgrinding {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "STL and PLY are written little-endian");
+
+constexpr std::size_t kStlHeader = 80, kStlTriangle = 50;
+constexpr std::size_t kPlyPlain = 12, kPlyColoured = 20, kPlyFace = 13;  // bytes
+
+template <class T>
+void put(char*& out, const T& value) {
+    std::memcpy(out, &value, sizeof(T));
+    out += sizeof(T);
+}
+
+Vec3f place(const HeightField& field, std::size_t i, bool ground) {
+    return (ground ? field.top(i) : field.point[i]).cast<float>();
+}
+
+/// A binary PLY of `vertex(i)`; unless `colours` is null also of these and `deviation(i)`.
+template <class Vertex, class Deviation>
+std::string ply(const char* title, std::size_t vertices, Vertex vertex,
+                const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>* colours,
+                Deviation deviation) {
+    const bool coloured = colours != nullptr;
+    const std::string head =
+        std::string("ply\nformat binary_little_endian 1.0\ncomment ") + title +
+        ", millimetres\nelement vertex " + std::to_string(vertices) +
+        "\nproperty float x\nproperty float y\nproperty float z\n" +
+        (coloured ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                    "property uchar alpha\nproperty float deviation\n"
+                  : "") +
+        "element face " + std::to_string(triangles.size()) +
+        "\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string text(head.size() + (coloured ? kPlyColoured : kPlyPlain) * vertices +
+                         kPlyFace * triangles.size(),
+                     '\0');
+    std::memcpy(text.data(), head.data(), head.size());
+    char* out = text.data() + head.size();
+    for (std::size_t v = 0; v < vertices; ++v) {
+        put(out, vertex(v));
+        if (!coloured) continue;
+        for (const unsigned shift : {24U, 16U, 8U, 0U})
+            put(out, static_cast<std::uint8_t>((*colours)[v] >> shift & 255U));
+        put(out, deviation(v));
+    }
+    for (const Triangle& t : triangles) {
+        put(out, std::uint8_t{3});
+        for (const std::uint32_t v : t) put(out, v);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string mesh_stl(const GroundMesh& mesh) {
+    std::string text(kStlHeader + 4 + kStlTriangle * mesh.triangles.size(), '\0');
+    constexpr char kTitle[] = "belt-ground part, millimetres";  // must not begin with "solid"
+    std::memcpy(text.data(), kTitle, sizeof kTitle);
+    char* out = text.data() + kStlHeader;
+    put(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        put(out, (b - a).cross(c - a).normalized().cast<float>().eval());
+        for (const Vec3* p : {&a, &b, &c}) put(out, p->cast<float>().eval());
+        put(out, std::uint16_t{0});
+    }
+    return text;
+}
+
+std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale) {
+    const auto vertex = [&](std::size_t v) { return mesh.vertices[v].cast<float>().eval(); };
+    const auto deviation = [&](std::size_t v) { return mesh.deviation[v]; };
+    std::vector<std::uint32_t> colours;
+    if (scale) colours = mesh_colours(mesh, *scale);
+    return ply("belt-ground part", mesh.vertices.size(), vertex, mesh.triangles,
+               scale ? &colours : nullptr, deviation);
+}
+
+std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground) {
+    const auto vertex = [&](std::size_t i) { return place(field, i, ground); };
+    const auto deviation = [&](std::size_t i) {
+        return (field.flags[i] & kMissed) != 0 ? std::numeric_limits<float>::quiet_NaN()
+                                               : static_cast<float>(field.height[i]);
+    };
+    const std::vector<std::uint32_t> colours = deviation_colours(field, scale);
+    return ply("belt-grinding deviation", field.size(), vertex, field.triangles, &colours,
+               deviation);
+}
+
+std::string mesh_ply(const HeightField& field, bool ground) {
+    const auto vertex = [&](std::size_t i) { return place(field, i, ground); };
+    return ply("belt-grinding deviation", field.size(), vertex, field.triangles, nullptr,
+               [](std::size_t) { return 0.0F; });
+}
+
+}  // namespace beltgrinding

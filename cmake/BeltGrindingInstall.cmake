@@ -5,7 +5,7 @@ if(NOT DEFINED CACHE{BELTGRINDING_MOD_DIR})
   set(mod_dir "${CMAKE_INSTALL_DATADIR}/freecad/Mod")
   find_program(FREECADCMD_PROGRAM NAMES freecadcmd FreeCADCmd)
   if(FREECADCMD_PROGRAM)
-    execute_process(COMMAND ${FREECADCMD_PROGRAM} ${CMAKE_SOURCE_DIR}/cmake/print_mod_folder.py
+    execute_process(COMMAND ${FREECADCMD_PROGRAM} ${PROJECT_SOURCE_DIR}/cmake/print_mod_folder.py
                     INPUT_FILE /dev/null OUTPUT_VARIABLE printed ERROR_QUIET TIMEOUT 60)
     if(printed MATCHES "Mod folder: ([^\n]+)")
       set(mod_dir "${CMAKE_MATCH_1}")
@@ -19,7 +19,7 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS package.xml)
 file(READ package.xml package_xml)
 string(REPLACE "./Mod/BeltGrinding/" "./" package_xml "${package_xml}")
 string(REPLACE "../../Resources" "Resources" package_xml "${package_xml}")
-file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/package.xml CONTENT "${package_xml}" @ONLY)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package.xml CONTENT "${package_xml}" @ONLY)
 
 set(modules beltgrinding_core)
 foreach(optional beltgrinding_coin beltgrinding_scan)
@@ -42,7 +42,7 @@ function(install_workbench folder)
           PATTERN "__pycache__" EXCLUDE PATTERN "*.so" EXCLUDE)
   install(DIRECTORY Resources docs DESTINATION ${folder} ${ARGN})
   install(FILES ${compiled_translations} DESTINATION ${folder}/Resources/translations ${ARGN})
-  install(FILES ${CMAKE_BINARY_DIR}/package.xml README.md CONTRIBUTING.md CHANGELOG.md
+  install(FILES ${PROJECT_BINARY_DIR}/package.xml README.md CONTRIBUTING.md CHANGELOG.md
           $<TARGET_FILE:beltgrinding_core>.json DESTINATION ${folder} ${ARGN})
 endfunction()
 

@@ -1,5 +1,5 @@
 # `cpack -G DEB` in the build folder makes the Debian package of the release it runs on.
-set(package_files ${CMAKE_BINARY_DIR}/debian)
+set(package_files ${PROJECT_BINARY_DIR}/debian)
 set(package_mod share/freecad/Mod/BeltGrinding)  # the system's Mod folder in Debian 12 and 13
 set(package_doc share/doc/beltgrinding)
 set(as_deb COMPONENT deb EXCLUDE_FROM_ALL)
@@ -51,7 +51,7 @@ follows the robot's own program pose by pose with an elastic contact wheel and
 gives the deviation of the ground surface from the design at every point.
 .
 The command beltgrind does the same without FreeCAD's window.")
-set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/package)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_GENERATOR DEB)
 set(CPACK_STRIP_FILES ON)

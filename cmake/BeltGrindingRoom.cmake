@@ -14,6 +14,13 @@
 function(beltgrinding_room name)
   cmake_parse_arguments(ARG "" ""
     "ROOMS;PRIVATE_ROOMS;PACKAGES;PRIVATE_PACKAGES;PRIVATE_INCLUDES" ${ARGN})
+  # Static, nothing of the library shows in what it is linked into; shared, all of it does.
+  set(visibility hidden)
+  set(hidden_inlines ON)
+  if(BUILD_SHARED_LIBS)
+    set(visibility default)
+    set(hidden_inlines OFF)
+  endif()
   set(folders)
   foreach(folder include internal)
     if(IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
@@ -25,6 +32,10 @@ function(beltgrinding_room name)
     add_library(bg_${name} STATIC ${sources})
     target_include_directories(bg_${name} PUBLIC ${folders})
     target_include_directories(bg_${name} SYSTEM PRIVATE ${ARG_PRIVATE_INCLUDES})
+    target_compile_features(bg_${name} PUBLIC cxx_std_20)
+    set_target_properties(bg_${name} PROPERTIES
+      CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON VISIBILITY_INLINES_HIDDEN ${hidden_inlines}
+      CXX_VISIBILITY_PRESET ${visibility} BELTGRINDING_PACKAGES "${ARG_PRIVATE_PACKAGES}")
     target_link_libraries(bg_${name} PUBLIC ${ARG_PACKAGES} PRIVATE ${ARG_PRIVATE_PACKAGES} bg_warnings)
     foreach(room IN LISTS ARG_ROOMS)
       target_link_libraries(bg_${name} PUBLIC bg_${room})

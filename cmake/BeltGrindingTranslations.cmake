@@ -6,9 +6,9 @@ if(LRELEASE_PROGRAM)
   file(GLOB translations CONFIGURE_DEPENDS Resources/translations/*.ts)
   foreach(source IN LISTS translations)
     cmake_path(GET source STEM stem)
-    set(compiled ${CMAKE_BINARY_DIR}/translations/${stem}.qm)
+    set(compiled ${PROJECT_BINARY_DIR}/translations/${stem}.qm)
     add_custom_command(OUTPUT ${compiled} DEPENDS ${source} VERBATIM
-                       COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/translations
+                       COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/translations
                        COMMAND ${LRELEASE_PROGRAM} -silent ${source} -qm ${compiled})
     list(APPEND compiled_translations ${compiled})
   endforeach()

@@ -57,8 +57,8 @@ TEST(MeshReader, ReadsPlyOfEveryFormat) {
     const auto put = [&](auto value) {
         std::array<char, sizeof(value)> bytes;
         std::memcpy(bytes.data(), &value, sizeof(value));
-        little.append(bytes.begin(), bytes.end());
-        big.append(bytes.rbegin(), bytes.rend());
+        for (const char byte : bytes) little.push_back(byte);
+        for (auto byte = bytes.rbegin(); byte != bytes.rend(); ++byte) big.push_back(*byte);
     };
     for (const auto& [x, y, z] : {std::array{0.0, 0.0, 0.0}, std::array{2.0, 0.0, 0.0},
                                   std::array{2.0, 1.0, 0.5}, std::array{0.0, 1.0, 0.5}}) {

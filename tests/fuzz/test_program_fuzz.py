@@ -77,9 +77,9 @@ def test_another_pose_after_a_cut_is_a_finding():
     cut = program(motion(1.25, 1), motion(2.0, 2))
     with pytest.raises(fuzzing.Finding, match="a.src:2: LIN is another"):
         fuzzing.compare(cut, whole, ("a.src", 2))
-    cut.problems.append(Problem("a.src", 2, "it is cut"))
+    cut.problems.append(Problem("a.src", 2, "test.cut", "it is cut"))
     fuzzing.compare(cut, whole, ("a.src", 2))
-    whole.problems.append(Problem("a.src", 2, "it is cut"))  # no news: it does not tell
+    whole.problems.append(Problem("a.src", 2, "test.cut", "it is cut"))  # no news: it does not tell
     with pytest.raises(fuzzing.Finding):
         fuzzing.compare(cut, whole, ("a.src", 2))
 

@@ -18,10 +18,11 @@ LITERAL = r'"(?:[^"\\\n]|\\.)*"'
 # In C++: a code, then a form, which may be several literals side by side.
 PAIR = re.compile(rf'"(?P<code>{CODE.pattern})"\s*,\s*(?P<form>(?:{LITERAL}\s*)+)')
 ERRORS = ("InputError", "ProgramError", "Problem")
+FACTS = ("Fact", "Unknown", "Missing", "Reason")  # of these, all given are arguments of the form
 CULPRIT = {"key", "file", "line", "face", "pose"}  # may be given without being shown
 
 # Errors that still have no code; only ever fewer.
-PLAIN_PYTHON = 384
+PLAIN_PYTHON = 252
 
 
 def sources(folder, *patterns):
@@ -111,9 +112,9 @@ class Found:
         given = {keyword.arg for keyword in node.keywords}
         for code, form in pairs:
             # Of a call of another name, not all need be arguments of the form.
-            seen = given if callee in ERRORS else given & (names(form) | CULPRIT)
+            seen = given if callee in (*ERRORS, *FACTS) else given & (names(form) | CULPRIT)
             self.take(where, code, form, None if None in given else seen)
-        if callee in ERRORS and node.args and not pairs:
+        if callee in ERRORS and node.args and not pairs and None not in given:
             first = node.args[0]
             if isinstance(first, ast.Constant) and CODE.fullmatch(str(first.value)):
                 self.faults.append(f"{where}: the form of {first.value} is no plain literal")

@@ -53,14 +53,18 @@ def body(name, language):
     return name
 
 
+def _argument(name, value, language):
+    """A value as it is told: a reason may be a fact itself."""
+    if hasattr(value, "code"):
+        return sentence(value, language)
+    return body(value, language) if name in BODIES else value
+
+
 def _filled(code, text, arguments, language):
     form = _forms(language).get(code)
     if form is None:
         return text.format(**arguments) if code else text
-    named = {
-        name: body(value, language) if name in BODIES else value
-        for name, value in arguments.items()
-    }
+    named = {name: _argument(name, value, language) for name, value in arguments.items()}
     return _Formatter(language).vformat(form, (), named)
 
 

@@ -42,7 +42,6 @@ def _program(arguments):
     from ..engine import InputError
     from ..programs import table
     from ..programs.patch.patch import patch
-    from ..programs.program import ProgramError
     from ..programs.registry import read_program
     from ..programs.writers.writer import write_program
 
@@ -64,8 +63,6 @@ def _program(arguments):
             write_program(arguments.output, None, program)
         elif arguments.output:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
-    except ProgramError as error:
-        raise InputError(str(error)) from None
     except OSError as error:
         raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
     print(json.dumps(table.summary(program), indent=2))
@@ -74,7 +71,6 @@ def _program(arguments):
 def _raster(arguments):
     from ..base import schemas
     from ..engine import InputError
-    from ..programs.program import ProgramError
     from ..programs.writers.writer import write_program
     from ..raster import raster_path as raster
 
@@ -93,8 +89,6 @@ def _raster(arguments):
     found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
     try:
         write_program(arguments.output, None, raster.program(found))
-    except ProgramError as error:
-        raise InputError(str(error)) from None
     except OSError as error:
         raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
     for warning in found["warnings"]:

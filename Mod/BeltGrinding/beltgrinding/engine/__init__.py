@@ -1,11 +1,11 @@
-"""The compiled core and what every caller of it needs: ``core``, ``InputError``, ``Cancelled``,
-``RunContext``, ``__version__``.
+"""The compiled core and what every caller of it needs: ``core``, ``Fact``, ``InputError``,
+``Cancelled``, ``RunContext``, ``__version__``.
 
 They are taken from the core when first asked for: without a core that fits, the workbench must still be
 able to say so (``library``).
 """
 
-NAMES = {name: name for name in ("InputError", "Cancelled", "RunContext")}
+NAMES = {name: name for name in ("Fact", "InputError", "Cancelled", "RunContext")}
 NAMES["__version__"] = "VERSION"
 
 

@@ -66,15 +66,11 @@ def program_arrays(program, where, warnings, pose_of=None):
     if "poses" in program:
         arrays = listed_poses(program["poses"], where)
     else:
-        from ..programs.program import ProgramError
         from ..programs.registry import read_program
 
-        try:
-            read = read_program(program["file"])
-            problems = [str(problem) for problem in read.problems]
-            arrays = read.path_arrays(DEFAULT_FEED, pose_of)
-        except ProgramError as error:
-            raise InputError(str(error)) from None
+        read = read_program(program["file"])
+        problems = read.problems
+        arrays = read.path_arrays(DEFAULT_FEED, pose_of)
     warnings += problems
     count = len(arrays["frames"])
     if count < 2:

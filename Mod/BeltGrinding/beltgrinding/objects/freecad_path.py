@@ -6,7 +6,7 @@ import FreeCAD
 import numpy as np
 
 from ..engine import InputError
-from ..programs.program import CHORD_ERROR, Motion, Problem, Program
+from ..programs.program import CHORD_ERROR, Motion, Program
 from ..programs.readers.tool_axis import Tracer, arc_through
 from .geometry import matrix
 
@@ -45,8 +45,13 @@ def _trajectory(obj):
     for number, point in enumerate(obj.Trajectory.Waypoints, 1):
         kind = TRAJECTORY.get(point.Type)
         if point.Type == "CIRC":
-            text = f"{point.Name}: CIRC has no auxiliary point here; it is taken as a line"
-            program.problems.append(Problem(obj.Label, number, text))
+            program.problem(
+                obj.Label,
+                number,
+                "objects.no_auxiliary_point",
+                "{name}: CIRC has no auxiliary point here; it is taken as a line",
+                name=point.Name,
+            )
         if kind is None:
             continue  # WAIT: nothing moves
         motion = Motion(kind, base @ matrix(point.Pos), number, obj.Label)
@@ -94,16 +99,27 @@ class _Commands:
         elif name in ("G90.1", "G91.1"):
             self.absolute_centre = name == "G90.1"
         elif name == "G20":
-            self.note(number, name, "G20 has no effect on a path object, which is in mm")
+            self.note(
+                number,
+                name,
+                "objects.inches",
+                "G20 has no effect on a path object, which is in mm",
+            )
         elif not name.startswith(SILENT):
-            self.note(number, name, f"{name} is not supported; where it leads is left out")
+            self.note(
+                number,
+                name,
+                "objects.unsupported_command",
+                "{name} is not supported; where it leads is left out",
+                name=name,
+            )
             self.trace.gap(number)
             self.at[:] = math.nan
 
-    def note(self, number, key, message):
+    def note(self, number, key, code, text, /, **arguments):
         if key not in self.noted:
             self.noted.add(key)
-            self.program.problems.append(Problem(self.label, number, message))
+            self.program.problem(self.label, number, code, text, **arguments)
 
     def move(self, number, name, words):
         start, before = self.at.copy(), self.angles.copy()
@@ -146,7 +162,12 @@ class _Commands:
         end = self.at.copy()
         full = float(np.linalg.norm((end - start)[[u, v]])) < 1e-9
         if radius < 1e-9:
-            self.note(number, "arc", "an arc without centre (I, J, K) is taken as a line")
+            self.note(
+                number,
+                "arc",
+                "objects.arc_without_centre",
+                "an arc without centre (I, J, K) is taken as a line",
+            )
             return [], [end]
         if not turning and abs(end[w] - start[w]) < 1e-9:
             points = arc_through(start, centre, end, normal, full)

@@ -10,7 +10,7 @@ import Path
 from ..base import frames
 from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
-from ..programs.program import Motion, ProgramError
+from ..programs.program import Motion
 from ..programs.registry import read_program
 from ..programs.writers.writer import write_program
 from . import freecad_path
@@ -156,10 +156,7 @@ def set_arrays(obj, arrays):
 
 def read_arrays(path):
     """(Program, arrays) of a robot program's file. Raises InputError."""
-    try:
-        program = read_program(path)
-    except ProgramError as error:
-        raise InputError(str(error)) from None
+    program = read_program(path)
     arrays = program.path_arrays(DEFAULT_FEED)
     count = len(arrays["frames"])
     if count < 2:
@@ -200,7 +197,7 @@ def load_program(obj, path, **values):
 
 
 def write(obj, file, **options):
-    """Writes a RobotPath as a robot program. Raises ProgramError, InputError."""
+    """Writes a RobotPath as a robot program. Raises InputError."""
     arrays = obj.Proxy.arrays(obj)
     feeds, forces = arrays["feeds"], arrays["forces"]
     if obj.FeedOverride.Value > 0:

@@ -5,7 +5,6 @@ from pathlib import Path
 import FreeCAD
 
 from ..engine import InputError
-from ..programs.program import ProgramError
 from . import (
     belt as belts,
     belt_machine,
@@ -153,7 +152,4 @@ def export_program(path, file, **options):
     Poses are written as they are, arcs as the chords they were cut into; the robot's tool and base
     come from the belt machine where it has a robot. ``options``: of ``programs.write_program``.
     """
-    try:
-        return robot_path.write(path, file, **options)
-    except ProgramError as error:
-        raise InputError(str(error)) from None
+    return robot_path.write(path, file, **options)

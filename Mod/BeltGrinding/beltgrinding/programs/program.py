@@ -8,6 +8,7 @@ from typing import List, Optional
 import numpy as np
 
 from ..base.frames import to_quaternions
+from ..engine import Fact, InputError
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points
@@ -18,20 +19,94 @@ MAX_UNROLLED = 60_000  # units of work in loops, beyond what the files allow: ab
 LOOPED = 4  # a file allows so many times its own work: loops over its points are as long as it
 
 
-class ProgramError(ValueError):
+class ProgramError(InputError):
     """A program that cannot be read; the message names file and line and what to do."""
 
+    @classmethod
+    def at(cls, file, line, code, text, /, **arguments):
+        """The error in a line of a file."""
+        error = cls(code, text, **arguments)
+        return error.within("programs.at", "{file}:{line}: ", file=file, line=line)
 
-@dataclass
-class Problem:
-    """Something in a program that cannot be known here; only what depends on it is left out."""
 
-    file: str
-    line: int
-    message: str
+def cannot_be_read(path, error):
+    """The ProgramError of an OSError."""
+    return ProgramError(
+        "files.cannot_be_read",
+        "{file}: cannot be read: {reason}",
+        file=str(path),
+        reason=error.strerror,
+    )
+
+
+class Problem(Fact):
+    """Something in a program that cannot be known here; only what depends on it is left out.
+
+    str() begins with its place, "FILE:LINE: ". ``message``: the Fact without the place.
+    """
+
+    def __new__(cls, file, line, told, text=None, /, **arguments):
+        """``told``: a Fact, or a code with the English form and its arguments."""
+        message = told if text is None else Fact(told, text, **arguments)
+        self = str.__new__(cls, f"{file}:{line}: {message}")
+        self.file, self.line, self.message = file, line, message
+        self.code, self.text, self.arguments = message.code, message.text, message.arguments
+        return self
+
+    @property
+    def context(self):
+        """As an InputError's."""
+        return [("programs.at", "{file}:{line}: ", {"file": self.file, "line": self.line})]
+
+    def __getnewargs_ex__(self):
+        return (self.file, self.line, self.message), {}
+
+
+class Reason:
+    """Why something is not known: a Fact that is made when it is asked for, since most never are.
+
+    Made of a Fact, or of a code, the English form and its arguments.
+    """
+
+    def __init__(self, told, text=None, /, **arguments):
+        self.told = told if text is None else (told, text, arguments)
+
+    @property
+    def fact(self):
+        if isinstance(self.told, tuple):
+            code, text, arguments = self.told
+            self.told = Fact(code, text, **arguments)
+        return self.told
+
+
+class Unknown(Reason, Exception):
+    """What only the controller can know; ``fact`` says what."""
 
     def __str__(self):
-        return f"{self.file}:{self.line}: {self.message}"
+        return str(self.fact)
+
+
+def fact_of(error):
+    """What an InputError says as one Fact, its context included."""
+    fact = Fact(error.code, error.text, **error.arguments)
+    for code, text, arguments in reversed(error.context):
+        fact = Fact(
+            "programs.within",
+            "{where}{what}",
+            where=Fact(code, text, **arguments),
+            what=fact,
+        )
+    return fact
+
+
+def shortened(fact, most):
+    """A fact in at most ``most`` characters: reasons that hang on each other make it ever longer."""
+    if len(fact) <= most:
+        return fact
+    arguments = {k: v[:most] if isinstance(v, str) else v for k, v in fact.arguments.items()}
+    short = str.__new__(Fact, fact[:most])
+    short.code, short.text, short.arguments = fact.code, fact.text, arguments
+    return short
 
 
 @dataclass
@@ -61,6 +136,10 @@ class Program:
     file: str
     motions: List[Motion] = field(default_factory=list)
     problems: List[Problem] = field(default_factory=list)
+
+    def problem(self, file, line, told, text=None, /, **arguments):
+        """Adds a Problem; the arguments are those of its class."""
+        self.problems.append(Problem(file, line, told, text, **arguments))
 
     def path_arrays(self, default_speed_mm_s, pose_of=None):
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
@@ -157,9 +236,14 @@ def bytes_of(path, language):
     try:
         raw = Path(path).read_bytes()
     except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     if b"\0" in raw:
-        raise ProgramError(f"{path}: is no {language} text (it holds zero bytes); save it as text")
+        raise ProgramError(
+            "programs.zero_bytes",
+            "{file}: is no {language} text (it holds zero bytes); save it as text",
+            file=str(path),
+            language=language,
+        )
     return raw
 
 

@@ -6,7 +6,7 @@ import contextlib
 import gc
 from pathlib import Path
 
-from .program import Problem, ProgramError
+from .program import ProgramError
 
 
 def _krl(path):
@@ -117,10 +117,20 @@ def read_program(path):
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         known = ", ".join(sorted(READERS))
-        raise ProgramError(f"{path}: no robot language is known by '{path.suffix}'; known: {known}")
+        raise ProgramError(
+            "programs.unknown_suffix",
+            "{file}: no robot language is known by '{suffix}'; known: {known}",
+            file=str(path),
+            suffix=path.suffix,
+            known=known,
+        )
     with _no_collection():
         program = reader(path)
     if not program.motions and not program.problems:
-        text = "no instruction of the program moves the robot; there is no pose to read"
-        program.problems.append(Problem(program.file, 1, text))
+        program.problem(
+            program.file,
+            1,
+            "programs.no_motion",
+            "no instruction of the program moves the robot; there is no pose to read",
+        )
     return program

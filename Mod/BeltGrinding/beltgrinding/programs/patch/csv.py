@@ -34,7 +34,12 @@ def edit(source, work):
     for wanted, column in ((work.speeds, "feed_mm_s"), (work.forces, "force_N")):
         for line, value in wanted.items():
             if column not in columns:
-                raise work.refuse(line, f"the table has no column {column}; add one, empty or not")
+                raise work.refuse(
+                    line,
+                    "programs.patch.no_column",
+                    "the table has no column {column}; add one, empty or not",
+                    column=column,
+                )
             begin, end = _cell(source, line, delimiter, columns[column])
             had = decimals(source.text[begin:end])
             source.replace(begin, end, decimal(value, max(had, 6), had))

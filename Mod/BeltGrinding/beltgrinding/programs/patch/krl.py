@@ -198,7 +198,11 @@ def _move(source, work, codes, line, target, shift):
     begin, end = codes[line]
     code = source.text[begin:end]
     if not MOTION.match(code):
-        raise work.refuse(line, "the motion is not found in its line; change it by hand")
+        raise work.refuse(
+            line,
+            "programs.patch.motion_not_found",
+            "the motion is not found in its line; change it by hand",
+        )
     if "_REL" in MOTION.match(code).group(1).upper():
         work.relative(line, shift, MOTION.match(code).group(1).upper())
         return
@@ -214,7 +218,11 @@ def _move(source, work, codes, line, target, shift):
     else:
         step = work.in_tool(shift)
         if step is None:
-            raise work.refuse(line, "its rounds are turned differently; give tool_dz_mm only")
+            raise work.refuse(
+                line,
+                "programs.patch.rounds_tool",
+                "its rounds are turned differently; give tool_dz_mm only",
+            )
         left, right = "", " : " + _frame(step)
     source.replace(first, last, left + text + right)
 
@@ -228,7 +236,11 @@ def _move_literal(source, work, line, shift, first, text):
     """The numbers of an aggregate; a component it does not name is the motion's before."""
     step = work.in_base(shift)
     if step is None:
-        raise work.refuse(line, "its rounds are turned differently; a literal cannot tell them")
+        raise work.refuse(
+            line,
+            "programs.patch.rounds_literal",
+            "its rounds are turned differently; a literal cannot tell them",
+        )
     places = {}
     for match in re.finditer(r"(?:[{,:])\s*([A-Za-z_]\w*)\s+([^,{}]+?)\s*(?=[,}])", text):
         places[match.group(1).upper()] = match.span(2)
@@ -240,12 +252,22 @@ def _move_literal(source, work, line, shift, first, text):
             if not value:
                 continue
             if not NUMBER.match(number):
-                raise work.refuse(line, f"its {name} is no plain number; change it by hand")
+                raise work.refuse(
+                    line,
+                    "programs.patch.no_plain_number",
+                    "its {name} is no plain number; change it by hand",
+                    name=name,
+                )
             source.replace(first + at, first + stop, moved(number, value))
             continue
         due = value - work.inherited(shift, line)["XYZ".index(name)]
         if abs(due) >= SMALL:
             if last is None or len(shift.motions) > 1:
-                raise work.refuse(line, f"its {name} is not given; change it by hand")
+                raise work.refuse(
+                    line,
+                    "programs.patch.not_given",
+                    "its {name} is not given; change it by hand",
+                    name=name,
+                )
             place = work.program.motions[shift.motions[0]].pose["XYZ".index(name), 3] + value
             source.replace(first + last, first + last, f",{name} {decimal(place, 6)}")

@@ -67,12 +67,20 @@ def _gcode(source, work):
         begin = source.span(line)[0]
         place = feeds[line]
         if place is None:
-            raise work.refuse(line, "no F before it tells the unit; write one in by hand")
+            raise work.refuse(
+                line,
+                "programs.patch.no_feed",
+                "no F before it tells the unit; write one in by hand",
+            )
         if what == "after":
             source.insert_after(line, _word(source, place))
             continue
         if place[0] not in known:
-            raise work.refuse(line, "what F means there is not known; change it by hand")
+            raise work.refuse(
+                line,
+                "programs.patch.feed_meaning",
+                "what F means there is not known; change it by hand",
+            )
         text = _scaled(place[1].group(1), value / known[place[0]])
         if what == "set":
             source.replace(begin + place[1].start(1), begin + place[1].end(1), text)
@@ -119,11 +127,21 @@ def _gcode_shifts(source, work, codes):
         step = work.in_base(shift)
         code = codes[line]
         if relative:
-            raise work.refuse(line, "G91 makes motions relative to those before; none is moved")
+            raise work.refuse(
+                line,
+                "programs.patch.g91",
+                "G91 makes motions relative to those before; none is moved",
+            )
         if inches and metric:
-            raise work.refuse(line, "the file changes between inches and mm; nothing is moved")
+            raise work.refuse(
+                line,
+                "programs.patch.inches_and_mm",
+                "the file changes between inches and mm; nothing is moved",
+            )
         if step is None or work.program.motions[shift.motions[0]].kind == "CIRC":
-            raise work.refuse(line, "an arc or a subprogram is not moved")
+            raise work.refuse(
+                line, "programs.patch.arc_or_subprogram", "an arc or a subprogram is not moved"
+            )
         scale = INCH if inches else 1.0
         begin = source.span(line)[0]
         more = ""
@@ -177,14 +195,22 @@ def _apt(source, work):
     known = _known(work, {line: feed and feed[0] for line, feed in feeds.items()})
     for what, line, value in plan(statements, work.speeds, work.speed_before, work.refuse):
         if feeds[line] is None:
-            raise work.refuse(line, "no FEDRAT before it tells the unit; write one in by hand")
+            raise work.refuse(
+                line,
+                "programs.patch.no_fedrat",
+                "no FEDRAT before it tells the unit; write one in by hand",
+            )
         place, text = feeds[line]
         if what == "after":
             source.insert_after(ends[line], text)
             continue
         found = NUMBER.search(text, text.index("/"))
         if place not in known:
-            raise work.refuse(line, "what FEDRAT means there is not known; change it by hand")
+            raise work.refuse(
+                line,
+                "programs.patch.fedrat_meaning",
+                "what FEDRAT means there is not known; change it by hand",
+            )
         new = _scaled(found.group(), value / known[place])
         if what == "set":
             begin = source.span(line)[0]
@@ -202,7 +228,9 @@ def _apt(source, work):
             work.relative(line, shift, "GODLTA")
             continue
         if not found or step is None or kind == "CIRC":
-            raise work.refuse(line, "only GOTO with plain numbers is moved, no arc")
+            raise work.refuse(
+                line, "programs.patch.only_goto", "only GOTO with plain numbers is moved, no arc"
+            )
         for k, value in enumerate(step, 1):
             if value:
                 text = moved(found.group(k), value / (INCH if inches else 1.0), 5 if inches else 4)

@@ -14,15 +14,28 @@ from pathlib import Path
 
 import numpy as np
 
-from ..program import ProgramError
+from ..program import Fact, ProgramError, cannot_be_read
 from ..registry import read_program
-from .text import SMALL, Shift, Source, Work
+from .text import SMALL, Overlap, Shift, Source, Work
 
 COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
 MAX_STEP = 1000.0  # mm; a larger offset is a mistake
 MAX_SPEED = 10_000.0  # mm/s
 MAX_FORCE = 10_000.0  # N
 UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
+
+
+# What of a motion a change must not alter.
+ITS = {
+    "kind": Fact("programs.patch.kind", "its kind"),
+    "tool": Fact("programs.patch.tool", "its tool"),
+    "base": Fact("programs.patch.base", "its base"),
+    "aux": Fact("programs.patch.aux", "its aux"),
+    "speed": Fact("programs.patch.speed", "its speed"),
+    "force": Fact("programs.patch.force", "its force"),
+    "pose": Fact("programs.patch.pose", "its pose"),
+    "orientation": Fact("programs.patch.orientation", "its orientation"),
+}
 
 
 def _language(name, suffix):
@@ -42,7 +55,11 @@ def _language(name, suffix):
     elif name == "CSV":
         from . import csv as module
     else:
-        raise ProgramError(f"programs in {name} cannot be written back yet; change them by hand")
+        raise ProgramError(
+            "programs.patch.language",
+            "programs in {language} cannot be written back yet; change them by hand",
+            language=name,
+        )
     return module
 
 
@@ -53,32 +70,60 @@ def read_changes(path):
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
-        raise ProgramError(f"{path}: is not UTF-8 text") from None
+        raise ProgramError(
+            "programs.patch.not_utf8", "{file}: is not UTF-8 text", file=str(path)
+        ) from None
     except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        raise ProgramError(f"{name}: the file is empty; it needs the columns index or line")
+        raise ProgramError(
+            "programs.patch.empty",
+            "{file}: the file is empty; it needs the columns index or line",
+            file=name,
+        )
     delimiter = max(",;\t", key=lines[0][1].count)
     try:
         rows = [next(csv.reader(io.StringIO(t), delimiter=delimiter)) for _, t in lines]
     except csv.Error as error:
-        raise ProgramError(f"{name}: is no sound CSV: {error}") from None
+        raise ProgramError(
+            "programs.no_sound_csv",
+            "{file}: is no sound CSV: {reason}",
+            file=name,
+            reason=str(error),
+        ) from None
     columns = [column.strip() for column in rows[0]]
     known = ("index", "line", *COLUMNS)
     for column in columns:
         if column not in known:
-            raise ProgramError(f"{name}: unknown column '{column}'; known are {', '.join(known)}")
+            raise ProgramError(
+                "programs.patch.unknown_column",
+                "{file}: unknown column '{column}'; known are {names}",
+                file=name,
+                column=column,
+                names=", ".join(known),
+            )
     if ("index" in columns) == ("line" in columns) or len(set(columns)) != len(columns):
-        raise ProgramError(f"{name}: it needs each column once, and either index or line")
+        raise ProgramError(
+            "programs.patch.columns",
+            "{file}: it needs each column once, and either index or line",
+            file=name,
+        )
     changes = []
     for (number, _), row in zip(lines[1:], rows[1:]):
         if len(row) != len(columns):
-            raise ProgramError(f"{name}:{number}: {len(row)} values in {len(columns)} columns")
+            raise ProgramError.at(
+                name,
+                number,
+                "programs.patch.values",
+                "{count} values in {columns} columns",
+                count=len(row),
+                columns=len(columns),
+            )
         given = {key: value.strip() for key, value in zip(columns, row) if value.strip()}
         try:
             change = {
@@ -86,10 +131,14 @@ def read_changes(path):
                 for key, value in given.items()
             }
         except ValueError as error:
-            raise ProgramError(f"{name}:{number}: {error}") from None
+            raise ProgramError.at(
+                name, number, "programs.patch.no_value", "{reason}", reason=str(error)
+            ) from None
         if not {"index", "line"} & change.keys():
-            raise ProgramError(f"{name}:{number}: it names no motion")
-        changes.append({**change, "where": f"{name}:{number}"})
+            raise ProgramError.at(
+                name, number, "programs.patch.names_no_motion", "it names no motion"
+            )
+        changes.append({**change, "where": (name, number)})
     return changes
 
 
@@ -116,8 +165,12 @@ def patch(path, changes, output):
     module.edit(source, work)
     try:
         written = source.result()
-    except ValueError as error:
-        raise ProgramError(f"{path.name}: {error}; give the changes one by one") from None
+    except Overlap:
+        raise ProgramError(
+            "programs.patch.one_by_one",
+            "{file}: two changes of the same place; give the changes one by one",
+            file=path.name,
+        ) from None
     beside = _data_file(path) if program.language == "KUKA KRL" else None
     with tempfile.TemporaryDirectory() as folder:
         if beside:
@@ -140,13 +193,23 @@ def _write(output, written, beside, path):
     from ...base.files import write_whole
 
     if output.suffix.lower() != path.suffix.lower():
-        raise ProgramError(f"{output}: the written program must end in {path.suffix}")
+        raise ProgramError(
+            "programs.patch.suffix",
+            "{file}: the written program must end in {suffix}",
+            file=str(output),
+            suffix=path.suffix,
+        )
     if beside:  # a module's poses lie in its data list: one without the other is worth nothing
         copy = output.with_suffix(beside.suffix)
         if not copy.exists():
             write_whole(copy, beside.read_bytes())
         elif copy.read_bytes() != beside.read_bytes():
-            raise ProgramError(f"{copy}: is there already and differs from {beside.name}")
+            raise ProgramError(
+                "programs.patch.beside_differs",
+                "{file}: is there already and differs from {name}",
+                file=str(copy),
+                name=beside.name,
+            )
     write_whole(output, written)
 
 
@@ -163,7 +226,9 @@ def _work(program, changes, source, module):
     for change in changes:
         _merge(named, change, program, lines)
     if not any(named.values()):
-        raise ProgramError(f"{program.file}: no change is asked for")
+        raise ProgramError(
+            "programs.patch.no_change", "{file}: no change is asked for", file=program.file
+        )
     work = Work(program, steps=np.zeros((len(motions), 3)), lines=lines, before=before)
     for line in sorted({motions[i].line for i in named}):
         for key, found in (("speed_mm_s", work.speeds), ("force_N", work.forces)):
@@ -175,25 +240,47 @@ def _work(program, changes, source, module):
 
 
 def _merge(named, change, program, lines):
-    where = change.get("where", program.file)
+    def wrong(code, text, /, **arguments):
+        if "where" in change:
+            return ProgramError.at(*change["where"], code, text, **arguments)
+        return ProgramError(code, text, **arguments).within(
+            "programs.in_file", "{file}: ", file=program.file
+        )
+
     motions = program.motions
     values = {key: float(change[key]) for key in COLUMNS if change.get(key) is not None}
     for key, value in values.items():
         most = {"speed_mm_s": MAX_SPEED, "force_N": MAX_FORCE}.get(key, MAX_STEP)
         least = -MAX_STEP if key.startswith(("d", "t")) else 0.0
         if not least <= value <= most or (key == "speed_mm_s" and value == 0.0):
-            raise ProgramError(f"{where}: {key} is {value:g}; it must be {least:g} to {most:g}")
+            raise wrong(
+                "programs.patch.out_of_range",
+                "{column} is {value:g}; it must be {least:g} to {most:g}",
+                column=key,
+                value=value,
+                least=least,
+                most=most,
+            )
     if change.get("line") is not None:
         members = lines.get(change["line"], [])
         if not members:
-            raise ProgramError(f"{where}: no motion is in line {change['line']} of {program.file}")
+            raise wrong(
+                "programs.patch.no_motion_in_line",
+                "no motion is in line {number} of {program}",
+                number=change["line"],
+                program=program.file,
+            )
         # An arc's auxiliary point has a place of its own, and the speed of its end.
         members = [(i, values) for i in members]
     else:
         i = change.get("index")
         if i is None or not 0 <= i < len(motions):
-            raise ProgramError(
-                f"{where}: there is no motion {i}; {program.file} has 0 to {len(motions) - 1}"
+            raise wrong(
+                "programs.patch.no_motion",
+                "there is no motion {motion}; {program} has 0 to {last}",
+                motion=i,
+                program=program.file,
+                last=len(motions) - 1,
             )
         members = [(i, values)]
         if motions[i].aux:
@@ -210,7 +297,12 @@ def _merge(named, change, program, lines):
             if motions[i].aux and key in ("speed_mm_s", "force_N"):
                 continue
             if named.setdefault(i, {}).setdefault(key, value) != value:
-                raise ProgramError(f"{where}: motion {i} is given two values of {key}")
+                raise wrong(
+                    "programs.patch.two_values",
+                    "motion {motion} is given two values of {column}",
+                    motion=i,
+                    column=key,
+                )
 
 
 def _agreed(work, line, members, named, key):
@@ -222,14 +314,28 @@ def _agreed(work, line, members, named, key):
         numbers = ", ".join(map(str, members[:10])) + (", ..." if len(members) > 10 else "")
         raise work.refuse(
             line,
-            f"this line is run through several times (motions {numbers}); a change of {key} "
-            "changes all of them: name all with the same value",
+            "programs.patch.several_rounds_value",
+            "this line is run through several times (motions {numbers}); a change of "
+            "{column} changes all of them: name all with the same value",
+            numbers=numbers,
+            column=key,
         )
     motion = work.program.motions[members[0]]
     if motion.pose is None:
-        raise work.refuse(line, f"motion {members[0]} has no pose that is known; it is not changed")
+        raise work.refuse(
+            line,
+            "programs.patch.unchanged_without_pose",
+            "motion {motion} has no pose that is known; it is not changed",
+            motion=members[0],
+        )
     if key == "speed_mm_s" and motion.kind == "PTP" and motion.speed_mm_s is None:
-        raise work.refuse(line, f"motion {members[0]} is a {motion.kind} without a path speed")
+        raise work.refuse(
+            line,
+            "programs.patch.no_path_speed",
+            "motion {motion} is a {kind} without a path speed",
+            motion=members[0],
+            kind=motion.kind,
+        )
     return values.pop()
 
 
@@ -249,7 +355,12 @@ def _shifts(work, line, named, source, module):
             second = not derived and not motions[i].aux and i > 0 and motions[i - 1].aux
             targets.setdefault(int(second), []).append(i)
         elif set(keys) & named.get(i, {}).keys() and not set(keys) & named.get(i + 1, {}).keys():
-            raise work.refuse(line, f"motion {i} follows from taught points; offset those")
+            raise work.refuse(
+                line,
+                "programs.patch.taught_points",
+                "motion {motion} follows from taught points; offset those",
+                motion=i,
+            )
     for target, members in targets.items():
         given = {tuple(named.get(i, {}).get(key, 0.0) for key in keys) for i in members}
         if given == {(0.0,) * 4}:
@@ -258,14 +369,21 @@ def _shifts(work, line, named, source, module):
             numbers = ", ".join(map(str, members[:10])) + (", ..." if len(members) > 10 else "")
             raise work.refuse(
                 line,
-                f"this line is run through several times (motions {numbers}); an offset moves all "
-                "of them: name all with the same offset",
+                "programs.patch.several_rounds_offset",
+                "this line is run through several times (motions {numbers}); an offset "
+                "moves all of them: name all with the same offset",
+                numbers=numbers,
             )
         *base, tool_z = given.pop()
         shift = Shift(np.array(base), tool_z, members)
         for i in members:
             if motions[i].pose is None:
-                raise work.refuse(line, f"motion {i} has no pose that is known; it is not moved")
+                raise work.refuse(
+                    line,
+                    "programs.patch.unmoved_without_pose",
+                    "motion {motion} has no pose that is known; it is not moved",
+                    motion=i,
+                )
             work.steps[i] = shift.base + tool_z * motions[i].pose[:3, 2]
         work.shifts.setdefault(line, {})[target] = shift
 
@@ -280,7 +398,9 @@ def _verify(program, again, work, source, module):
     solved = Counter(p.message for p in program.problems if p.line in edited)
     if len(old) != len(new) or problems - before or before - solved - problems:
         raise ProgramError(
-            f"{program.file}: the changed program does not read like the original; it is not written"
+            "programs.patch.reads_differently",
+            "{file}: the changed program does not read like the original; it is not written",
+            file=program.file,
         )
     free = getattr(module, "TURN_IS_FREE", False)
     report = []
@@ -293,18 +413,28 @@ def _verify(program, again, work, source, module):
         _close(i, a, "speed", speed, b.speed_mm_s, rounding, work)
         _close(i, a, "force", a.force_N if force is None else force, b.force_N, 0.0, work)
         if (a.pose is None) != (b.pose is None):
-            raise _other(i, a, "its pose")
+            raise _other(i, a, ITS["pose"])
         shifted = bool(step.any())
         if a.pose is not None and not (a.aux and module.derived(source, a.line)):
             rounding = module.ROUNDING_MM if shifted else 0.0
             error = np.abs(b.pose[:3, 3] - a.pose[:3, 3] - step).max()
             if error > rounding + UNCHANGED * (1.0 + np.abs(a.pose[:3, 3]).max()):
-                reason = "" if shifted else "; is it relative to one that is moved?"
-                raise _other(i, a, f"its place, by {error:.4g} mm more than asked{reason}")
+                place = Fact(
+                    "programs.patch.place",
+                    "its place, by {error:.4g} mm more than asked",
+                    error=float(error),
+                )
+                if not shifted:
+                    place = Fact(
+                        "programs.patch.place_relative",
+                        "{place}; is it relative to one that is moved?",
+                        place=place,
+                    )
+                raise _other(i, a, place)
             columns = slice(2, 3) if free else slice(0, 3)
             turn = np.abs(b.pose[:3, columns] - a.pose[:3, columns]).max()
             if turn > (1e-6 if shifted else UNCHANGED):
-                raise _other(i, a, "its orientation")
+                raise _other(i, a, ITS["orientation"])
         if a.line in work.speeds or a.line in work.forces or shifted:
             moved = None if b.pose is None else (b.pose[:3, 3] - a.pose[:3, 3]).tolist()
             row = {"index": i, "line": a.line, "speed_mm_s": b.speed_mm_s, "force_N": b.force_N}
@@ -315,21 +445,34 @@ def _verify(program, again, work, source, module):
 def _same_words(i, a, b):
     for key in ("kind", "tool", "base", "aux"):
         if getattr(a, key) != getattr(b, key):
-            raise _other(i, a, f"its {key}")
+            raise _other(i, a, ITS[key])
 
 
 def _close(i, motion, what, asked, found, rounding, work):
     if asked is None or found is None:
         if asked is not found:
-            raise _other(i, motion, f"its {what}")
+            raise _other(i, motion, ITS[what])
     elif not math.isclose(asked, found, rel_tol=1e-7, abs_tol=rounding + SMALL):
         named = motion.line in (work.speeds if what == "speed" else work.forces)
-        more = f" ({found:.6g} in place of {asked:.6g})" if named else ""
-        raise _other(i, motion, f"its {what}{more}")
+        if not named:
+            raise _other(i, motion, ITS[what])
+        told = Fact(
+            "programs.patch.in_place_of",
+            "{what} ({found:.6g} in place of {asked:.6g})",
+            what=ITS[what],
+            found=float(found),
+            asked=float(asked),
+        )
+        raise _other(i, motion, told)
 
 
 def _other(i, motion, what):
-    return ProgramError(
-        f"{motion.file}:{motion.line}: the change would alter motion {i} otherwise than asked: "
-        f"{what}; nothing is written"
+    return ProgramError.at(
+        motion.file,
+        motion.line,
+        "programs.patch.otherwise",
+        "the change would alter motion {motion} otherwise than asked: {what}; "
+        "nothing is written",
+        motion=i,
+        what=what,
     )

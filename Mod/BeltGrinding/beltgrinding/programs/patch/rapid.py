@@ -54,7 +54,11 @@ def _instruction(text, source, work, line):
         if spec_of(match.group().lower())
     ]
     if not found or any(match.start() < end for match in found[1:]):
-        raise work.refuse(line, "the line does not hold one motion by name; change it by hand")
+        raise work.refuse(
+            line,
+            "programs.patch.not_one_motion",
+            "the line does not hold one motion by name; change it by hand",
+        )
     word = found[0].group().lower()
     return word, spec_of(word), _arguments(text, found[0].end())
 
@@ -110,7 +114,12 @@ def _speed(source, text, work, line, value):
         if literal:
             values = [part.strip() for part in literal.group(1).split(",")]
         elif not re.fullmatch(r"v\d+", now):
-            raise work.refuse(line, f"what {now} holds is not written in this file")
+            raise work.refuse(
+                line,
+                "programs.patch.speed_data",
+                "what {name} holds is not written in this file",
+                name=now,
+            )
         source.replace(begin, end, f"[{','.join([number, *values[1:]])}]")
 
 
@@ -134,12 +143,20 @@ def _move(source, text, work, line, target, shift):
             if value:
                 had = literal.group(k)
                 if decimals(had) == 0 and "e" in had.lower():
-                    raise work.refuse(line, "its coordinates are no plain numbers")
+                    raise work.refuse(
+                        line,
+                        "programs.patch.no_plain_numbers",
+                        "its coordinates are no plain numbers",
+                    )
                 source.replace(*literal.span(k), moved(had, value))
         return
     if shift.base.any() and shift.tool_z:
         if step is None:
-            raise work.refuse(line, "its rounds are turned differently; give one kind of offset")
+            raise work.refuse(
+                line,
+                "programs.patch.rounds_one_kind",
+                "its rounds are turned differently; give one kind of offset",
+            )
         source.replace(begin, end, f"Offs({now},{_numbers(step)})")
     elif shift.base.any():
         source.replace(begin, end, f"Offs({now},{_numbers(shift.base)})")

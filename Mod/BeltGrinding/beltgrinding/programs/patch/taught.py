@@ -68,12 +68,22 @@ def _feed(source, line):
 def _set_feed(source, work, line, value):
     number, unit, found = _feed(source, line)
     if unit in ("%", "deg/sec", ""):
-        raise work.refuse(line, "the statement has no path speed that could be changed")
+        raise work.refuse(
+            line,
+            "programs.patch.no_speed_to_change",
+            "the statement has no path speed that could be changed",
+        )
     new = unit if unit in MM_PER_S else "mm/sec"
     digits = _digits(number, new) if new == unit else 0
     text = decimal(value / MM_PER_S[new], digits, digits)
     if float(text) == 0.0:
-        raise work.refuse(line, f"{value:g} mm/s is less than {new} can say there")
+        raise work.refuse(
+            line,
+            "programs.patch.too_slow",
+            "{value:g} mm/s is less than {unit} can say there",
+            value=value,
+            unit=new,
+        )
     source.replace(found.start(1), found.end(1), text)
     source.replace(*found.span(3), new)
 
@@ -82,18 +92,28 @@ def _set_v(source, work, line, value):
     found = V.search(source.line(line))
     begin = source.span(line)[0]
     if re.search(r"\sV[RE]=", source.line(line)):
-        raise work.refuse(line, "VR= or VE= is no path speed")
+        raise work.refuse(line, "programs.patch.no_path_speed_word", "VR= or VE= is no path speed")
     text = decimal(value, 1, 1)
     if float(text) == 0.0:
-        raise work.refuse(line, f"{value:g} mm/s is less than V= can say")
+        raise work.refuse(
+            line, "programs.patch.too_slow_v", "{value:g} mm/s is less than V= can say", value=value
+        )
     if found:
         if "." not in found.group(2):
-            raise work.refuse(line, "V= without a decimal point may be mm/s or cm/min")
+            raise work.refuse(
+                line,
+                "programs.patch.speed_unit",
+                "V= without a decimal point may be mm/s or cm/min",
+            )
         source.replace(begin + found.start(2), begin + found.end(2), text)
         return
     position = MOVE.match(source.line(line))
     if not position:
-        raise work.refuse(line, "the instruction is not understood; change it by hand")
+        raise work.refuse(
+            line,
+            "programs.patch.instruction",
+            "the instruction is not understood; change it by hand",
+        )
     source.replace(begin + position.end(), begin + position.end(), f" V={text}")
 
 
@@ -107,7 +127,11 @@ def _shared(work, used, position, shift, mine):
             name = f"P[{position}]" if work.program.language == "Fanuc TP" else f"C{position}"
             raise work.refuse(
                 mine,
-                f"{name} is the target in line {line} as well; offset all its motions by the same",
+                "programs.patch.shared_target",
+                "{name} is the target in line {other} as well; offset all its motions by "
+                "the same",
+                name=name,
+                other=line,
             )
     return step
 
@@ -127,7 +151,12 @@ def _move_positions(source, work):
         while re.match(r"\s*:", source.line(statement)):  # continues the one before
             statement -= 1
         if not n:
-            raise work.refuse(line, f"P[{match.group(1)}] may be any position; none is moved")
+            raise work.refuse(
+                line,
+                "programs.patch.any_position",
+                "P[{index}] may be any position; none is moved",
+                index=match.group(1),
+            )
         target = own.setdefault(statement, [])
         used.setdefault(int(n.group(1)), []).append((statement, len(target)))
         target.append(int(n.group(1)))
@@ -137,10 +166,12 @@ def _move_positions(source, work):
         begin = source.span(line)[0]
         statement = text[begin : text.find(";", begin)]
         if re.search(r"\bINC\b", statement):
-            raise work.refuse(line, "INC is relative to the motion before it")
+            raise work.refuse(line, "programs.patch.inc", "INC is relative to the motion before it")
         n = own.get(line, [])[target] if target < len(own.get(line, [])) else None
         if n not in blocks:
-            raise work.refuse(line, "its target is no position of this program")
+            raise work.refuse(
+                line, "programs.patch.no_position", "its target is no position of this program"
+            )
         step = _shared(work, used, n, shift, line)
         if n in done:
             continue
@@ -175,7 +206,9 @@ def _move_rows(source, work):
         move = re.match(r"\s*MOV[JLCS]\s+C(\d+)(?=\s|$)", source.line(line))
         if not move or int(move.group(1)) not in rows:
             raise work.refuse(
-                line, "its target is no C position: a variable is other jobs' as well"
+                line,
+                "programs.patch.no_c_position",
+                "its target is no C position: a variable is other jobs' as well",
             )
         n = int(move.group(1))
         step = _shared(work, used, n, shift, line)

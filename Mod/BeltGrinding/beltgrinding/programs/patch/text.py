@@ -34,6 +34,10 @@ def moved(text, step, digits=COORDINATE_DIGITS):
     return decimal(float(text) + step, max(had, digits), had)
 
 
+class Overlap(Exception):
+    """Two edits of one place."""
+
+
 class Source:
     """A file as text of which one character is one byte (Latin-1), its lines from 1, its edits."""
 
@@ -83,11 +87,11 @@ class Source:
         return self.end
 
     def result(self):
-        """The bytes with all edits. Two edits of one place are a mistake: ValueError."""
+        """The bytes with all edits. Raises Overlap."""
         parts, at = [], 0
         for begin, end, text in sorted(self.edits, key=lambda edit: edit[:2]):
             if begin < at:
-                raise ValueError("two changes of the same place")
+                raise Overlap
             parts += [self.text[at:begin], text]
             at = end
         return "".join([*parts, self.text[at:]]).encode("latin-1")
@@ -114,8 +118,9 @@ class Work:
     lines: Dict[int, List[int]] = field(default_factory=dict)  # motions of each line
     before: List[int] = None  # the motion that ended before each one, -1: none
 
-    def refuse(self, line, message):
-        return ProgramError(f"{self.program.file}:{line}: {message}")
+    def refuse(self, line, code, text, /, **arguments):
+        """The ProgramError of a change in a line."""
+        return ProgramError.at(self.program.file, line, code, text, **arguments)
 
     def targets(self):
         """(line, target, shift) in the order of the lines."""
@@ -143,7 +148,11 @@ class Work:
             for i in shift.motions
         ]
         if np.abs(np.array(rows) - rows[0]).max() >= SMALL:
-            raise self.refuse(line, "it is relative to motions that are displaced differently")
+            raise self.refuse(
+                line,
+                "programs.patch.displaced_differently",
+                "it is relative to motions that are displaced differently",
+            )
         return rows[0]
 
     def speed_before(self, line):
@@ -155,8 +164,10 @@ class Work:
         for line in self.forces:
             raise self.refuse(
                 line,
-                f"{self.program.language} has no pressing force that is read here; "
-                "set it in the force controller's own instruction",
+                "programs.patch.no_force",
+                "{language} has no pressing force that is read here; set it in the force "
+                "controller's own instruction",
+                language=self.program.language,
             )
 
     def relative(self, line, shift, what):
@@ -164,7 +175,10 @@ class Work:
         step = self.in_base(shift)
         if step is None or np.abs(step - self.inherited(shift, line)).max() >= SMALL:
             raise self.refuse(
-                line, f"{what} is relative to the motion before it; offset that by the same"
+                line,
+                "programs.patch.relative",
+                "{what} is relative to the motion before it; offset that by the same",
+                what=what,
             )
 
 
@@ -186,8 +200,9 @@ def plan(statements, wanted, before, refuse):
         if old is None or not known:
             raise refuse(
                 last,
-                "the speed that holds after it is not known here, so it cannot be put back; "
-                "set the speed of the next motion in the program first",
+                "programs.patch.speed_after",
+                "the speed that holds after it is not known here, so it cannot be put "
+                "back; set the speed of the next motion in the program first",
             )
         result.append(("after", last, old))
 

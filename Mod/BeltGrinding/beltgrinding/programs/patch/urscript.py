@@ -54,7 +54,11 @@ def _call(source, work, line):
     code = COMMENT.sub(lambda m: m.group(1) or "", source.line(line))
     found = list(CALL.finditer(code))
     if len(found) != 1:
-        raise work.refuse(line, "the line does not hold one motion by name; change it by hand")
+        raise work.refuse(
+            line,
+            "programs.patch.not_one_motion",
+            "the line does not hold one motion by name; change it by hand",
+        )
     arguments, depth, first = [], 0, found[0].end()
     for at in range(first, len(code)):
         letter = code[at]
@@ -69,7 +73,9 @@ def _call(source, work, line):
                 return found[0].group(1), arguments, begin + stop
             first = at + 1
         depth += (letter in "([") - (letter in ")]")
-    raise work.refuse(line, "the motion does not end in its line")
+    raise work.refuse(
+        line, "programs.patch.motion_does_not_end", "the motion does not end in its line"
+    )
 
 
 def _given(names, arguments):
@@ -93,7 +99,11 @@ def _move(source, work, line, shift, begin, end):
             return
     step = work.in_tool(shift)
     if step is None:
-        raise work.refuse(line, "its passes are turned differently; give the offset as tool_dz_mm")
+        raise work.refuse(
+            line,
+            "programs.patch.passes_turned",
+            "its passes are turned differently; give the offset as tool_dz_mm",
+        )
     place = ", ".join(decimal(v / 1000.0, PLACE_DIGITS + 2, 1) for v in np.round(step, 9))
     source.replace(begin, end, f"pose_trans({text}, p[{place}, 0.0, 0.0, 0.0])")
 

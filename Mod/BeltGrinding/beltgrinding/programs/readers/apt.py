@@ -11,7 +11,7 @@ import math
 import re
 from pathlib import Path
 
-from ..program import MAX_COORDINATE, Problem, Program, ProgramError, bytes_of, name_of
+from ..program import MAX_COORDINATE, Fact, Program, ProgramError, Unknown, bytes_of, name_of
 from .tool_axis import Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
@@ -45,15 +45,11 @@ def read(path):
     reader = _Reader(name_of(path))
     for line, text in reader.statements(re.split(r"\r\n|\n|\r", raw.decode("latin-1"))):
         if len(reader.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{path.name}:{line}: the program is too long")
+            raise ProgramError.at(path.name, line, "programs.too_long", "the program is too long")
         if not reader.statement(line, text):
             break
     reader.finish()
     return reader.program
-
-
-class _Unknown(Exception):
-    """A statement that cannot be followed; says why."""
 
 
 class _Reader:
@@ -71,8 +67,8 @@ class _Reader:
         self.line = 1
         self.ended = False  # FINI, or NX's END-OF-PATH without motions after it
 
-    def problem(self, line, message):
-        self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, told, text=None, /, **arguments):
+        self.program.problem(self.file, line, told, text, **arguments)
 
     def statements(self, lines):
         """(line number of its beginning, text) without comments, continuations joined."""
@@ -86,12 +82,21 @@ class _Reader:
             if text.endswith("$") and not comment:
                 parts.append(text[:-1])
                 if len(parts) > MAX_CONTINUED:
-                    raise ProgramError(f"{self.file}:{begun}: the statement does not end")
+                    raise ProgramError.at(
+                        self.file,
+                        begun,
+                        "programs.apt.endless_statement",
+                        "the statement does not end",
+                    )
                 continue
             yield begun, "".join([*parts, text]).strip()
             begun, parts = None, []
         if parts:
-            self.problem(begun, "the last statement is continued, but the file ends")
+            self.problem(
+                begun,
+                "programs.apt.continued",
+                "the last statement is continued, but the file ends",
+            )
 
     def statement(self, line, text):
         """Follows one statement; False at the program's end."""
@@ -109,7 +114,10 @@ class _Reader:
         try:
             if self.circle and word not in ("GOTO", "FEDRAT", "PAINT"):
                 self.circle = None
-                raise _Unknown("the arc before it has no GOTO as its end")
+                raise Unknown(
+                    "programs.apt.arc_before_without_end",
+                    "the arc before it has no GOTO as its end",
+                )
             if word in ("GOTO", "FROM"):
                 self.goto(line, word, values)
             elif word == "GODLTA":
@@ -130,64 +138,103 @@ class _Reader:
             elif word == "MSYS":
                 self.base = f"MSYS {rest.strip()}"
             elif word in ("TLCOMP", "CUTCOM") and values and values[0].upper() != "OFF":
-                self.once(word, line, f"{word}: the control shifts the path; it is taken unshifted")
+                self.once(
+                    word,
+                    line,
+                    "programs.apt.offset",
+                    "{word}: the control shifts the path; it is taken unshifted",
+                    word=word,
+                )
             elif re.match(r"CYCLE", word):
                 if not values or values[0].upper() not in ("OFF", "ON"):
-                    self.lost(line, f"{word} is a cycle of the control; its motions are left out")
+                    self.lost(
+                        line,
+                        "programs.apt.cycle",
+                        "{word} is a cycle of the control; its motions are left out",
+                        word=word,
+                    )
             elif word in MOVING:
-                self.lost(line, f"{word} depends on the machine; its motions are left out")
+                self.lost(
+                    line,
+                    "programs.apt.machine",
+                    "{word} depends on the machine; its motions are left out",
+                    word=word,
+                )
             elif word not in HARMLESS:
-                raise _Unknown("the statement is not known here")
-        except _Unknown as unknown:
-            self.lost(line, f"{word[:40] or text[:40]} is left out: {unknown}")
+                raise Unknown("programs.apt.unknown_statement", "the statement is not known here")
+        except Unknown as unknown:
+            self.lost(
+                line,
+                "programs.left_out",
+                "{what} is left out: {reason}",
+                what=word[:40] or text[:40],
+                reason=unknown.fact,
+            )
         return True
 
-    def lost(self, line, message):
-        self.problem(line, message)
+    def lost(self, line, told, text=None, /, **arguments):
+        self.problem(line, told, text, **arguments)
         self.trace.gap(line)
 
-    def once(self, key, line, message):
+    def once(self, key, line, told, text=None, /, **arguments):
         if key not in self.told:
             self.told.add(key)
-            self.problem(line, message)
+            self.problem(line, told, text, **arguments)
 
     def finish(self):
         if self.circle:
-            self.problem(self.circle[0], "the arc has no GOTO as its end; it is left out")
+            self.problem(
+                self.circle[0],
+                "programs.apt.arc_without_end",
+                "the arc has no GOTO as its end; it is left out",
+            )
         if not self.ended:
-            self.problem(self.line, "the file ends without FINI; it may be cut off")
+            self.problem(
+                self.line, "programs.apt.no_fini", "the file ends without FINI; it may be cut off"
+            )
 
     @staticmethod
     def numbers(values, *counts):
         if len(values) not in counts:
-            expected = " or ".join(map(str, counts))
-            raise _Unknown(f"it has {len(values)} values, not {expected}")
+            expected = str(counts[0])
+            for count in counts[1:]:
+                expected = Fact("programs.or", "{one} or {other}", one=expected, other=str(count))
+            raise Unknown(
+                "programs.apt.count",
+                "it has {count} values, not {expected}",
+                count=len(values),
+                expected=expected,
+            )
         result = []
         for value in values:
             if not NUMBER.fullmatch(value):
-                raise _Unknown(f"'{value[:30]}' is no number")
+                raise Unknown("programs.apt.no_number", "'{value}' is no number", value=value[:30])
             result.append(float(value.replace("D", "E").replace("d", "e")))
             if not math.isfinite(result[-1]):
-                raise _Unknown(f"'{value[:30]}' is too large a number")
+                raise Unknown(
+                    "programs.apt.number_too_large",
+                    "'{value}' is too large a number",
+                    value=value[:30],
+                )
         return result
 
     def point(self, values):
         point = tuple(self.scale * v for v in values)
         if max(map(abs, point)) > MAX_COORDINATE:
-            raise _Unknown("the position is out of all bounds")
+            raise Unknown("programs.position_out_of_bounds", "the position is out of all bounds")
         return point
 
     def goto(self, line, word, values):
         circle, self.circle = self.circle, None
         rapid, self.rapid = self.rapid or word == "FROM", False
-        self.once("UNITS", line, "UNITS is not given; mm are assumed")
+        self.once("UNITS", line, "programs.apt.no_units", "UNITS is not given; mm are assumed")
         numbers = self.numbers(values, 3, 6)
         position = self.point(numbers[:3])
         axis = self.axis
         if len(numbers) == 6:
             axis = unit(numbers[3:])
             if axis is None or abs(math.hypot(*numbers[3:]) - 1.0) > 0.01:
-                raise _Unknown("the tool axis i, j, k is not of length 1")
+                raise Unknown("programs.apt.tool_axis", "the tool axis i, j, k is not of length 1")
         if circle and not rapid:
             self.end_arc(line, circle, position, axis)
         else:
@@ -206,7 +253,9 @@ class _Reader:
     def delta(self, line, values):
         numbers = self.numbers(values, 1, 3)
         if self.trace.position is None:
-            raise _Unknown("it is relative to a position that is not known")
+            raise Unknown(
+                "programs.apt.relative_to_unknown", "it is relative to a position that is not known"
+            )
         if len(numbers) == 1:  # along the tool's axis
             numbers = [numbers[0] * a for a in self.axis]
         step = self.point(numbers)
@@ -220,7 +269,7 @@ class _Reader:
         numbers = self.numbers(values[:7], 7)
         normal = unit(numbers[3:6])
         if normal is None or numbers[6] <= 0:
-            raise _Unknown("its axis or its radius is zero")
+            raise Unknown("programs.apt.axis_or_radius", "its axis or its radius is zero")
         centre, radius = self.point(numbers[:3]), self.scale * numbers[6]
         if word == "CIRCLE" or len(values) == 7:
             if len(values) > 7:
@@ -228,12 +277,16 @@ class _Reader:
             self.circle = (line, centre, normal, radius)
             return
         if values[7].upper() != "ANGLE":
-            raise _Unknown(f"'{values[7][:30]}' is not understood")
+            raise Unknown(
+                "programs.not_understood", "'{text}' is not understood", text=values[7][:30]
+            )
         angle = math.radians(self.numbers(values[8:], 1)[0])
         if not 0 < abs(angle) <= 2 * math.pi + 1e-9:
-            raise _Unknown("its angle is not within one turn")
+            raise Unknown("programs.apt.angle", "its angle is not within one turn")
         if self.trace.position is None:
-            raise _Unknown("the position before it is not known")
+            raise Unknown(
+                "programs.apt.position_before_unknown", "the position before it is not known"
+            )
         end = _turned(self.trace.position, centre, normal, angle)
         if angle < 0:
             normal = tuple(-v for v in normal)
@@ -244,13 +297,17 @@ class _Reader:
         _, centre, normal, radius = circle
         start = self.trace.position
         if start is None:
-            raise _Unknown("an arc begins at a position that is not known")
+            raise Unknown(
+                "programs.arc_from_nowhere", "an arc begins at a position that is not known"
+            )
         for point in (start, end):
             offset = [a - b for a, b in zip(point, centre)]
             along = sum(a * b for a, b in zip(offset, normal))
             across = math.sqrt(max(0.0, sum(v * v for v in offset) - along * along))
             if abs(across - radius) > max(RADIUS_ERROR, 1e-3 * radius):
-                raise _Unknown("the arc's start or end is not on its circle")
+                raise Unknown(
+                    "programs.apt.arc_off_circle", "the arc's start or end is not on its circle"
+                )
         full = math.dist(start, end) < 1e-6
         points = [*arc_through(start, centre, end, normal, full), end]
         self.trace.arcs(points, axis, line, self.speed, tool=self.tool, base=self.base)
@@ -264,27 +321,48 @@ class _Reader:
             return
         if len(others) != 1 or len(values) > 2:
             self.speed = None
-            self.problem(line, "FEDRAT is not understood; the speed is not known")
+            self.problem(
+                line,
+                "programs.apt.fedrat_not_understood",
+                "FEDRAT is not understood; the speed is not known",
+            )
         elif per_turn:
             self.speed = None
-            self.problem(line, "a feed per revolution: the speed in mm/s is not known")
+            self.problem(
+                line,
+                "programs.apt.per_revolution",
+                "a feed per revolution: the speed in mm/s is not known",
+            )
         elif len(values) == 2 and unit_name is None:
             self.speed = None
-            self.problem(line, f"FEDRAT's unit in '{', '.join(values)[:40]}' is not known")
+            self.problem(
+                line,
+                "programs.apt.fedrat_unit",
+                "FEDRAT's unit in '{values}' is not known",
+                values=", ".join(values)[:40],
+            )
         else:
             value = self.numbers(others, 1)[0]
             factor = FEED_UNITS[unit_name] if unit_name else self.scale / 60.0
             self.speed = value * factor if 0 < value < 1e9 else None
             self.rapid = False
             if self.speed is None:
-                self.problem(line, "FEDRAT is not positive; the speed is not known")
+                self.problem(
+                    line,
+                    "programs.apt.fedrat_not_positive",
+                    "FEDRAT is not positive; the speed is not known",
+                )
 
     def units(self, line, values):
         name = values[0].upper() if len(values) == 1 else ""
         scales = {"MM": 1.0, "INCHES": INCH, "INCH": INCH, "IN": INCH, "CM": 10.0}
         if name not in scales:
-            raise ProgramError(
-                f"{self.file}:{line}: UNITS/{name[:20]} is unknown; use MM or INCHES"
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.apt.units",
+                "UNITS/{unit} is unknown; use MM or INCHES",
+                unit=name[:20],
             )
         self.scale = scales[name]
         self.told.add("UNITS")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base import frames
-from ..program import MAX_COORDINATE, Motion, Problem, Program, ProgramError, name_of
+from ..program import MAX_COORDINATE, Fact, Motion, Program, ProgramError, cannot_be_read, name_of
 
 POSITION = ("x_mm", "y_mm", "z_mm")
 QUATERNION = ("qw", "qx", "qy", "qz")
@@ -22,16 +22,24 @@ def read(path):
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
-        raise ProgramError(f"{path}: is not UTF-8 text; save the table as CSV, UTF-8") from None
+        raise ProgramError(
+            "programs.csv.not_utf8",
+            "{file}: is not UTF-8 text; save the table as CSV, UTF-8",
+            file=str(path),
+        ) from None
     except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        raise ProgramError(f"{name}: the file is empty; it needs a row of column names and poses")
+        raise ProgramError(
+            "programs.csv.empty",
+            "{file}: the file is empty; it needs a row of column names and poses",
+            file=name,
+        )
     number, head = lines[0]
     delimiter = max(",;\t", key=head.count)
     columns = [column.strip() for column in head.split(delimiter)]
@@ -40,19 +48,34 @@ def read(path):
     try:
         rows = list(csv.reader((line for _, line in lines[1:]), delimiter=delimiter, strict=True))
     except csv.Error as error:
-        raise ProgramError(f"{name}: is no sound CSV: {error}") from None
+        raise ProgramError(
+            "programs.no_sound_csv",
+            "{file}: is no sound CSV: {reason}",
+            file=name,
+            reason=str(error),
+        ) from None
     if len(rows) != len(lines) - 1:
-        raise ProgramError(f"{name}: a quoted field runs over several lines")
+        raise ProgramError(
+            "programs.csv.quoted", "{file}: a quoted field runs over several lines", file=name
+        )
     for (number, _), row in zip(lines[1:], rows):
         if len(row) != len(columns):
-            raise ProgramError(
-                f"{name}:{number}: {len(row)} values in {len(columns)} columns; "
-                "use a point as the decimal mark"
+            raise ProgramError.at(
+                name,
+                number,
+                "programs.csv.values",
+                "{count} values in {columns} columns; use a point as the decimal mark",
+                count=len(row),
+                columns=len(columns),
             )
         program.motions.append(_motion(dict(zip(columns, row)), name, number))
     if not text.endswith(("\n", "\r")):
-        message = "the last line has no end; a number in it may be cut off"
-        program.problems.append(Problem(name, lines[-1][0], message))
+        program.problem(
+            name,
+            lines[-1][0],
+            "programs.csv.cut",
+            "the last line has no end; a number in it may be cut off",
+        )
     if "qw" in columns:
         _turn(program.motions)
     return program
@@ -68,7 +91,9 @@ def _turn(motions):
             try:
                 frames.from_quaternion(row[:3], row[3:])
             except ValueError as error:
-                raise ProgramError(f"{motion.file}:{motion.line}: {error}") from None
+                raise ProgramError.at(
+                    motion.file, motion.line, "programs.reason", "{reason}", reason=str(error)
+                ) from None
         raise
     for motion, pose in zip(motions, poses):
         motion.pose = pose
@@ -78,18 +103,30 @@ def _check(columns, name, number):
     for group in (POSITION, QUATERNION if "qw" in columns else ANGLES):
         for column in group:
             if column not in columns:
-                raise ProgramError(
-                    f"{name}:{number}: the column {column} is missing; a pose needs "
-                    f"{', '.join(POSITION)} and {', '.join(QUATERNION)} or {', '.join(ANGLES)}"
+                raise ProgramError.at(
+                    name,
+                    number,
+                    "programs.csv.missing_column",
+                    "the column {column} is missing; a pose needs {position} and "
+                    "{quaternion} or {angles}",
+                    column=column,
+                    position=", ".join(POSITION),
+                    quaternion=", ".join(QUATERNION),
+                    angles=", ".join(ANGLES),
                 )
     known = {*POSITION, *QUATERNION, *ANGLES, *OPTIONAL}
     for column in columns:
         if column not in known:
-            raise ProgramError(
-                f"{name}:{number}: unknown column '{column}'; known are {', '.join(sorted(known))}"
+            raise ProgramError.at(
+                name,
+                number,
+                "programs.csv.unknown_column",
+                "unknown column '{column}'; known are {names}",
+                column=column,
+                names=", ".join(sorted(known)),
             )
     if len(set(columns)) != len(columns):
-        raise ProgramError(f"{name}:{number}: a column occurs twice")
+        raise ProgramError.at(name, number, "programs.csv.column_twice", "a column occurs twice")
 
 
 def _motion(row, name, line):
@@ -97,13 +134,27 @@ def _motion(row, name, line):
         try:
             value = float(row[column])
         except ValueError:
-            raise ProgramError(
-                f"{name}:{line}: {column} is '{row[column].strip()}', no number"
+            raise ProgramError.at(
+                name,
+                line,
+                "programs.csv.no_number",
+                "{column} is '{text}', no number",
+                column=column,
+                text=row[column].strip(),
             ) from None
         if not math.isfinite(value):
-            raise ProgramError(f"{name}:{line}: {column} is not finite")
+            raise ProgramError.at(
+                name, line, "programs.csv.not_finite", "{column} is not finite", column=column
+            )
         if abs(value) > MAX_COORDINATE:
-            raise ProgramError(f"{name}:{line}: {column} is {value:g}, out of all bounds")
+            raise ProgramError.at(
+                name,
+                line,
+                "programs.csv.out_of_bounds",
+                "{column} is {value:g}, out of all bounds",
+                column=column,
+                value=value,
+            )
         return value
 
     def optional(column, least):
@@ -111,7 +162,14 @@ def _motion(row, name, line):
             return None
         value = number(column)
         if value < least or (column == "feed_mm_s" and value == 0.0):
-            raise ProgramError(f"{name}:{line}: {column} is {value:g}; it must be positive")
+            raise ProgramError.at(
+                name,
+                line,
+                "programs.csv.not_positive",
+                "{column} is {value:g}; it must be positive",
+                column=column,
+                value=value,
+            )
         return value
 
     position = [number(column) for column in POSITION]
@@ -121,6 +179,13 @@ def _motion(row, name, line):
         pose = frames.from_abc(position, [number(column) for column in ANGLES])
     kind = row.get("motion", "").strip().upper() or "LIN"
     if kind not in MOTIONS:
-        raise ProgramError(f"{name}:{line}: motion is '{kind}'; use {' or '.join(MOTIONS)}")
+        raise ProgramError.at(
+            name,
+            line,
+            "programs.csv.motion",
+            "motion is '{kind}'; use {names}",
+            kind=kind,
+            names=Fact("programs.or", "{one} or {other}", one=MOTIONS[0], other=MOTIONS[1]),
+        )
     feed, force, zone = (optional(c, 0.0) for c in ("feed_mm_s", "force_N", "zone_mm"))
     return Motion(kind, pose, line, name, feed, force, zone_mm=zone)

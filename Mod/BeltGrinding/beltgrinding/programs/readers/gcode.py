@@ -13,7 +13,7 @@ import math
 import re
 from pathlib import Path
 
-from ..program import MAX_COORDINATE, Problem, Program, ProgramError, bytes_of, name_of
+from ..program import MAX_COORDINATE, Fact, Program, ProgramError, Unknown, bytes_of, name_of
 from .tool_axis import Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
@@ -32,6 +32,8 @@ NAMED = re.compile(
     r"^(?:ORI\w+|CUT2D\w*|SOFT|BRISK|COMP\w+|FFWO[NF]|FIFOCTRL|UPATH|SPATH|MSG|STOPRE|"
     r"WORKPIECE|T\s*=?\s*\"[^\"]*\"|D\d+|CYCLE832)$"
 )
+# Reasons that hold for many motions of a file.
+KINEMATICS = ("programs.gcode.kinematics", "programs.gcode.a_and_b")
 FRAMES = re.compile(r"A?(?:TRANS|ROT|SCALE|MIRROR)S?\b|CYCLE800\b")
 
 
@@ -42,7 +44,7 @@ def read(path):
     reader = _Reader(name_of(path))
     for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
         if len(reader.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{path.name}:{line}: the program is too long")
+            raise ProgramError.at(path.name, line, "programs.too_long", "the program is too long")
         if not reader.block(line, text):
             break
     else:
@@ -50,8 +52,10 @@ def read(path):
     return reader.program
 
 
-class _Unknown(Exception):
-    """A block that cannot be followed; says why."""
+def _frame_changed(word):
+    return Fact(
+        "programs.gcode.frame_changed", "{word} changes the frame in the control", word=word
+    )
 
 
 class _Reader:
@@ -76,18 +80,18 @@ class _Reader:
         self.told = set()
         self.ended = False  # by % or M99
 
-    def problem(self, line, message):
-        self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, told, text=None, /, **arguments):
+        self.program.problem(self.file, line, told, text, **arguments)
 
-    def once(self, key, line, message):
+    def once(self, key, line, told, text=None, /, **arguments):
         if key not in self.told:
             self.told.add(key)
-            self.problem(line, message)
+            self.problem(line, told, text, **arguments)
 
-    def lost(self, line, message, key=None):
+    def lost(self, line, told, text=None, /, key=None, **arguments):
         """A motion is left out; where it ends is kept only as far as its words are known."""
         if key is None or key not in self.told:
-            self.problem(line, message)
+            self.problem(line, told, text, **arguments)
         self.told.add(key)
         motions = self.program.motions
         if not motions or motions[-1].pose is not None:
@@ -96,7 +100,11 @@ class _Reader:
     def finish(self, line):
         """At the file's last line, without M2 or M30."""
         if not self.ended:
-            self.problem(line, "the file ends without M30, M2 or %; it may be cut off")
+            self.problem(
+                line,
+                "programs.gcode.no_end",
+                "the file ends without M30, M2 or %; it may be cut off",
+            )
 
     def block(self, line, text):
         """Follows one line; False at the program's end."""
@@ -110,7 +118,11 @@ class _Reader:
             self.ended = True
         if not text or text.startswith(("%", "/")):
             if text.startswith("/"):
-                self.lost(line, "a block with / is skipped or not by a switch; it is left out")
+                self.lost(
+                    line,
+                    "programs.gcode.block_skip",
+                    "a block with / is skipped or not by a switch; it is left out",
+                )
                 self.forget(text)
             return True
         body = re.sub(r"^(?:[N:]\s*\d+|O\d+)\s*", "", text)
@@ -119,13 +131,20 @@ class _Reader:
         self.ended = body == "M99"
         try:
             if MACRO.search(body):
-                raise _Unknown("variables and macros are known to the control only")
+                raise Unknown(
+                    "programs.gcode.macro", "variables and macros are known to the control only"
+                )
             frame = FRAMES.match(body)
             if frame:
                 self.shifted = None
                 if body not in ("TRANS", "ROT", "SCALE", "MIRROR"):
-                    self.shifted = f"{frame.group(0)} changes the frame in the control"
-                    self.problem(line, f"{self.shifted}; the motions in it are left out")
+                    self.shifted = _frame_changed(frame.group(0))
+                    self.problem(
+                        line,
+                        "programs.gcode.motions_left_out",
+                        "{reason}; the motions in it are left out",
+                        reason=self.shifted,
+                    )
             elif body == "TRAORI":
                 self.tcp, self.vector = "angles", None
             elif body == "TRAFOOF":
@@ -133,8 +152,13 @@ class _Reader:
             elif body and not NAMED.match(body):
                 turned = self.turn(body)
                 return self.words(line, self.split(VECTOR.sub(" ", body).strip()), turned)
-        except _Unknown as unknown:
-            self.lost(line, f"the block is left out: {unknown}")
+        except Unknown as unknown:
+            self.lost(
+                line,
+                "programs.gcode.block_left_out",
+                "the block is left out: {reason}",
+                reason=unknown.fact,
+            )
             self.forget(body)
         return True
 
@@ -159,12 +183,16 @@ class _Reader:
         while at < len(body):
             match = WORD.match(body, at)
             if not match:
-                raise _Unknown(f"cannot read '{body[at:].strip()[:30]}'")
+                raise Unknown(
+                    "programs.cannot_be_parsed", "cannot read '{text}'", text=body[at:].strip()[:30]
+                )
             letter, value = match.group(1), float(match.group(2))
             if abs(value) > MAX_COORDINATE:
-                raise _Unknown(f"{letter} is out of all bounds")
+                raise Unknown("programs.out_of_bounds", "{what} is out of all bounds", what=letter)
             if letter == "E" and at and body[at - 1 : at].strip() and body[at] == "E":
-                raise _Unknown("E after a number: an exponent or a word of its own")
+                raise Unknown(
+                    "programs.gcode.e_word", "E after a number: an exponent or a word of its own"
+                )
             words.append((letter, value))
             at = match.end()
         return words
@@ -177,7 +205,7 @@ class _Reader:
         values = {letter: float(text) for letter, text in parts}
         axis = unit([values.get(letter, 0.0) for letter in "ABC"])
         if len(values) < len(parts) or axis is None or self.tcp != "angles":
-            raise _Unknown("A3, B3, C3 are no direction, or without TRAORI")
+            raise Unknown("programs.gcode.vector", "A3, B3, C3 are no direction, or without TRAORI")
         self.vector = axis
         return True
 
@@ -189,11 +217,17 @@ class _Reader:
             elif letter == "M":
                 going = going and value not in (2, 30)
                 if value in (98, 97):
-                    raise _Unknown("a subprogram's motions are not in this block")
+                    raise Unknown(
+                        "programs.gcode.subprogram", "a subprogram's motions are not in this block"
+                    )
             elif letter in given:
-                raise _Unknown(f"{letter} occurs twice")
+                raise Unknown("programs.gcode.word_twice", "{letter} occurs twice", letter=letter)
             elif letter in "UVWL":
-                raise _Unknown(f"the meaning of {letter} is known to the control only")
+                raise Unknown(
+                    "programs.gcode.meaning",
+                    "the meaning of {letter} is known to the control only",
+                    letter=letter,
+                )
             else:
                 given[letter] = value
         if "T" in given:
@@ -208,7 +242,9 @@ class _Reader:
             return going
         if once == 92:
             if any(letter in given for letter in "XYZABC"):
-                self.shifted = "G92 sets an origin that is not known here"
+                self.shifted = Fact(
+                    "programs.gcode.origin", "G92 sets an origin that is not known here"
+                )
             return going
         moves = (
             turned
@@ -218,12 +254,22 @@ class _Reader:
         if moves:
             if once in (28, 30, 53):
                 self.at = [None, None, None]
-                self.lost(line, f"G{once} goes to the machine's coordinates; it is left out")
+                self.lost(
+                    line,
+                    "programs.gcode.machine_coordinates",
+                    "G{code} goes to the machine's coordinates; it is left out",
+                    code=once,
+                )
             else:
                 self.move(line, given)
         elif once in (28, 30):
             self.at = [None, None, None]
-            self.lost(line, f"G{once} goes to the machine's coordinates; it is left out")
+            self.lost(
+                line,
+                "programs.gcode.machine_coordinates",
+                "G{code} goes to the machine's coordinates; it is left out",
+                code=once,
+            )
         return going
 
     def code(self, line, code):
@@ -244,17 +290,30 @@ class _Reader:
             self.base = f"G{code:g}"
         elif code in (41, 42, 43, 44):
             if code in (41, 42):
-                self.once(code, line, f"G{code:g}: the control shifts the path; taken unshifted")
+                self.once(
+                    code,
+                    line,
+                    "programs.gcode.offset",
+                    "G{code}: the control shifts the path; taken unshifted",
+                    code=f"{code:g}",
+                )
         elif code in (93, 95, 96):
             pass
         elif code in (28, 30, 53, 92):
             return int(code)
         elif code in (68, 68.2, 51, 51.1, 52, 10, 158, 258, 168):
-            self.shifted = f"G{code:g} changes the frame in the control"
-            self.problem(line, f"{self.shifted}; the motions in it are left out")
+            self.shifted = _frame_changed(f"G{code:g}")
+            self.problem(
+                line,
+                "programs.gcode.motions_left_out",
+                "{reason}; the motions in it are left out",
+                reason=self.shifted,
+            )
         elif code not in HARMLESS:
             self.mode = None if 33 <= code <= 39 or 73 <= code <= 89 else self.mode
-            raise _Unknown(f"G{code:g} is not known here")
+            raise Unknown(
+                "programs.gcode.unknown_code", "G{code} is not known here", code=f"{code:g}"
+            )
         if code in (69, 50, 50.1):
             self.shifted = None
         if code in (93, 94, 95):
@@ -275,10 +334,18 @@ class _Reader:
 
     def set_feed(self, line, value):
         if self.feed_mode != 94:
-            self.once("feed", line, f"F under G{self.feed_mode}: the speed in mm/s is not known")
+            self.once(
+                "feed",
+                line,
+                "programs.gcode.feed_mode",
+                "F under G{mode}: the speed in mm/s is not known",
+                mode=self.feed_mode,
+            )
             self.feed = None
         elif value <= 0:
-            self.problem(line, "F is not positive; the last one stays")
+            self.problem(
+                line, "programs.gcode.feed_not_positive", "F is not positive; the last one stays"
+            )
         else:
             self.feed = value * self.scale / 60.0
 
@@ -298,63 +365,82 @@ class _Reader:
         try:
             axis = self.tool_axis(given)
             if self.shifted:
-                raise _Unknown(self.shifted)
+                raise Unknown(self.shifted)
             if self.mode is None:
-                raise _Unknown("no G0, G1, G2 or G3 is in force")
+                raise Unknown("programs.gcode.no_mode", "no G0, G1, G2 or G3 is in force")
             missing = [letter for letter, v in zip("XYZ", target) if v is None]
             if missing:
-                raise _Unknown(f"{', '.join(missing)} is not known")
+                raise Unknown(
+                    "programs.gcode.not_known", "{names} is not known", names=", ".join(missing)
+                )
             if max(map(abs, target)) > MAX_COORDINATE:
-                raise _Unknown("the position is out of all bounds")
+                raise Unknown(
+                    "programs.position_out_of_bounds", "the position is out of all bounds"
+                )
             if self.mode in (2, 3):
                 self.arc(line, start, target, axis, given)
             else:
                 kind, speed = ("LIN", self.feed) if self.mode else ("PTP", None)
                 self.trace.move(kind, target, axis, line, speed, self.base, self.tool)
-        except _Unknown as unknown:
+        except Unknown as unknown:
             # A thousand motions left out for one reason are one Problem.
-            key = str(unknown) if self.shifted or "kinematics" in str(unknown) else None
-            self.lost(line, f"the motion is left out: {unknown}", key)
+            fact = unknown.fact
+            key = fact if self.shifted or fact.code in KINEMATICS else None
+            self.lost(
+                line,
+                "programs.motion_left_out",
+                "the motion is left out: {reason}",
+                reason=fact,
+                key=key,
+            )
 
     def tool_axis(self, given):
         if self.tcp == "vector":
             if self.mode in (0, 1) and any(letter in given for letter in "IJK"):
                 axis = unit([given.get(letter, 0.0) for letter in "IJK"])
                 if axis is None:
-                    raise _Unknown("I, J, K of the tool's axis are zero")
+                    raise Unknown("programs.gcode.zero_axis", "I, J, K of the tool's axis are zero")
                 self.axis = axis
             return self.axis
         if self.vector is not None:
             return self.vector
         unknown = [letter for letter, v in self.rotary.items() if v is None]
         if unknown:
-            raise _Unknown(f"{', '.join(unknown)} is not known")
+            raise Unknown(
+                "programs.gcode.not_known", "{names} is not known", names=", ".join(unknown)
+            )
         if not any(self.rotary.values()):
             return (0.0, 0.0, 1.0)
         if self.tcp is None:
-            raise _Unknown(
-                "rotary axes without G43.4 or TRAORI are machine coordinates: the machine's "
-                "kinematics is needed; post-process with tool-centre-point control"
+            raise Unknown(
+                "programs.gcode.kinematics",
+                "rotary axes without G43.4 or TRAORI are machine coordinates: the "
+                "machine's kinematics is needed; post-process with tool-centre-point "
+                "control",
             )
         a, b, c = (math.radians(self.rotary.get(letter, 0.0)) for letter in "ABC")
         if a and b:
-            raise _Unknown("A and B together depend on the machine's kinematics")
+            raise Unknown(
+                "programs.gcode.a_and_b", "A and B together depend on the machine's kinematics"
+            )
         x, y, z = math.sin(b), -math.sin(a), math.cos(a) * math.cos(b)
         return (math.cos(c) * x - math.sin(c) * y, math.sin(c) * x + math.cos(c) * y, z)
 
     def arc(self, line, start, end, axis, given):
         if None in start:
-            raise _Unknown("an arc begins at a position that is not known")
+            raise Unknown(
+                "programs.arc_from_nowhere", "an arc begins at a position that is not known"
+            )
         u, v, w = PLANES[self.plane]
         chord = (end[u] - start[u], end[v] - start[v])
         length = math.hypot(*chord)
         if "P" in given or "TURN" in given:
-            raise _Unknown("an arc of several turns is not supported")
+            raise Unknown("programs.gcode.turns", "an arc of several turns is not supported")
         centre = list(start)
         if "R" in given:
             radius = self.scale * given["R"]
             if length < 1e-9 or length > 2.0 * abs(radius) + 2.0 * RADIUS_ERROR:
-                raise _Unknown("R does not fit the arc's ends")
+                raise Unknown("programs.gcode.radius", "R does not fit the arc's ends")
             height = math.sqrt(max(0.0, radius * radius - length * length / 4.0)) / length
             side = height if (self.mode == 3) == (radius > 0) else -height
             centre[u] += chord[0] / 2.0 - side * chord[1]
@@ -364,10 +450,12 @@ class _Reader:
                 centre[k] += self.scale * given.get(letter, 0.0)
         radii = [math.hypot(p[u] - centre[u], p[v] - centre[v]) for p in (start, end)]
         if radii[0] < 1e-9 or abs(radii[0] - radii[1]) > max(RADIUS_ERROR, 1e-3 * radii[0]):
-            raise _Unknown("the arc's ends are not at one distance from its centre")
+            raise Unknown(
+                "programs.gcode.arc_ends", "the arc's ends are not at one distance from its centre"
+            )
         normal = [0.0, 0.0, 0.0]
         normal[w] = 1.0 if self.mode == 3 else -1.0
         points = [*arc_through(start, centre, end, normal, length < 1e-9), tuple(end)]
         if abs(end[w] - start[w]) > 1e-9:  # a helix: three points are no arc of it
-            raise _Unknown("a helix is not supported")
+            raise Unknown("programs.gcode.helix", "a helix is not supported")
         self.trace.arcs(points, axis, line, self.feed, self.base, self.tool)

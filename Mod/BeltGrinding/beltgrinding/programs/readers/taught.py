@@ -6,16 +6,12 @@ import re
 import numpy as np
 
 from ...base import frames
-from ..program import Motion, Problem, Program, ProgramError, bytes_of, name_of
+from ..program import Fact, Motion, Program, ProgramError, bytes_of, name_of
 
 MAX_MOTIONS = 1_000_000
 LARGEST = 1e6  # mm or degrees; beyond it a number is damaged, not taught
 DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 NUMBER = DIGITS + r"(?![\w.])"
-
-
-class Unknown(Exception):
-    """What only the controller can know; the text says what."""
 
 
 def lines_of(path, language):
@@ -25,13 +21,10 @@ def lines_of(path, language):
     return re.split(r"\r\n|\n|\r", raw.decode("latin-1"))
 
 
-def value_of(text, what, file, line, limit=LARGEST):
-    """The finite number ``text`` is. Raises ProgramError naming file, line and ``what``."""
-    text = text.strip()
+def sound_number(text, limit=LARGEST):
+    """The number that ``text`` is, None where it is none or beyond ``limit``."""
     value = float(text) if re.fullmatch(NUMBER, text, re.ASCII) else math.nan
-    if not abs(value) <= limit:
-        raise ProgramError(f"{file}:{line}: {what} is '{text}', no sound number")
-    return value
+    return value if abs(value) <= limit else None
 
 
 def pose_of(components):
@@ -50,8 +43,8 @@ class TaughtPath:
         self.joined = False  # the first of them is the arc before's last
         self.frame = None  # (base, tool) of the motion before, None: none yet
 
-    def problem(self, line, message):
-        self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, told, text=None, /, **arguments):
+        self.program.problem(self.file, line, told, text, **arguments)
 
     def add(self, motion):
         """Appends a motion; a gap where its frame or tool is another than before."""
@@ -96,17 +89,23 @@ class TaughtPath:
 
     def _append(self, motion):
         if len(self.program.motions) >= MAX_MOTIONS:
-            raise ProgramError(f"{self.file}:{motion.line}: the program is too long")
+            raise ProgramError.at(
+                self.file, motion.line, "programs.too_long", "the program is too long"
+            )
         if motion.pose is not None:
             frame = (motion.base, motion.tool)
             if self.frame is not None and frame != self.frame:
                 before, after = (
-                    ", ".join(n for n in f if n) or "none" for f in (self.frame, frame)
+                    ", ".join(n for n in f if n) or Fact("programs.taught.none", "none")
+                    for f in (self.frame, frame)
                 )
                 self.problem(
                     motion.line,
-                    f"the frame changes from {before} to {after}: poses are in their own frame, "
-                    "where it lies only the controller knows",
+                    "programs.taught.frame_changes",
+                    "the frame changes from {before} to {after}: poses are in their own "
+                    "frame, where it lies only the controller knows",
+                    before=before,
+                    after=after,
                 )
                 self.program.motions.append(Motion("PTP", None, motion.line, self.file))
             self.frame = frame

@@ -7,7 +7,7 @@ import zlib
 from pathlib import Path
 from xml.parsers import expat
 
-from ..program import ProgramError, name_of
+from ..program import ProgramError, cannot_be_read, name_of
 
 MAX_BYTES = 256 * 2**20  # of XML, unpacked
 MAX_ELEMENTS = 2_000_000
@@ -49,16 +49,22 @@ class _Builder:
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
 
-    def error(self, message):
-        return ProgramError(f"{self.name}:{self.parser.CurrentLineNumber}: {message}")
+    def error(self, code, text):
+        return ProgramError.at(self.name, self.parser.CurrentLineNumber, code, text)
 
     def doctype(self, *_):
-        raise self.error("the XML has a DOCTYPE, which no robot's controller writes; remove it")
+        raise self.error(
+            "programs.xml.doctype",
+            "the XML has a DOCTYPE, which no robot's controller writes; remove it",
+        )
 
     def start(self, tag, attributes):
         self.count, self.depth = self.count + 1, self.depth + 1
         if self.count > MAX_ELEMENTS or self.depth > MAX_DEPTH:
-            raise self.error("the XML has too many elements, or they are nested too deeply")
+            raise self.error(
+                "programs.xml.elements",
+                "the XML has too many elements, or they are nested too deeply",
+            )
         tag = tag[tag.find(":") + 1 :]
         if tag in self.shared:
             attributes = self.kept.setdefault(tuple(attributes.items()), attributes)
@@ -99,18 +105,28 @@ class _Builder:
     def feed(self, data, last=False):
         self.bytes += len(data)
         if self.bytes > MAX_BYTES:
-            raise ProgramError(f"{self.name}: the XML is larger than {MAX_BYTES // 2**20} MB")
+            raise ProgramError(
+                "programs.xml.too_large",
+                "{file}: the XML is larger than {limit} MB",
+                file=self.name,
+                limit=MAX_BYTES // 2**20,
+            )
         try:
             self.parser.Parse(data, last)
         except expat.ExpatError as error:
-            raise ProgramError(
-                f"{self.name}:{error.lineno}: the XML is not sound "
-                f"({expat.errors.messages[error.code]}); is the file cut off?"
+            raise ProgramError.at(
+                self.name,
+                error.lineno,
+                "programs.xml.not_sound",
+                "the XML is not sound ({reason}); is the file cut off?",
+                reason=expat.errors.messages[error.code],
             ) from None
         except ProgramError:
             raise
         except (ValueError, LookupError):  # an encoding nobody knows
-            raise ProgramError(f"{self.name}: the XML's encoding cannot be read") from None
+            raise ProgramError(
+                "programs.xml.encoding", "{file}: the XML's encoding cannot be read", file=self.name
+            ) from None
 
 
 def read_xml(path, text_of=(), finished=None, shared=()):
@@ -131,7 +147,7 @@ def read_xml(path, text_of=(), finished=None, shared=()):
             ):
                 builder.feed(data)
     except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     builder.feed(b"", True)
     return builder.root
 
@@ -145,8 +161,21 @@ def _unpacked(file, name):
                 yield unpacker.decompress(data, CHUNK)
                 data = unpacker.unused_data
             if unpacker.eof and data.strip(b"\0"):
-                raise ProgramError(f"{name}: something follows the packed program; pack it anew")
+                raise ProgramError(
+                    "programs.xml.trailing",
+                    "{file}: something follows the packed program; pack it anew",
+                    file=name,
+                )
         if not unpacker.eof:
-            raise ProgramError(f"{name}: the packed file ends too early; is it cut off?")
+            raise ProgramError(
+                "programs.xml.packed_cut",
+                "{file}: the packed file ends too early; is it cut off?",
+                file=name,
+            )
     except zlib.error as error:
-        raise ProgramError(f"{name}: the packed file is damaged ({error})") from None
+        raise ProgramError(
+            "programs.xml.packed_damaged",
+            "{file}: the packed file is damaged ({reason})",
+            file=name,
+            reason=str(error),
+        ) from None

@@ -17,13 +17,18 @@ def text(sheet):
     """The bytes of a .src file."""
     if not NAME.match(sheet.name):
         raise ProgramError(
-            f"'{sheet.name}' is no name of a KRL module: a letter, then at most 23 letters, digits "
-            "or _; the file must be called as the module"
+            "programs.writers.module_name",
+            "'{name}' is no name of a KRL module: a letter, then at most 23 letters, "
+            "digits or _; the file must be called as the module",
+            name=sheet.name,
         )
     if sheet.part_in_hand:
         raise ProgramError(
-            "poses of a fixed tool in a held part (robhold) are not written as KRL: the path speed "
-            "would be another one; write RAPID, or the poses of the part in the room"
+            "programs.writers.part_in_hand",
+            "poses of a fixed tool in a held part (robhold) are not written as "
+            "{language}: the path speed would be another one; write RAPID, or the "
+            "poses of the part in the room",
+            language="KRL",
         )
     places = [_pose(frame) for frame in sheet.frames]
     lines = ["&ACCESS RVP", "&REL 1"]

@@ -19,11 +19,17 @@ def text(sheet):
     """The bytes of a .script file."""
     if sheet.part_in_hand:
         raise ProgramError(
-            "poses of a fixed tool in a held part (robhold) are not written as URScript: the path "
-            "speed would be another one; write RAPID, or the poses of the part in the room"
+            "programs.writers.part_in_hand",
+            "poses of a fixed tool in a held part (robhold) are not written as "
+            "{language}: the path speed would be another one; write RAPID, or the "
+            "poses of the part in the room",
+            language="URScript",
         )
     if len(sheet.bases) > 1:
-        raise ProgramError("a URScript program has its poses in one frame; write one a base")
+        raise ProgramError(
+            "programs.writers.one_frame",
+            "a URScript program has its poses in one frame; write one a base",
+        )
     frame, words = sheet.bases[0]
     lines = [f"def {identifier(sheet.name, MOST)}():"]
     lines += [f"  # {comment}" for comment in sheet.comments]

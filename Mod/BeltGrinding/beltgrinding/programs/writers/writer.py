@@ -121,7 +121,10 @@ def _writer(suffix, path):
         from .csv import text
     else:
         raise ProgramError(
-            f"{path}: no program is written as '{suffix}'; known: .src, .mod, .script, .csv"
+            "programs.writers.suffix",
+            "{file}: no program is written as '{suffix}'; known: .src, .mod, .script, .csv",
+            file=str(path),
+            suffix=suffix,
         )
     return text
 
@@ -156,10 +159,19 @@ def _sheet(motions, tools, bases):
             aux = len(poses) - 1
             continue
         if motion.kind == "CIRC" and aux is None and not gap:
-            raise ProgramError(f"motion {number}: the arc has no auxiliary point")
+            raise ProgramError(
+                "programs.writers.no_auxiliary_point",
+                "motion {motion}: the arc has no auxiliary point",
+                motion=number,
+            )
         speed = motion.speed_mm_s
         if speed is not None and not 0.0 < speed < 1e6:
-            raise ProgramError(f"motion {number}: the speed is {speed:g} mm/s")
+            raise ProgramError(
+                "programs.writers.speed",
+                "motion {motion}: the speed is {speed:g} mm/s",
+                motion=number,
+                speed=speed,
+            )
         kind, note = motion.kind, ""
         if gap:
             lines = ", ".join(str(line) for line in gap[:5]) + (", ..." if len(gap) > 5 else "")
@@ -176,7 +188,9 @@ def _sheet(motions, tools, bases):
         steps.append(step)
         aux = None
     if not steps:
-        raise ProgramError("the program has no pose; there is nothing to write")
+        raise ProgramError(
+            "programs.writers.no_pose", "the program has no pose; there is nothing to write"
+        )
     frames = np.array(poses, dtype=float).reshape(-1, 4, 4)
     quaternions = _checked(frames)
     return Sheet(
@@ -188,12 +202,16 @@ def _sheet(motions, tools, bases):
 def _checked(frames):
     """Quaternions of the poses. Raises ProgramError for what is no rigid pose."""
     if not np.isfinite(frames).all():
-        raise ProgramError("a pose is not finite")
+        raise ProgramError("programs.writers.not_finite", "a pose is not finite")
     quaternions = to_quaternions(frames[:, :3, :3])
     again = from_quaternions(frames[:, :3, 3], quaternions)
     wrong = np.flatnonzero(np.abs(again - frames).max(axis=(1, 2)) > RIGID)
     if len(wrong):
-        raise ProgramError(f"pose {wrong[0]}: its matrix is no rotation with a position")
+        raise ProgramError(
+            "programs.writers.no_rotation",
+            "pose {number}: its matrix is no rotation with a position",
+            number=int(wrong[0]),
+        )
     return quaternions
 
 
@@ -215,7 +233,12 @@ class _Frames:
         if given is not None:
             frame = np.asarray(given, dtype=float)
             if frame.shape != (4, 4):
-                raise ProgramError(f"the {self.what} {words} is no 4 x 4")
+                raise ProgramError(
+                    "programs.writers.no_matrix",
+                    "the {what} {words} is no 4 x 4",
+                    what=self.what,
+                    words=words,
+                )
             _checked(frame[None])
             return frame, printable(words)
         found = frame_in_words(words)

@@ -2,8 +2,8 @@
 
 import re
 
-from ...program import ProgramError
-from ..taught import value_of
+from ...program import Fact, ProgramError
+from ..taught import sound_number
 
 COMPONENTS = ("X", "Y", "Z", "W", "P", "R")
 UNITS = dict(zip(COMPONENTS, ("mm", "mm", "mm", "deg", "deg", "deg")))
@@ -14,9 +14,10 @@ BLANK = re.compile(r"\s*")
 
 
 def positions_of(lines, line, file, problem):
-    """{n: (components or None, UF, UT)} or {n: why it is unknown}: components X, Y, Z in mm and
+    """{n: (components or None, UF, UT)} or {n: a Fact, why it is unknown}: components X, Y, Z in mm and
     W, P, R in degrees, None for a joint position; UF, UT None for those selected. ``line`` is the
-    number of the first line. Raises ProgramError; ``problem(line, message)`` takes notes."""
+    number of the first line. Raises ProgramError; ``problem(line, code, form, ...)`` takes notes.
+    """
     text, at, positions, noted = "\n".join(lines), 0, {}, False
     while True:
         begin = BLANK.match(text, at).end()
@@ -25,16 +26,25 @@ def positions_of(lines, line, file, problem):
             return positions
         match = BLOCK.match(text, begin)
         if not match:
-            raise ProgramError(f"{file}:{line}: a position P[n]{{ ... }}; is expected here")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.fanuc.position_expected",
+                "a position P[n]{{ ... }}; is expected here",
+            )
         n = int(match.group(1))
         if n in positions:
-            raise ProgramError(f"{file}:{line}: P[{n}] occurs twice")
+            raise ProgramError.at(
+                file, line, "programs.fanuc.position_twice", "P[{n}] occurs twice", n=n
+            )
         groups = re.split(r"\bGP(\d+)\s*:", CONFIG.sub("", match.group(2)))
         if groups[0].strip() or "1" not in groups[1::2]:
-            raise ProgramError(f"{file}:{line}: P[{n}] has no group GP1")
+            raise ProgramError.at(
+                file, line, "programs.fanuc.no_group", "P[{n}] has no group GP1", n=n
+            )
         if len(groups) > 3 and not noted:
             noted = True
-            problem(line, "other motion groups than GP1 are ignored")
+            problem(line, "programs.fanuc.other_groups", "other motion groups than GP1 are ignored")
         positions[n] = _position(groups[2 * groups[1::2].index("1") + 2], n, file, line)
         line += text.count("\n", begin, match.end())
         at = match.end()
@@ -47,23 +57,59 @@ def _position(body, n, file, line):
             continue
         match = ITEM.match(item)
         if not match or match.group(1) in values:
-            raise ProgramError(f"{file}:{line}: '{item.strip()}' in P[{n}] is not understood")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.fanuc.item",
+                "'{item}' in P[{n}] is not understood",
+                item=item.strip(),
+                n=n,
+            )
         name, value, unit = match.groups()
         if UNITS.get(name, unit) != unit:
-            raise ProgramError(f"{file}:{line}: {name} of P[{n}] is not in {UNITS[name]}")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.fanuc.unit",
+                "{name} of P[{n}] is not in {unit}",
+                name=name,
+                n=n,
+                unit=UNITS[name],
+            )
         values[name] = value
     joints = "J1" in values
     components = []
     for name in [k for k in values if re.fullmatch(r"J\d", k)] if joints else COMPONENTS:
         if name not in values:
-            raise ProgramError(f"{file}:{line}: P[{n}] has no {name}")
+            raise ProgramError.at(
+                file, line, "programs.fanuc.no_component", "P[{n}] has no {name}", n=n, name=name
+            )
         if set(values[name]) == {"*"}:
-            return "is not taught"
-        components.append(value_of(values[name], f"{name} of P[{n}]", file, line))
+            return Fact("programs.fanuc.not_taught", "P[{n}] is not taught", n=n)
+        value = sound_number(values[name])
+        if value is None:
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.fanuc.no_sound_number",
+                "{name} of P[{n}] is '{text}', no sound number",
+                name=name,
+                n=n,
+                text=values[name],
+            )
+        components.append(value)
     selected = []
     for name in ("UF", "UT"):
         frame = values.get(name, "F")
         if not re.fullmatch(r"F|\d{1,3}", frame, re.ASCII):
-            raise ProgramError(f"{file}:{line}: {name} of P[{n}] is '{frame}', no frame number")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.fanuc.no_frame_number",
+                "{name} of P[{n}] is '{text}', no frame number",
+                name=name,
+                n=n,
+                text=frame,
+            )
         selected.append(None if frame == "F" else int(frame))
     return (None if joints else components, *selected)

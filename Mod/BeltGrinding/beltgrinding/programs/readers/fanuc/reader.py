@@ -8,8 +8,8 @@ import re
 
 import numpy as np
 
-from ...program import LOOPED, MAX_UNROLLED, Motion, ProgramError, work_of
-from ..taught import DIGITS, Unknown, lines_of, pose_of
+from ...program import LOOPED, MAX_UNROLLED, Fact, Motion, ProgramError, Unknown, work_of
+from ..taught import DIGITS, lines_of, pose_of
 from .positions import positions_of
 from .registers import INDEX, Registers
 
@@ -64,8 +64,8 @@ class _Reader(Registers):
         self.here = None  # (components, base) of the current pose, None: unknown
         self.missing = set()
 
-    def error(self, line, message):
-        return ProgramError(f"{self.file}:{line}: {message}")
+    def error(self, line, code, text, /, **arguments):
+        return ProgramError.at(self.file, line, code, text, **arguments)
 
     # The file
 
@@ -84,11 +84,17 @@ class _Reader(Registers):
             elif section == "/MN" and head:
                 self.line_of_mn(number, head)
         if not self.statements and begin is None:
-            raise ProgramError(f"{self.file}: is no TP program (it has neither /MN nor /POS)")
+            raise ProgramError(
+                "programs.fanuc.no_tp",
+                "{file}: is no TP program (it has neither /MN nor /POS)",
+                file=self.file,
+            )
         if self.statements and not self.statements[-1][2]:
             self.unended(self.statements[-1])
         if not ended:
-            self.problem(len(lines), "the file ends without /END; it may be cut")
+            self.problem(
+                len(lines), "programs.fanuc.no_end", "the file ends without /END; it may be cut"
+            )
         if begin is not None:
             end = number - 1 if ended else len(lines)
             self.positions = positions_of(lines[begin:end], begin + 1, self.file, self.problem)
@@ -97,7 +103,12 @@ class _Reader(Registers):
         match = re.match(r"(\d*)\s*:(.*)$", head)
         if not match:
             if head.strip("-; "):
-                self.problem(number, f"'{head[:40]}' is no statement; it is left out")
+                self.problem(
+                    number,
+                    "programs.fanuc.no_statement",
+                    "'{text}' is no statement; it is left out",
+                    text=head[:40],
+                )
                 self.statements.append((number, "?", True))
             return
         text = match.group(2).strip()
@@ -113,7 +124,9 @@ class _Reader(Registers):
 
     def unended(self, statement):
         if not statement[1].startswith(("!", "/", "-")):
-            raise self.error(statement[0], "the statement does not end with ';'")
+            raise self.error(
+                statement[0], "programs.fanuc.no_semicolon", "the statement does not end with ';'"
+            )
 
     # The statements
 
@@ -148,18 +161,26 @@ class _Reader(Registers):
             line, text, _ = self.statements[at]
             rounds += work_of(text)
             if rounds > MAX_UNROLLED:
-                raise self.error(line, "the program is too long")
+                raise self.error(line, "programs.too_long", "the program is too long")
             if at in targets:
                 rounds += len(self.registers) // 10
                 state = (at, frozenset(self.registers.items()))
                 if state in seen:
-                    self.problem(line, "an endless loop is followed once")
+                    self.problem(
+                        line, "programs.endless", "an endless {word} is followed once", word="loop"
+                    )
                     return
                 seen.add(state)
             try:
                 at = self.statement(at, line, text)
             except Unknown as unknown:
-                self.problem(line, f"{text[:30]} is left out: {unknown}")
+                self.problem(
+                    line,
+                    "programs.left_out",
+                    "{what} is left out: {reason}",
+                    what=text[:30],
+                    reason=unknown.fact,
+                )
                 self.here = None
                 self.gap(line)
                 at += 1
@@ -183,14 +204,28 @@ class _Reader(Registers):
         elif word in ("CALL", "RUN"):
             self.call(line, text)
         elif word in ("UFRAME", "UTOOL"):
-            self.problem(line, "a frame is set at run time; poses stay those in it")
+            self.problem(
+                line,
+                "programs.fanuc.frame_at_run_time",
+                "a frame is set at run time; poses stay those in it",
+            )
         elif re.match(r"P\s*\[|[A-Z]\s+PR?\s*\[", text) or text == "?":
             if text != "?":
-                self.problem(line, f"'{text[:40]}' is not understood; it is left out")
+                self.problem(
+                    line,
+                    "programs.fanuc.left_out",
+                    "'{text}' is not understood; it is left out",
+                    text=text[:40],
+                )
             self.here = None
             self.gap(line)
         elif not HARMLESS.match(text) and not re.match(r"PR\s*\[", text):
-            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+            self.problem(
+                line,
+                "programs.ignored",
+                "'{text}' is not understood; it is ignored",
+                text=text[:40],
+            )
         return at + 1
 
     def assign(self, line, name, text):
@@ -199,7 +234,13 @@ class _Reader(Registers):
         except Unknown as unknown:
             value = None
             if name.startswith("U"):
-                self.problem(line, f"{name} is not known: {unknown}; each position tells its own")
+                self.problem(
+                    line,
+                    "programs.fanuc.frame_unknown",
+                    "{name} is not known: {reason}; each position tells its own",
+                    name=name,
+                    reason=unknown.fact,
+                )
         if name == "UFRAME_NUM":
             self.uframe = None if value is None else int(value)
         elif name == "UTOOL_NUM":
@@ -216,7 +257,12 @@ class _Reader(Registers):
         name = re.sub(r"^(CALL|RUN)\s*", "", text).split("(")[0].strip()
         if name not in self.missing:
             self.missing.add(name)
-            self.problem(line, f"{name} is not in this file; motions in it are left out")
+            self.problem(
+                line,
+                "programs.not_in_file",
+                "{name} is not in this file; motions in it are left out",
+                name=name,
+            )
         # It may move the robot, change registers and select frames.
         self.here = self.uframe = self.utool = None
         self.registers.clear()
@@ -240,7 +286,11 @@ class _Reader(Registers):
         self.forget(body)
         if any(MOTION.match(text) for _, text, _ in body):
             self.problem(
-                line, f"{message}; motions up to line {self.statements[end - 1][0]} left out"
+                line,
+                "programs.fanuc.motions_left_out",
+                "{what}; motions up to line {last} left out",
+                what=message,
+                last=self.statements[end - 1][0],
             )
             self.here = None
             self.gap(line)
@@ -250,13 +300,23 @@ class _Reader(Registers):
         then = re.match(r"IF\s*(.*?)\s*\bTHEN$", text)
         split = re.match(r"IF\s*((?:[^,\[(]|\[[^\]]*\]|\((?:[^()]|\([^()]*\))*\))*),(.*)$", text)
         if not then and (not split or split.group(2).lstrip().startswith("IF")):
-            raise Unknown("it is not understood")
+            raise Unknown("programs.it_is_not_understood", "it is not understood")
         end = self.after_if(at) if then else at + 1
         try:
             known = self.condition((then or split).group(1))
         except Unknown as unknown:
             if then:
-                return self.leave_out(line, at + 1, end, f"IF is decided at run time ({unknown})")
+                return self.leave_out(
+                    line,
+                    at + 1,
+                    end,
+                    Fact(
+                        "programs.at_run_time",
+                        "{word} is decided at run time ({reason})",
+                        reason=unknown.fact,
+                        word="IF",
+                    ),
+                )
             return self.maybe(at, line, [split.group(2).strip()])
         if then:
             return at + 1 if known else self.after_if(at, "ELSE")
@@ -288,33 +348,56 @@ class _Reader(Registers):
                 target = self.labels.get(self.index(match.group(1)), -1)
                 furthest = max(furthest, target)
                 if target <= at:
-                    self.problem(line, "a jump back is decided at run time; it is followed once")
+                    self.problem(
+                        line,
+                        "programs.jump_back",
+                        "a jump back is decided at run time; it is followed once",
+                    )
             elif action.startswith(("CALL", "RUN")):
                 self.call(line, action)
             else:
                 self.forget([(line, action, True)])
                 if MOTION.match(action):
-                    raise Unknown("it is decided at run time")
-        return self.leave_out(line, at + 1, furthest, "a jump is decided at run time")
+                    raise Unknown("programs.fanuc.at_run_time", "it is decided at run time")
+        return self.leave_out(
+            line,
+            at + 1,
+            furthest,
+            Fact("programs.jump_at_run_time", "a jump is decided at run time"),
+        )
 
     def do_jmp(self, at, line, text):
         match = JUMP.match(text)
         try:
             return self.labels[self.index(match.group(1))]
         except (AttributeError, KeyError, Unknown):
-            self.problem(line, f"'{text}' leads nowhere known; what follows is left out")
+            self.problem(
+                line,
+                "programs.leads_nowhere",
+                "'{text}' leads nowhere known; what follows is left out",
+                text=text,
+            )
             return None
 
     def do_for(self, at, line, text):
         match, end = FOR.match(text), self.closing.get(at)
         if end is None:
-            raise Unknown("FOR has no ENDFOR")
+            raise Unknown("programs.fanuc.no_endfor", "FOR has no ENDFOR")
         try:
             if not match:
-                raise Unknown("it is not understood")
+                raise Unknown("programs.it_is_not_understood", "it is not understood")
             n, first, last = self.index(match[1]), self.number(match[2]), self.number(match[4])
         except Unknown as unknown:
-            return self.leave_out(line, at + 1, end + 1, f"FOR has no static bounds ({unknown})")
+            return self.leave_out(
+                line,
+                at + 1,
+                end + 1,
+                Fact(
+                    "programs.fanuc.no_static_bounds",
+                    "FOR has no static bounds ({reason})",
+                    reason=unknown.fact,
+                ),
+            )
         step = 1 if match[3] == "TO" else -1
         self.registers[n] = first
         self.loops[at] = [n, last, step]
@@ -326,7 +409,12 @@ class _Reader(Registers):
             return at + 1
         n, last, step = self.loops[begin]
         if n not in self.registers:
-            self.problem(line, f"the counter R[{n}] is changed in its loop; it is followed once")
+            self.problem(
+                line,
+                "programs.fanuc.counter",
+                "the counter R[{n}] is changed in its loop; it is followed once",
+                n=n,
+            )
         elif step * (last - self.registers[n]) >= 1:
             self.registers[n] += step
             return begin + 1
@@ -340,11 +428,15 @@ class _Reader(Registers):
         if kind == "C":
             match = TARGET.match(rest)
             if not match:
-                raise Unknown("its end point is missing")
+                raise Unknown("programs.fanuc.no_end_point", "its end point is missing")
             targets.append(match.groups()[:2])
             rest = match.group(3)
         if SHIFTS.search(rest):
-            raise Unknown(f"what {SHIFTS.search(rest).group(1)} does is known at run time only")
+            raise Unknown(
+                "programs.known_at_run_time",
+                "what {word} does is known at run time only",
+                word=SHIFTS.search(rest).group(1),
+            )
         motions = [
             self.target(line, KINDS[kind], *target, re.search(r"\bINC\b", rest))
             for target in targets
@@ -365,28 +457,41 @@ class _Reader(Registers):
     def target(self, line, kind, register, index, incremental):
         """(Motion, components) of one position. Raises Unknown."""
         if register == "PR":
-            raise Unknown(f"PR[{index}] is a position register of the controller")
+            raise Unknown(
+                "programs.fanuc.position_register",
+                "PR[{index}] is a position register of the controller",
+                index=index,
+            )
         n = self.index(index)
         position = self.positions.get(n)
         if position is None:
-            raise Unknown(f"P[{n}] is not in /POS")
+            raise Unknown("programs.fanuc.not_in_pos", "P[{n}] is not in /POS", n=n)
         if isinstance(position, str):
-            raise Unknown(f"P[{n}] {position}")
+            raise Unknown(position)
         components, uf, ut = position
         names = []
         for what, own, current in (("UFRAME", uf, self.uframe), ("UTOOL", ut, self.utool)):
             if None not in (own, current) and own != current:
-                raise Unknown(f"P[{n}] is taught in {what} {own}, selected is {what} {current}")
+                raise Unknown(
+                    "programs.fanuc.other_frame",
+                    "P[{n}] is taught in {what} {own}, selected is {what} {current}",
+                    n=n,
+                    what=what,
+                    own=own,
+                    current=current,
+                )
             own = current if own is None else own
             names.append("" if own is None else f"{what} {own}")
         motion = Motion(kind, None, line, self.file, tool=names[1], base=names[0])
         if components is None:
             if kind != "PTP":
-                raise Unknown(f"P[{n}] is a joint position")
+                raise Unknown("programs.fanuc.joint_position", "P[{n}] is a joint position", n=n)
             return motion, None
         if incremental:
             if self.here is None or self.here[1] != motion.base or any(components[3:]):
-                raise Unknown("INC adds to a pose that is not known, or turns")
+                raise Unknown(
+                    "programs.fanuc.inc", "INC adds to a pose that is not known, or turns"
+                )
             components = [*np.add(self.here[0][:3], components[:3]), *self.here[0][3:]]
         motion.pose = pose_of(components)
         return motion, components
@@ -396,20 +501,37 @@ class _Reader(Registers):
         match = SPEED.match(rest)
         try:
             if not match:
-                raise Unknown(f"'{rest[:30]}' names none")
+                raise Unknown(
+                    "programs.fanuc.names_no_speed", "'{text}' names none", text=rest[:30]
+                )
             value, unit = self.number(match.group(1)), match.group(3)
             if value <= 0.0:
-                raise Unknown("it is not positive")
+                raise Unknown("programs.not_positive", "it is not positive")
             if unit in MM_PER_S:
                 return value * MM_PER_S[unit]
             length = 0.0
             if unit in SECONDS and kind == "L" and before and self.here[1] == before[1]:
                 length = float(np.linalg.norm(np.subtract(self.here[0][:3], before[0][:3])))
             if length == 0.0:
-                raise Unknown(f"{match.group(1)}{unit} tells no path speed")
+                raise Unknown(
+                    "programs.fanuc.no_path_speed",
+                    "{text}{unit} tells no path speed",
+                    text=match.group(1),
+                    unit=unit,
+                )
             if value < 1e-6:
-                raise Unknown(f"{match.group(1)}{unit} is too short a time")
+                raise Unknown(
+                    "programs.fanuc.short_time",
+                    "{text}{unit} is too short a time",
+                    text=match.group(1),
+                    unit=unit,
+                )
             return length / (value * SECONDS[unit])
         except Unknown as unknown:
-            self.problem(line, f"the path speed is not known: {unknown}")
+            self.problem(
+                line,
+                "programs.path_speed_unknown",
+                "the path speed is not known: {reason}",
+                reason=unknown.fact,
+            )
             return None

@@ -2,7 +2,8 @@
 
 import re
 
-from ..taught import NUMBER, TaughtPath, Unknown
+from ...program import Unknown
+from ..taught import NUMBER, TaughtPath
 
 INDEX = r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]"
 CONDITION = re.compile(rf"\(?\s*R{INDEX}\s*(<>|<=|>=|=|<|>)\s*(R{INDEX}|{NUMBER})\s*\)?$")
@@ -27,13 +28,17 @@ class Registers(TaughtPath):
         """The number in P[3], P[3:name], P[R[2]]."""
         match = re.match(r"\s*(?:R\[\s*(\d{1,6})[^\]]*\]|(\d{1,6})\s*(?::|$))", text, re.ASCII)
         if not match:
-            raise Unknown(f"[{text}] is no number")
+            raise Unknown("programs.fanuc.no_index", "[{text}] is no number", text=text)
         return int(match.group(2)) if match.group(2) else int(self.register(match.group(1)))
 
     def register(self, text):
         n = self.index(text)
         if n not in self.registers:
-            raise Unknown(f"R[{text}] has no value that this file gives")
+            raise Unknown(
+                "programs.fanuc.no_register_value",
+                "R[{text}] has no value that this file gives",
+                text=text,
+            )
         return self.registers[n]
 
     def number(self, text):
@@ -44,7 +49,9 @@ class Registers(TaughtPath):
         operand = rf"(?:R{INDEX}|{NUMBER})"
         match = re.match(rf"({operand})\s*(?:([-+*/])\s*({operand}))?$", text, re.ASCII)
         if not match:
-            raise Unknown(f"'{text}' is not known before it runs")
+            raise Unknown(
+                "programs.fanuc.not_known_before", "'{text}' is not known before it runs", text=text
+            )
         first, operator, second = match.group(1), match.group(3), match.group(4)
         values = []
         for part in (first, second) if operator else (first,):
@@ -54,16 +61,16 @@ class Registers(TaughtPath):
                 values.append(float(part))
         a, b = (values + [0.0])[:2]
         if operator == "/" and b == 0.0:
-            raise Unknown("it divides by zero")
+            raise Unknown("programs.fanuc.divides_by_zero", "it divides by zero")
         value = {None: a, "+": a + b, "-": a - b, "*": a * b}.get(operator)
         value = a / b if value is None else value
         if not abs(value) < 1e12:
-            raise Unknown(f"'{text}' is out of range")
+            raise Unknown("programs.fanuc.out_of_range", "'{text}' is out of range", text=text)
         return value
 
     def condition(self, text):
         match = CONDITION.match(text.strip())
         if not match:
-            raise Unknown("the condition is known at run time only")
+            raise Unknown("programs.fanuc.condition", "the condition is known at run time only")
         left, operator, right = match.group(1), match.group(2), match.group(3)
         return COMPARE[operator](self.register(left), self.number(right))

@@ -7,8 +7,8 @@ MTOOL; RECTAN x,y,z,Rx,Ry,Rz[,Re] in mm and degrees; RCONF.
 
 import re
 
-from ...program import ProgramError
-from ..taught import LARGEST, value_of
+from ...program import Fact, ProgramError, Reason
+from ..taught import LARGEST, sound_number
 
 ROW = re.compile(r"(C|P|BC|EC|BP|EX)(\d{1,6})\s*=\s*(.*)$", re.ASCII)
 HEADER = re.compile(r"///([A-Z]+)\s*(.*)$")
@@ -16,11 +16,17 @@ PULSES = ("PULSE", "ANGLE")
 POSTYPES = ("BASE", "ROBOT", "TOOL", "USER", "MTOOL", *PULSES, "RECTAN")
 
 
+JOINTS = Reason(
+    "programs.inform.joint_position",
+    "is a joint position; where it lies only the robot's kinematics tell",
+)
+
+
 def positions_of(rows, file, problem):
-    """{(letter, n): (components or why they are unknown, base, tool)} of (line, text) ``rows``.
+    """{(letter, n): (components or the Reason why they are unknown, base, tool)} of (line, text) ``rows``.
 
     Components are x, y, z in mm and Rx, Ry, Rz in degrees. Raises ProgramError;
-    ``problem(line, message)`` takes notes.
+    ``problem(line, code, form, ...)`` takes notes.
     """
     positions, counted, npos = {}, {}, None
     user, tool, postype = "", "", None
@@ -31,7 +37,14 @@ def positions_of(rows, file, problem):
             if name in ("USER", "TOOL"):
                 number = re.match(r"(\d{1,3})(?:\s*,\s*\d{1,3})*$", value, re.ASCII)
                 if not number:
-                    raise ProgramError(f"{file}:{line}: ///{name} is '{value}', no number")
+                    raise ProgramError.at(
+                        file,
+                        line,
+                        "programs.inform.no_number",
+                        "///{name} is '{value}', no number",
+                        name=name,
+                        value=value,
+                    )
                 user, tool = (
                     (f"USER {int(number.group(1))}", tool)
                     if name == "USER"
@@ -39,40 +52,91 @@ def positions_of(rows, file, problem):
                 )
             elif name == "POSTYPE":
                 if value not in POSTYPES:
-                    raise ProgramError(f"{file}:{line}: ///POSTYPE {value} is not known")
+                    raise ProgramError.at(
+                        file,
+                        line,
+                        "programs.inform.postype",
+                        "///POSTYPE {value} is not known",
+                        value=value,
+                    )
                 postype = value
             elif name == "NPOS":
                 if not re.fullmatch(r"\d{1,6}(,\d{1,6}){5}", value, re.ASCII):
-                    raise ProgramError(f"{file}:{line}: ///NPOS {value} is not six counts")
+                    raise ProgramError.at(
+                        file,
+                        line,
+                        "programs.inform.npos",
+                        "///NPOS {value} is not six counts",
+                        value=value,
+                    )
                 npos = line, dict(zip(("C", "BC", "EC", "P", "BP", "EX"), value.split(",")))
             elif name not in ("RECTAN", "RCONF", "PULSE", "ANGLE"):
-                problem(line, f"///{name} is not known; it is ignored")
+                problem(
+                    line,
+                    "programs.inform.unknown_header",
+                    "///{name} is not known; it is ignored",
+                    name=name,
+                )
             continue
         row = ROW.match(text)
         if not row:
-            raise ProgramError(f"{file}:{line}: '{text[:40]}' is no position")
+            raise ProgramError.at(
+                file, line, "programs.inform.no_position", "'{text}' is no position", text=text[:40]
+            )
         letter, n, values = row.group(1), int(row.group(2)), row.group(3)
         if (letter, n) in positions:
-            raise ProgramError(f"{file}:{line}: {letter}{row.group(2)} occurs twice")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.inform.position_twice",
+                "{letter}{number} occurs twice",
+                letter=letter,
+                number=row.group(2),
+            )
         what = f"{letter}{row.group(2)}"
         limit = 1e10 if postype in PULSES or len(letter) > 1 else LARGEST
-        numbers = [value_of(v, what, file, line, limit) for v in values.split(",")]
+        numbers = [sound_number(v.strip(), limit) for v in values.split(",")]
+        if None in numbers:
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.inform.no_sound_number",
+                "{what} is '{text}', no sound number",
+                what=what,
+                text=values.split(",")[numbers.index(None)].strip(),
+            )
         counted[letter] = counted.get(letter, 0) + 1
         base = {"USER": user, "BASE": "BASE", "ROBOT": "ROBOT"}.get(postype)
         if letter not in ("C", "P"):
-            base = "is no pose"
+            pass  # an external axis or a base axis is no pose
         elif postype in PULSES:
-            numbers = "is a joint position; where it lies only the robot's kinematics tell"
+            numbers = JOINTS
         elif not base:
-            numbers = f"is in the frame {postype or 'not named'}, which only the controller knows"
+            numbers = Reason(
+                "programs.inform.foreign_frame",
+                "is in the frame {frame}, which only the controller knows",
+                frame=postype or Fact("programs.inform.not_named", "not named"),
+            )
         elif len(numbers) not in (6, 7):
-            raise ProgramError(f"{file}:{line}: {what} has {len(numbers)} values, a pose has 6")
+            raise ProgramError.at(
+                file,
+                line,
+                "programs.inform.pose_values",
+                "{what} has {count} values, a pose has 6",
+                what=what,
+                count=len(numbers),
+            )
         else:
             numbers = numbers[:6]  # Re turns the elbow of a seven-axis arm, not the tool
         positions[letter, n] = (numbers, base or "", tool)
     for letter, count in npos[1].items() if npos else ():
         if int(count) != counted.get(letter, 0):
             problem(
-                npos[0], f"///NPOS announces {count} {letter}, {counted.get(letter, 0)} are there"
+                npos[0],
+                "programs.inform.npos_differs",
+                "///NPOS announces {announced} {letter}, {found} are there",
+                announced=count,
+                letter=letter,
+                found=counted.get(letter, 0),
             )
     return positions

@@ -13,8 +13,8 @@ import re
 
 import numpy as np
 
-from ...program import MAX_UNROLLED, Motion, ProgramError, work_of
-from ..taught import NUMBER, TaughtPath, Unknown, lines_of, pose_of
+from ...program import MAX_UNROLLED, Fact, Motion, ProgramError, Reason, Unknown, work_of
+from ..taught import NUMBER, TaughtPath, lines_of, pose_of
 from .positions import positions_of
 
 MOVE = re.compile(r"(MOV[JLCS]|IMOV)(?=\s|$)\s*(.*)$")
@@ -76,17 +76,21 @@ class _Reader(TaughtPath):
         self.here = None  # (components, base) of the current pose, None: unknown
         self.noted = set()
 
-    def note_once(self, line, message):
-        if message not in self.noted:
-            self.noted.add(message)
-            self.problem(line, message)
+    def note_once(self, line, code, text, /, **arguments):
+        fact = Fact(code, text, **arguments)
+        if fact not in self.noted:
+            self.noted.add(fact)
+            self.problem(line, fact)
 
     def load(self, lines):
         """Splits the file into positions and instructions."""
         first = next((k for k, text in enumerate(lines) if text.strip()), 0)
         if not lines[first].strip().upper().startswith("/JOB"):
-            raise ProgramError(
-                f"{self.file}:{first + 1}: is no INFORM job (it begins without /JOB)"
+            raise ProgramError.at(
+                self.file,
+                first + 1,
+                "programs.inform.no_job",
+                "is no INFORM job (it begins without /JOB)",
             )
         section, positions, ended = "", [], False
         for number, text in enumerate(lines, 1):
@@ -103,8 +107,11 @@ class _Reader(TaughtPath):
                     break
         if not ended:
             # A line cut off in a number looks like a whole one.
-            raise ProgramError(
-                f"{self.file}:{len(lines)}: the job is cut, its END is missing; transfer it again"
+            raise ProgramError.at(
+                self.file,
+                len(lines),
+                "programs.inform.cut",
+                "the job is cut, its END is missing; transfer it again",
             )
         self.positions = positions_of(positions, self.file, self.problem)
         self.variables = {n: p for (letter, n), p in self.positions.items() if letter == "P"}
@@ -120,11 +127,15 @@ class _Reader(TaughtPath):
             line, text = self.statements[at]
             rounds += work_of(text)
             if rounds > MAX_UNROLLED:
-                raise ProgramError(f"{self.file}:{line}: the program is too long")
+                raise ProgramError.at(
+                    self.file, line, "programs.too_long", "the program is too long"
+                )
             word = re.match(r"\w*", text).group(0)
             if word == "JUMP":
                 if at in jumped:  # nothing is known that could have changed meanwhile
-                    self.problem(line, "an endless loop is followed once")
+                    self.problem(
+                        line, "programs.endless", "an endless {word} is followed once", word="loop"
+                    )
                     return
                 jumped.add(at)
                 at = self.jump(at, line, text, labels)
@@ -137,7 +148,13 @@ class _Reader(TaughtPath):
             try:
                 self.statement(line, text, word)
             except Unknown as unknown:
-                self.problem(line, f"{text[:30]} is left out: {unknown}")
+                self.problem(
+                    line,
+                    "programs.left_out",
+                    "{what} is left out: {reason}",
+                    what=text[:30],
+                    reason=unknown.fact,
+                )
                 self.here = None
                 self.gap(line)
             at += 1
@@ -146,17 +163,30 @@ class _Reader(TaughtPath):
         match = re.match(r"JUMP\s+\*(\S+)\s*(IF\b.*)?$", text)
         target = labels.get(match.group(1)) if match else None
         if target is None:
-            self.problem(line, f"'{text}' leads nowhere known; what follows is left out")
+            self.problem(
+                line,
+                "programs.leads_nowhere",
+                "'{text}' leads nowhere known; what follows is left out",
+                text=text,
+            )
             return None
         if not match.group(2):
             if target > at:
                 return target
-            self.problem(line, "an endless loop is followed once")
+            self.problem(
+                line, "programs.endless", "an endless {word} is followed once", word="loop"
+            )
             return None
         if target <= at:
-            self.problem(line, "a jump back is decided at run time; it is followed once")
+            self.problem(
+                line,
+                "programs.jump_back",
+                "a jump back is decided at run time; it is followed once",
+            )
             return at + 1
-        return self.leave_out(line, at + 1, target, "a jump is decided at run time")
+        return self.leave_out(
+            line, at + 1, target, Fact("programs.jump_at_run_time", "a jump is decided at run time")
+        )
 
     def block(self, at, line, word):
         """Passes over a block that only the controller knows how often to run."""
@@ -168,17 +198,38 @@ class _Reader(TaughtPath):
             if depth == 0:
                 break
         else:
-            self.problem(line, f"{word} has no {BLOCKS[word]}; what follows is left out")
+            self.problem(
+                line,
+                "programs.inform.no_block_end",
+                "{word} has no {end}; what follows is left out",
+                word=word,
+                end=BLOCKS[word],
+            )
             self.gap(line)
             return None
-        return self.leave_out(line, at + 1, k + 1, f"what {word} does is known at run time only")
+        return self.leave_out(
+            line,
+            at + 1,
+            k + 1,
+            Fact(
+                "programs.known_at_run_time",
+                "what {word} does is known at run time only",
+                word=word,
+            ),
+        )
 
     def leave_out(self, line, begin, end, message):
         body = self.statements[begin:end]
         for _, text in body:
             self.change(text)
         if any(MOVING.match(text) for _, text in body):
-            self.problem(line, f"{message}; motions up to line {body[-1][0]} are left out")
+            self.problem(
+                line,
+                "programs.inform.motions_left_out",
+                "{what}; motions up to line {last} are left out",
+                what=message,
+                last=body[-1][0],
+            )
             self.here = None
             self.gap(line)
         return end
@@ -203,31 +254,60 @@ class _Reader(TaughtPath):
         self.change(text)
         if word == "CALL":
             name = re.sub(r"^CALL\s*(JOB:)?", "", text).split(" ")[0]
-            self.note_once(line, f"job {name} is not in this file; motions in it are left out")
+            self.note_once(
+                line,
+                "programs.inform.job_elsewhere",
+                "job {name} is not in this file; motions in it are left out",
+                name=name,
+            )
             self.here = None
         elif word == "SPEED":
             self.speed_set = self.speed(line, text[5:])
         elif text.startswith("+"):
-            self.note_once(line, "motions of a second robot or station (+MOV) are ignored")
+            self.note_once(
+                line,
+                "programs.inform.second_robot",
+                "motions of a second robot or station (+MOV) are ignored",
+            )
         elif re.match(r"\w*MOV", text) or word in ("SMOVL", "SMOVC", "SMOVJ"):
-            raise Unknown("it is not understood")
+            raise Unknown("programs.it_is_not_understood", "it is not understood")
         elif word == "MSHIFT" or not HARMLESS.match(text):
-            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+            self.problem(
+                line,
+                "programs.ignored",
+                "'{text}' is not understood; it is ignored",
+                text=text[:40],
+            )
 
     def move(self, line, kind, rest):
         match = POSITION.match(rest)
         if not match:
-            raise Unknown("its position is not in this file")
+            raise Unknown("programs.inform.position_elsewhere", "its position is not in this file")
         letter, n, rest = match.group(1), int(match.group(2)), match.group(3)
         position = self.positions.get((letter, n)) if letter == "C" else self.variables.get(n)
         if position is None:
-            raise Unknown(f"{letter}{match.group(2)} has no value that this file gives")
+            raise Unknown(
+                "programs.inform.no_value",
+                "{letter}{number} has no value that this file gives",
+                letter=letter,
+                number=match.group(2),
+            )
         components, base, tool = position
-        if isinstance(components, str):
-            raise Unknown(f"{letter}{match.group(2)} {components}")
+        if isinstance(components, Reason):
+            raise Unknown(
+                "programs.inform.position_unknown",
+                "{letter}{number} {reason}",
+                letter=letter,
+                number=match.group(2),
+                reason=components.fact,
+            )
         shifted = SHIFTED.search(rest)
         if shifted:
-            raise Unknown(f"what {shifted.group(1)} does is known at run time only")
+            raise Unknown(
+                "programs.known_at_run_time",
+                "what {word} does is known at run time only",
+                word=shifted.group(1),
+            )
         simple = KINDS.get(kind, "LIN")
         if kind == "IMOV":
             components, base = self.step(components, rest)
@@ -248,14 +328,21 @@ class _Reader(TaughtPath):
         """(components, base) after an IMOV from the current pose. Raises Unknown."""
         frame = re.search(r"(?:^|\s)(BF|RF|TF|UF#\((\d+)\))(?:\s|$)", rest)
         if self.here is None or not frame or any(components[3:]):
-            raise Unknown("IMOV adds to a pose or frame that is not known, or turns")
+            raise Unknown(
+                "programs.inform.imov", "IMOV adds to a pose or frame that is not known, or turns"
+            )
         here, base = self.here
         if frame.group(1) == "TF":
             moved = pose_of(here)[:3] @ [*components[:3], 1.0]
         elif base == {"BF": "BASE", "RF": "ROBOT"}.get(frame.group(1), f"USER {frame.group(2)}"):
             moved = np.add(here[:3], components[:3])
         else:
-            raise Unknown(f"IMOV is along {frame.group(1)}, the pose is in {base or 'no frame'}")
+            raise Unknown(
+                "programs.inform.imov_frame",
+                "IMOV is along {frame}, the pose is in {base}",
+                frame=frame.group(1),
+                base=base or Fact("programs.inform.no_frame", "no frame"),
+            )
         return [*moved, *here[3:]], base
 
     def speed(self, line, rest):
@@ -265,19 +352,40 @@ class _Reader(TaughtPath):
             if re.search(r"VJ=", rest):
                 return None
             if self.speed_set is None:
-                self.problem(line, "the path speed is not known: neither V= nor SPEED gives it")
+                self.problem(
+                    line,
+                    "programs.inform.no_speed",
+                    "the path speed is not known: neither V= nor SPEED gives it",
+                )
             return self.speed_set
         name, text = match.groups()
         if name != "V":
-            self.problem(line, f"the path speed is not known: {name}= is no path speed")
+            self.problem(
+                line,
+                "programs.inform.no_path_speed",
+                "the path speed is not known: {name}= is no path speed",
+                name=name,
+            )
         elif not re.fullmatch(NUMBER, text, re.ASCII):
-            self.problem(line, f"the path speed is not known: V={text[:20]} is no number")
+            self.problem(
+                line,
+                "programs.inform.speed_no_number",
+                "the path speed is not known: V={text} is no number",
+                text=text[:20],
+            )
         elif "." not in text:
             self.note_once(
-                line, "V= without a decimal point may be mm/s or cm/min; such speeds are not known"
+                line,
+                "programs.inform.speed_unit",
+                "V= without a decimal point may be mm/s or cm/min; such speeds are not known",
             )
         elif not 0.0 < float(text) < 1e5:
-            self.problem(line, f"the path speed V={text[:20]} is out of range")
+            self.problem(
+                line,
+                "programs.inform.speed_out_of_range",
+                "the path speed V={text} is out of range",
+                text=text[:20],
+            )
         else:
             return float(text)
         return None

@@ -4,6 +4,7 @@ import math
 import re
 
 from ....base.frames import from_abc, to_abc
+from ...program import Fact, Unknown
 
 TOKEN = re.compile(
     r"""\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
@@ -27,10 +28,6 @@ MAX_DEPTH = 50
 MAX_LENGTH = 1e12  # mm; products of frames stay finite
 
 
-class Unknown(Exception):
-    """An expression that cannot be evaluated here; says why."""
-
-
 def tokens(text):
     """List of (kind, text) of a statement. Raises Unknown on anything that is no token."""
     result, at = [], 0
@@ -38,7 +35,9 @@ def tokens(text):
     while at < len(text):
         match = TOKEN.match(text, at)
         if not match:
-            raise Unknown(f"cannot read '{text[at:].strip()[:30]}'")
+            raise Unknown(
+                "programs.cannot_be_parsed", "cannot read '{text}'", text=text[at:].strip()[:30]
+            )
         result.append((match.lastgroup, match.group(match.lastgroup)))
         at = match.end()
     return result
@@ -48,10 +47,14 @@ def frame_of(value):
     """4 x 4 of an aggregate with all six components."""
     missing = [name for name in FRAME if name not in value]
     if missing:
-        raise Unknown(f"the frame has no {', '.join(missing).upper()}")
+        raise Unknown(
+            "programs.krl.frame_incomplete",
+            "the frame has no {names}",
+            names=", ".join(missing).upper(),
+        )
     x, y, z, a, b, c = (number(value[k]) for k in FRAME)
     if max(abs(x), abs(y), abs(z)) > MAX_LENGTH:
-        raise Unknown("the frame is out of all bounds")
+        raise Unknown("programs.krl.frame_out_of_bounds", "the frame is out of all bounds")
     return from_abc((x, y, z), (a, b, c))
 
 
@@ -75,7 +78,7 @@ class Reader:
 
     def next(self):
         if self.at >= len(self.tokens):
-            raise Unknown("the line ends too early")
+            raise Unknown("programs.krl.line_ends_early", "the line ends too early")
         self.at += 1
         return self.tokens[self.at - 1]
 
@@ -87,13 +90,18 @@ class Reader:
 
     def expect(self, text):
         if not self.accept(text):
-            raise Unknown(f"'{text}' expected, not '{self.peek() or 'the end of the line'}'")
+            raise Unknown(
+                "programs.expected",
+                "'{text}' expected, not '{found}'",
+                text=text,
+                found=self.peek() or Fact("programs.krl.end_of_line", "the end of the line"),
+            )
 
     def expression(self):
         """comparison of sums"""
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise Unknown("the expression is nested too deeply")
+            raise Unknown("programs.nested_expression", "the expression is nested too deeply")
         left = self.sum()
         operator = self.peek()
         if operator in ("==", "<>", "<", ">", "<=", ">="):
@@ -128,7 +136,7 @@ class Reader:
             else:
                 divisor = number(self.geometric())
                 if divisor == 0:
-                    raise Unknown("division by zero")
+                    raise Unknown("programs.division_by_zero", "division by zero")
                 value = number(value) / divisor
         return value
 
@@ -138,7 +146,7 @@ class Reader:
         while self.accept(":"):
             right = self.unary()
             if not isinstance(value, dict) or not isinstance(right, dict):
-                raise Unknown("the operator ':' needs two frames")
+                raise Unknown("programs.krl.two_frames", "the operator ':' needs two frames")
             value = components_of(frame_of(value) @ frame_of(right))
         return value
 
@@ -151,7 +159,7 @@ class Reader:
 
     def unary_once(self):
         if self.peek() in ("-", "+"):
-            raise Unknown("two signs in a row")
+            raise Unknown("programs.two_signs", "two signs in a row")
         return self.primary()
 
     def primary(self):
@@ -159,7 +167,9 @@ class Reader:
         if kind == "number":
             value = float(text)
             if not math.isfinite(value):
-                raise Unknown(f"{text} is too large a number")
+                raise Unknown(
+                    "programs.number_too_large", "{text} is too large a number", text=text
+                )
             return value
         if kind in ("string", "enum"):
             return text
@@ -170,7 +180,7 @@ class Reader:
         if text == "{":
             return self.aggregate()
         if kind != "name":
-            raise Unknown(f"a value expected, not '{text}'")
+            raise Unknown("programs.value_expected", "a value expected, not '{text}'", text=text)
         name = text.lower()
         if name in ("true", "false"):
             return name == "true"
@@ -191,7 +201,11 @@ class Reader:
 
     def call(self, name, text):
         if name not in FUNCTIONS:
-            raise Unknown(f"the function {text} is known to the controller only")
+            raise Unknown(
+                "programs.function_of_controller",
+                "the function {name} is known to the controller only",
+                name=text,
+            )
         self.expect("(")
         arguments = [number(self.expression())]
         while self.accept(","):
@@ -200,7 +214,12 @@ class Reader:
         try:
             return float(FUNCTIONS[name](*arguments))
         except (TypeError, ValueError, OverflowError):
-            raise Unknown(f"{text} cannot be evaluated for {arguments}") from None
+            raise Unknown(
+                "programs.krl.not_computable",
+                "{text} cannot be evaluated for {values}",
+                text=text,
+                values=str(arguments),
+            ) from None
 
     def aggregate(self):
         """{[TYPE:] name value, ...}; names in lower case."""
@@ -212,11 +231,19 @@ class Reader:
         while True:
             kind, name = self.next()
             if kind != "name":
-                raise Unknown(f"a component's name expected, not '{name}'")
+                raise Unknown(
+                    "programs.krl.component_expected",
+                    "a component's name expected, not '{name}'",
+                    name=name,
+                )
             self.indices()
             name = name.lower()
             if name in result:
-                raise Unknown(f"the component {name.upper()} occurs twice")
+                raise Unknown(
+                    "programs.krl.component_twice",
+                    "the component {name} occurs twice",
+                    name=name.upper(),
+                )
             result[name] = self.expression()
             if self.accept("}"):
                 return result
@@ -226,7 +253,7 @@ class Reader:
 def number(value):
     """``value`` if it is a number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise Unknown("a number expected")
+        raise Unknown("programs.number_expected", "a number expected")
     if not math.isfinite(value):
-        raise Unknown("the number is not finite")
+        raise Unknown("programs.number_not_finite", "the number is not finite")
     return value

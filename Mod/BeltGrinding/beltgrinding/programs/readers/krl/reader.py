@@ -14,16 +14,17 @@ from ...program import (
     LOOPED,
     MAX_COORDINATE,
     MAX_UNROLLED,
+    Fact,
     Motion,
-    Problem,
     Program,
     ProgramError,
+    Unknown,
     bytes_of,
     joint_angles,
     name_of,
     work_of,
 )
-from .expression import FRAME, Reader, Unknown, components_of, frame_of, number
+from .expression import FRAME, Reader, components_of, frame_of, number
 
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
@@ -81,7 +82,9 @@ def read(path):
     try:
         interpreter.run(_statements(path))
     except RecursionError:
-        raise ProgramError(f"{path.name}: calls and blocks are nested too deeply") from None
+        raise ProgramError(
+            "programs.krl.nested", "{file}: calls and blocks are nested too deeply", file=path.name
+        ) from None
     return interpreter.program
 
 
@@ -120,8 +123,8 @@ class _Interpreter:
         self.rounds = 0  # units of work; below 0: what the files allow
         self.missing = set()
 
-    def problem(self, line, message):
-        self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, told, text=None, /, **arguments):
+        self.program.problem(self.file, line, told, text, **arguments)
 
     def lookup(self, name, indices):
         if name == "$nullframe":
@@ -133,13 +136,22 @@ class _Interpreter:
         if isinstance(inner, dict) and component in inner:
             return inner[component]
         index = f"[{','.join(map(str, indices))}]" if indices else ""
-        raise Unknown(f"{name.upper()}{index} has no value that this file or its .dat gives")
+        raise Unknown(
+            "programs.krl.no_value",
+            "{name}{index} has no value that this file or its .dat gives",
+            name=name.upper(),
+            index=index,
+        )
 
     def evaluate(self, text):
         reader = Reader(text, self.lookup)
         value = reader.expression()
         if reader.peek() is not None:
-            raise Unknown(f"'{reader.peek()}' is not understood there")
+            raise Unknown(
+                "programs.not_understood_there",
+                "'{found}' is not understood there",
+                found=reader.peek(),
+            )
         return value
 
     def assign(self, match, line):
@@ -150,7 +162,13 @@ class _Interpreter:
             if index and index.strip("[] "):
                 indices = tuple(int(number(self.evaluate(i))) for i in index[1:-1].split(","))
         except Unknown as unknown:
-            self.problem(line, f"the index of {name.upper()} is not known: {unknown}")
+            self.problem(
+                line,
+                "programs.krl.index",
+                "the index of {name} is not known: {reason}",
+                name=name.upper(),
+                reason=unknown.fact,
+            )
             return
         try:
             value = self.evaluate(text)
@@ -158,7 +176,13 @@ class _Interpreter:
             # Not known from here on: whoever uses it reports it.
             self.values.pop((name, indices), None)
             if name in ("$vel.cp", "$base", "$tool"):
-                self.problem(line, f"{name.upper()} is not known: {unknown}")
+                self.problem(
+                    line,
+                    "programs.unknown_because",
+                    "{name} is not known: {reason}",
+                    name=name.upper(),
+                    reason=unknown.fact,
+                )
                 self.speed = None if name == "$vel.cp" else self.speed
             return
         self.values[name, indices] = value
@@ -174,7 +198,11 @@ class _Interpreter:
         if isinstance(metres_per_second, float) and 0 < metres_per_second < MAX_SPEED:
             self.speed = 1000.0 * metres_per_second
         else:
-            self.problem(line, "the path speed is no sensible number; the last one stays")
+            self.problem(
+                line,
+                "programs.krl.speed_no_number",
+                "the path speed is no sensible number; the last one stays",
+            )
 
     def read_data(self, statements, name):
         own, self.file = self.file, name
@@ -206,19 +234,27 @@ class _Interpreter:
         if order:
             self.routine(order[0])
         if name:
-            self.problem(statements[-1][0], "the routine has no END; the file may be cut off")
+            self.problem(
+                statements[-1][0],
+                "programs.krl.no_end",
+                "the routine has no END; the file may be cut off",
+            )
 
     def routine(self, statements):
         try:
             self.block(statements)
         except _Leave as leave:
             if leave.args[0] != "return":
-                self.problem(leave.args[1], "EXIT is in no loop; what follows it is left out")
+                self.problem(
+                    leave.args[1],
+                    "programs.krl.exit",
+                    "EXIT is in no loop; what follows it is left out",
+                )
 
     def tick(self, line, work):
         self.rounds += work
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{self.file}:{line}: the program is too long")
+            raise ProgramError.at(self.file, line, "programs.too_long", "the program is too long")
 
     def block(self, statements):
         at = 0
@@ -229,10 +265,18 @@ class _Interpreter:
             if word in OPENING:
                 end = self.closing(statements, at, word)
                 if end is None:
-                    self.problem(line, f"{word.upper()} has no {OPENING[word].upper()}")
+                    self.problem(
+                        line,
+                        "programs.krl.no_block_end",
+                        "{word} has no {end}",
+                        word=word.upper(),
+                        end=OPENING[word].upper(),
+                    )
                     return
                 if self.depth >= MAX_NESTING:
-                    raise ProgramError(f"{self.file}:{line}: blocks are nested too deeply")
+                    raise ProgramError.at(
+                        self.file, line, "programs.nested_blocks", "blocks are nested too deeply"
+                    )
                 self.depth += 1
                 try:
                     self.structure(word, line, text, statements[at + 1 : end])
@@ -259,11 +303,21 @@ class _Interpreter:
         elif word == "if":
             self.branch(line, text, body)
         elif word == "loop":
-            self.skipped(line, "an endless LOOP is followed once", body)
+            self.skipped(
+                line,
+                Fact("programs.endless", "an endless {word} is followed once", word="LOOP"),
+                body,
+            )
             self.within(body)
         else:
             self.skipped(
-                line, f"{word.upper()} is decided at run time; its motions are left out", body
+                line,
+                Fact(
+                    "programs.krl.at_run_time",
+                    "{word} is decided at run time; its motions are left out",
+                    word=word.upper(),
+                ),
+                body,
             )
             self.forget(body)
 
@@ -290,7 +344,11 @@ class _Interpreter:
                 for key in [k for k in self.values if k[0] == name]:
                     del self.values[key]
             if SETS_SPEED.match(text) and self.speed is not None:
-                self.problem(line, "the path speed is not known after this; the default is used")
+                self.problem(
+                    line,
+                    "programs.krl.speed_lost",
+                    "the path speed is not known after this; the default is used",
+                )
                 self.speed = None
             if not match and MOTION.match(text):
                 self.here = None
@@ -306,10 +364,17 @@ class _Interpreter:
         try:
             known = self.evaluate(condition)
             if not isinstance(known, bool):
-                raise Unknown("the condition is no truth value")
+                raise Unknown("programs.no_truth_value", "the condition is no truth value")
         except Unknown as unknown:
             self.skipped(
-                line, f"IF is decided at run time ({unknown}); its motions are left out", body
+                line,
+                Fact(
+                    "programs.decided_at_run_time",
+                    "{word} is decided at run time ({reason}); its motions are left out",
+                    reason=unknown.fact,
+                    word="IF",
+                ),
+                body,
             )
             self.forget(body)
             return
@@ -319,15 +384,22 @@ class _Interpreter:
         match = FOR.match(text)
         try:
             if not match:
-                raise Unknown("it is not understood")
+                raise Unknown("programs.it_is_not_understood", "it is not understood")
             name = match.group(1).lower()
             first, last = (int(number(self.evaluate(match.group(k)))) for k in (2, 3))
             step = int(number(self.evaluate(match.group(4)))) if match.group(4) else 1
             if step == 0:
-                raise Unknown("its STEP is 0")
+                raise Unknown("programs.step_is_zero", "its {word} is 0", word="STEP")
         except Unknown as unknown:
             self.skipped(
-                line, f"FOR has no static bounds ({unknown}); its motions are left out", body
+                line,
+                Fact(
+                    "programs.no_static_bounds",
+                    "{word} has no static bounds ({reason}); its motions are left out",
+                    reason=unknown.fact,
+                    word="FOR",
+                ),
+                body,
             )
             self.forget(body)
             return
@@ -368,14 +440,24 @@ class _Interpreter:
             raise _Leave(word, line)
         elif word not in QUIET and not LABEL.match(text) and text[:40] not in self.missing:
             self.missing.add(text[:40])
-            self.problem(line, f"'{text[:40]}' is not understood; it is ignored")
+            self.problem(
+                line,
+                "programs.ignored",
+                "'{text}' is not understood; it is ignored",
+                text=text[:40],
+            )
             self.speed = None if word == "bas" else self.speed
 
     def speed_text(self, text, line):
         try:
             self.set_speed(self.evaluate(text), line)
         except Unknown as unknown:
-            self.problem(line, f"the path speed is not known: {unknown}; the last one stays")
+            self.problem(
+                line,
+                "programs.krl.speed_stays",
+                "the path speed is not known: {reason}; the last one stays",
+                reason=unknown.fact,
+            )
 
     def call(self, line, name, arguments):
         if name == "bas":
@@ -387,7 +469,12 @@ class _Interpreter:
                     self.values["$apo.cdis", ()] = distance
         elif name in self.routines and not arguments.strip():
             if self.calls >= MAX_CALLS:
-                self.problem(line, f"{name} calls itself too deeply; its motions are left out")
+                self.problem(
+                    line,
+                    "programs.krl.calls_itself",
+                    "{name} calls itself too deeply; its motions are left out",
+                    name=name,
+                )
                 return
             self.tick(line, 1)
             self.calls += 1
@@ -395,7 +482,12 @@ class _Interpreter:
             self.calls -= 1
         elif name not in HARMLESS and name not in self.missing:
             self.missing.add(name)
-            self.problem(line, f"{name}() is not in this file; motions in it are left out")
+            self.problem(
+                line,
+                "programs.krl.call_elsewhere",
+                "{name}() is not in this file; motions in it are left out",
+                name=name,
+            )
             self.here = None
 
     def motion(self, line, kind, text, whole=None):
@@ -418,7 +510,13 @@ class _Interpreter:
                 self.target(line, kind, target, aux, [t.lower() for t in rest])
                 self.program.motions[-1].zone_mm = zone
         except Unknown as unknown:
-            self.problem(line, f"{kind} is left out: {unknown}")
+            self.problem(
+                line,
+                "programs.left_out",
+                "{what} is left out: {reason}",
+                what=kind,
+                reason=unknown.fact,
+            )
             self.here = None
             # The path beyond must not be joined over the gap as if nothing were missing.
             self.program.motions.append(Motion("PTP", None, line, self.file))
@@ -432,7 +530,7 @@ class _Interpreter:
 
     def target(self, line, kind, target, aux, rest):
         if not isinstance(target, dict):
-            raise Unknown("its target is no pose")
+            raise Unknown("programs.krl.no_pose", "its target is no pose")
         simple = {"SPTP": "PTP", "SLIN": "LIN", "SCIRC": "CIRC"}.get(
             kind.replace("_REL", ""), kind.replace("_REL", "")
         )
@@ -440,14 +538,14 @@ class _Interpreter:
         motion.tool, motion.base = (self.named_frame(n) for n in ("$tool", "$base"))
         if any(f"a{k}" in target for k in range(1, 7)):
             if simple != "PTP":
-                raise Unknown("its target is a joint position")
+                raise Unknown("programs.joint_target", "its target is a joint position")
             self.here = None
             motion.joints_deg = joint_angles([target.get(f"a{k}") for k in range(1, 7)])
             self.program.motions.append(motion)
             return
         given = {name: number(target[name]) for name in FRAME if name in target}
         if not given:
-            raise Unknown("its target names no component of a pose")
+            raise Unknown("programs.krl.no_component", "its target names no component of a pose")
         components = given if kind.endswith("_REL") else {**(self.here or {}), **given}
         if kind.endswith("_REL"):
             components = self.relative(given, rest)
@@ -455,10 +553,14 @@ class _Interpreter:
             components = {**dict.fromkeys("abc", 0.0), **given}
         missing = [name.upper() for name in FRAME if name not in components]
         if missing:
-            raise Unknown(f"{', '.join(missing)} is not given, and the pose before is not known")
+            raise Unknown(
+                "programs.krl.not_given",
+                "{names} is not given, and the pose before is not known",
+                names=", ".join(missing),
+            )
         motion.pose = frame_of(components)
         if np.abs(motion.pose[:3, 3]).max() > MAX_COORDINATE:
-            raise Unknown("the position is out of all bounds")
+            raise Unknown("programs.position_out_of_bounds", "the position is out of all bounds")
         motion.speed_mm_s = None if simple == "PTP" else self.speed
         if not aux:
             self.here = components
@@ -481,7 +583,9 @@ class _Interpreter:
 
     def relative(self, given, rest):
         if self.here is None:
-            raise Unknown("it is relative to a pose that is not known")
+            raise Unknown(
+                "programs.krl.relative_to_unknown", "it is relative to a pose that is not known"
+            )
         if "#tool" in rest:
             step = {**dict.fromkeys(FRAME, 0.0), **given}
             return components_of(frame_of(self.here) @ frame_of(step))

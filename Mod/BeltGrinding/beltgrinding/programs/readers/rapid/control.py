@@ -2,10 +2,10 @@
 
 import re
 
-from ...program import MAX_UNROLLED, ProgramError, work_of
+from ...program import MAX_UNROLLED, Fact, ProgramError, Unknown, work_of
 from . import data
 from .calls import HARMLESS, Jump
-from .data import Unknown, number
+from .data import number
 from .expression import Reader, arguments, text_after, tokens, truth
 from .motion import MotionRunner, spec_of
 from .text import Node
@@ -30,7 +30,7 @@ class Control(MotionRunner):
         self.line = line
         self.rounds += rounds
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{self.file}:{line}: the program is too long")
+            raise ProgramError.at(self.file, line, "programs.too_long", "the program is too long")
 
     def block(self, nodes):
         at = 0
@@ -50,7 +50,12 @@ class Control(MotionRunner):
                 if label >= at:
                     at = label
                 else:
-                    self.problem(jump.line, f"GOTO {jump.label} jumps back; it is followed once")
+                    self.problem(
+                        jump.line,
+                        "programs.rapid.goto_back",
+                        "GOTO {label} jumps back; it is followed once",
+                        label=jump.label,
+                    )
 
     def copy(self, value, line):
         """A copy of data; large data counts as many statements."""
@@ -100,7 +105,12 @@ class Control(MotionRunner):
             try:
                 known = truth(self.value(tokens(condition)))
             except Unknown as unknown:
-                message = f"IF is decided at run time ({unknown}); its motions are left out"
+                message = Fact(
+                    "programs.decided_at_run_time",
+                    "{word} is decided at run time ({reason}); its motions are left out",
+                    reason=unknown.fact,
+                    word="IF",
+                )
                 self.skip([n for b in branches[k:] for n in b[2]], line, message)
                 return
             if known:
@@ -113,7 +123,12 @@ class Control(MotionRunner):
             reader = Reader(row[1:], self)
             known = truth(reader.expression())
         except Unknown as unknown:
-            message = f"IF is decided at run time ({unknown}); its motion is left out"
+            message = Fact(
+                "programs.rapid.motion_at_run_time",
+                "{word} is decided at run time ({reason}); its motion is left out",
+                reason=unknown.fact,
+                word="IF",
+            )
             self.skip([node], node.line, message)
             return
         rest = text_after(node.text, reader.at + 1)
@@ -121,22 +136,31 @@ class Control(MotionRunner):
         if known and word:
             self.statement(Node(node.line, word.group().lower(), rest))
         elif not word:
-            self.problem(node.line, "IF has neither THEN nor a statement")
+            self.problem(
+                node.line,
+                "programs.rapid.if_without_statement",
+                "IF has neither THEN nor a statement",
+            )
 
     def for_(self, node):
         match = FOR.match(" ".join(node.text.split()))
         try:
             if not match:
-                raise Unknown("it is not understood")
+                raise Unknown("programs.it_is_not_understood", "it is not understood")
             name = match.group(1).lower()
             first, last = (int(number(self.value(tokens(match.group(k))))) for k in (2, 3))
             step = 1 if last >= first else -1
             if match.group(4):
                 step = int(number(self.value(tokens(match.group(4)))))
             if step == 0:
-                raise Unknown("its STEP is 0")
+                raise Unknown("programs.step_is_zero", "its {word} is 0", word="STEP")
         except Unknown as unknown:
-            message = f"FOR has no static bounds ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.no_static_bounds",
+                "{word} has no static bounds ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="FOR",
+            )
             self.skip(node.body, node.line, message)
             return
         scope = self.globals if self.locals is None else self.locals
@@ -152,7 +176,9 @@ class Control(MotionRunner):
     def while_(self, node):
         condition = re.sub(r"(?i)^WHILE\b", "", node.text)
         if re.fullmatch(r"[\s(]*TRUE[\s)]*", condition, re.IGNORECASE):
-            self.problem(node.line, "an endless WHILE is followed once")
+            self.problem(
+                node.line, "programs.endless", "an endless {word} is followed once", word="WHILE"
+            )
             self.block(node.body)
             return
         try:
@@ -160,7 +186,12 @@ class Control(MotionRunner):
                 self.tick(node.line)
                 self.block(node.body)
         except Unknown as unknown:
-            message = f"WHILE is decided at run time ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.decided_at_run_time",
+                "{word} is decided at run time ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="WHILE",
+            )
             self.skip(node.body, node.line, message)
 
     def test_(self, node):
@@ -182,7 +213,12 @@ class Control(MotionRunner):
             else:
                 body = otherwise or []
         except Unknown as unknown:
-            message = f"TEST is decided at run time ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.decided_at_run_time",
+                "{word} is decided at run time ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="TEST",
+            )
             self.skip(node.body, node.line, message)
             return
         self.block(body)

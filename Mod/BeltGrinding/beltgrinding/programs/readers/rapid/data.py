@@ -7,14 +7,14 @@ reference manual, RAPID instructions, functions and data types.
 import math
 
 from ....base.frames import QUATERNION_TOLERANCE, from_quaternion, to_abc
+from ...program import Fact, Unknown
 
 MAX_MM = 1e6  # a robot's world ends before; RAPID writes 9E9 for 'not given'
 MAX_ARRAY = 1_000_000
-
-
-class Unknown(Exception):
-    """An expression that cannot be evaluated here; says why."""
-
+A_POSITION = Fact("programs.rapid.position", "a position")
+AN_ORIENTATION = Fact("programs.rapid.orientation", "an orientation")
+A_POS = Fact("programs.rapid.pos", "a pos")
+AN_ORIENT = Fact("programs.rapid.orient", "an orient")
 
 RECORDS = {
     "pos": {"x": "num", "y": "num", "z": "num"},
@@ -88,14 +88,18 @@ def initial(kind, records, depth=0):
     if kind in SIMPLE:
         return SIMPLE[kind]
     if kind not in records or depth > 10:
-        raise Unknown(f"data of the type {kind} is known to the controller only")
+        raise Unknown(
+            "programs.type_of_controller",
+            "data of the type {kind} is known to the controller only",
+            kind=kind,
+        )
     return [initial(inner, records, depth + 1) for inner in records[kind].values()]
 
 
 def array(dimensions, value):
     """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
     if min(dimensions) < 1 or math.prod(dimensions) * size(value) > MAX_ARRAY:
-        raise Unknown("the array's size is not sensible")
+        raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
     if len(dimensions) == 1:
         return [copied(value) for _ in range(dimensions[0])]
     return [array(dimensions[1:], value) for _ in range(dimensions[0])]
@@ -113,16 +117,18 @@ def copied(value):
 def number(value):
     """``value`` if it is a finite number; raises Unknown."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise Unknown("a number expected")
+        raise Unknown("programs.number_expected", "a number expected")
     if not math.isfinite(value):
-        raise Unknown("the number is not finite")
+        raise Unknown("programs.number_not_finite", "the number is not finite")
     return value
 
 
 def numbers(value, count, what):
     """``value`` if it is a list of ``count`` finite numbers; raises Unknown."""
     if not isinstance(value, list) or len(value) != count:
-        raise Unknown(f"{what} needs {count} numbers")
+        raise Unknown(
+            "programs.rapid.numbers_needed", "{what} needs {count} numbers", what=what, count=count
+        )
     for v in value:
         number(v)
     return value
@@ -131,14 +137,22 @@ def numbers(value, count, what):
 def pose_of(value):
     """[position, unit quaternion] of a robtarget or a pose. Raises Unknown."""
     if not isinstance(value, list) or len(value) not in (2, 4):
-        raise Unknown("it is no position with an orientation")
-    position = numbers(value[0], 3, "a position")
+        raise Unknown("programs.rapid.no_position", "it is no position with an orientation")
+    position = numbers(value[0], 3, A_POSITION)
     if max(map(abs, position)) > MAX_MM:
-        raise Unknown(f"{max(position, key=abs):g} mm is no robot's position")
-    w, x, y, z = numbers(value[1], 4, "an orientation")
+        raise Unknown(
+            "programs.rapid.far_position",
+            "{value:g} mm is no robot's position",
+            value=max(position, key=abs),
+        )
+    w, x, y, z = numbers(value[1], 4, AN_ORIENTATION)
     length = math.sqrt(w * w + x * x + y * y + z * z) if max(map(abs, value[1])) < 2 else math.inf
     if abs(length - 1.0) > QUATERNION_TOLERANCE:
-        raise Unknown(f"the quaternion has length {length:.4g} instead of 1")
+        raise Unknown(
+            "programs.rapid.quaternion",
+            "the quaternion has length {length:.4g} instead of 1",
+            length=length,
+        )
     return [list(position), [w / length, x / length, y / length, z / length]]
 
 

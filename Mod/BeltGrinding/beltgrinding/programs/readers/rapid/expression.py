@@ -5,7 +5,8 @@ import json
 import math
 import re
 
-from .data import Unknown, cross, number, numbers, turn
+from ...program import Fact, Unknown
+from .data import A_POS, AN_ORIENT, cross, number, numbers, turn
 from .functions import FUNCTIONS
 
 TOKEN = re.compile(
@@ -21,6 +22,7 @@ LITERAL = re.compile(r"[-+.0-9eE,\s\[\]]*")
 DECODER = json.JSONDecoder(parse_int=float)
 BASES = {"x": 16, "b": 2, "o": 8}
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
+END = Fact("programs.end_of_statement", "the end of the statement")
 MAX_DEPTH = 50
 MAX_COMPARED = 16  # components of a record
 
@@ -46,7 +48,9 @@ def _scan(text):
     while at < len(text):
         match = TOKEN.match(text, at)
         if not match:
-            raise Unknown(f"cannot read '{text[at:].strip()[:30]}'")
+            raise Unknown(
+                "programs.cannot_be_parsed", "cannot read '{text}'", text=text[at:].strip()[:30]
+            )
         kind = match.lastgroup
         if kind == "op" and match.group(kind) == "[":
             literal = _literal(text, match.end() - 1)
@@ -83,18 +87,29 @@ def arguments(row):
             if name is None and piece:
                 positional.append(piece)
             elif name is None and row and text == ",":
-                raise Unknown("an argument is missing")
+                raise Unknown("programs.argument_missing", "an argument is missing")
             elif name is not None:
                 if not piece or piece[0][0] != "name":
-                    raise Unknown("the name of an optional argument is missing")
+                    raise Unknown(
+                        "programs.rapid.no_optional_name",
+                        "the name of an optional argument is missing",
+                    )
                 if len(piece) > 1 and piece[1][1] != ":=":
-                    raise Unknown(f"':=' expected after \\{piece[0][1]}")
+                    raise Unknown(
+                        "programs.rapid.assignment_expected",
+                        "':=' expected after \\{name}",
+                        name=piece[0][1],
+                    )
                 if len(piece) == 2:
-                    raise Unknown(f"the value of \\{piece[0][1]} is missing")
+                    raise Unknown(
+                        "programs.rapid.no_optional_value",
+                        "the value of \\{name} is missing",
+                        name=piece[0][1],
+                    )
                 optional[piece[0][1].lower()] = piece[2:]
             start, name = at + 1, (True if text == "\\" else None)
     if depth:
-        raise Unknown("the brackets do not match")
+        raise Unknown("programs.brackets", "the brackets do not match")
     return positional, optional
 
 
@@ -114,7 +129,11 @@ class Reader:
             return self.tokens[0][1]
         value = self.expression()
         if self.at < len(self.tokens):
-            raise Unknown(f"'{self.peek()}' is not understood there")
+            raise Unknown(
+                "programs.not_understood_there",
+                "'{found}' is not understood there",
+                found=self.peek(),
+            )
         return value
 
     def peek(self):
@@ -128,7 +147,7 @@ class Reader:
 
     def next(self):
         if self.at >= len(self.tokens):
-            raise Unknown("the statement ends too early")
+            raise Unknown("programs.statement_ends_early", "the statement ends too early")
         self.at += 1
         return self.tokens[self.at - 1]
 
@@ -140,13 +159,18 @@ class Reader:
 
     def expect(self, text):
         if not self.accept(text):
-            raise Unknown(f"'{text}' expected, not '{self.peek() or 'the end of the statement'}'")
+            raise Unknown(
+                "programs.expected",
+                "'{text}' expected, not '{found}'",
+                text=text,
+                found=self.peek() or END,
+            )
 
     def expression(self):
         """OR and XOR of terms"""
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise Unknown("the expression is nested too deeply")
+            raise Unknown("programs.nested_expression", "the expression is nested too deeply")
         value = self.term()
         while self.word() in ("or", "xor"):
             operator = self.next()[1].lower()
@@ -177,7 +201,7 @@ class Reader:
         right = self.sum()
         if operator in ("=", "<>"):
             if isinstance(left, list) and len(left) > MAX_COMPARED:
-                raise Unknown("arrays are not compared")
+                raise Unknown("programs.rapid.arrays_not_compared", "arrays are not compared")
             return (left == right) == (operator == "=")
         left, right = number(left), number(right)
         if operator in ("<", ">"):
@@ -192,9 +216,9 @@ class Reader:
             if isinstance(value, str) and isinstance(right, str) and sign > 0:
                 value = value + right
                 if len(value) > 10_000:
-                    raise Unknown("the string is too long")
+                    raise Unknown("programs.string_too_long", "the string is too long")
             elif isinstance(value, list):
-                pairs = zip(numbers(value, 3, "a pos"), numbers(right, 3, "a pos"))
+                pairs = zip(numbers(value, 3, A_POS), numbers(right, 3, A_POS))
                 value = [a + sign * b for a, b in pairs]
             else:
                 value = number(value) + sign * number(right)
@@ -210,9 +234,9 @@ class Reader:
                 continue
             divisor = number(right)
             if divisor == 0:
-                raise Unknown("division by zero")
+                raise Unknown("programs.division_by_zero", "division by zero")
             if operator == "/" and isinstance(value, list):
-                value = [v / divisor for v in numbers(value, 3, "a pos")]
+                value = [v / divisor for v in numbers(value, 3, A_POS)]
             elif operator == "/":
                 value = number(value) / divisor
             else:
@@ -228,7 +252,7 @@ class Reader:
 
     def once(self):
         if self.peek() in ("-", "+"):
-            raise Unknown("two signs in a row")
+            raise Unknown("programs.two_signs", "two signs in a row")
         return self.primary()
 
     def primary(self):
@@ -246,7 +270,7 @@ class Reader:
         if text == "[":
             return self.aggregate()
         if kind != "name":
-            raise Unknown(f"a value expected, not '{text}'")
+            raise Unknown("programs.value_expected", "a value expected, not '{text}'", text=text)
         name = text.lower()
         if name in ("true", "false"):
             return name == "true"
@@ -263,7 +287,9 @@ class Reader:
             elif self.accept("."):
                 at, kind = self.data.component(kind, self.next()[1])
                 if not isinstance(value, list) or at >= len(value):
-                    raise Unknown(f"{name} has no such component")
+                    raise Unknown(
+                        "programs.rapid.no_component", "{name} has no such component", name=name
+                    )
                 value = value[at]
             else:
                 return value
@@ -271,7 +297,9 @@ class Reader:
     @staticmethod
     def element(value, index, name):
         if not isinstance(value, list) or not 1 <= index <= len(value):
-            raise Unknown(f"{name} has no element {index}")
+            raise Unknown(
+                "programs.no_element", "{name} has no element {index}", name=name, index=index
+            )
         return index - 1
 
     def indices(self):
@@ -285,7 +313,7 @@ class Reader:
         result = []
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise Unknown("the aggregate is nested too deeply")
+            raise Unknown("programs.rapid.nested_aggregate", "the aggregate is nested too deeply")
         while True:
             result.append(self.expression())
             if self.accept("]"):
@@ -303,10 +331,14 @@ class Reader:
         if name == "crobt":
             return self.data.position(optional)
         if name not in FUNCTIONS:
-            raise Unknown(f"the function {text} is known to the controller only")
+            raise Unknown(
+                "programs.function_of_controller",
+                "the function {name} is known to the controller only",
+                name=text,
+            )
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise Unknown("the calls are nested too deeply")
+            raise Unknown("programs.rapid.nested_calls", "the calls are nested too deeply")
         values = [self.inner(row) for row in positional]
         options = {key: self.inner(row) if row else None for key, row in optional.items()}
         self.depth -= 1
@@ -320,7 +352,11 @@ class Reader:
             IndexError,
             AttributeError,
         ):
-            raise Unknown(f"{text} cannot be evaluated for these arguments") from None
+            raise Unknown(
+                "programs.rapid.not_computable",
+                "{text} cannot be evaluated for these arguments",
+                text=text,
+            ) from None
 
     def inner(self, row):
         reader = Reader(row, self.data)
@@ -334,12 +370,14 @@ def number_of(text):
         base = BASES.get(text[1:2].lower()) if text[0] == "0" else None
         return number(float(int(text[2:], base)) if base else float(text))
     except (OverflowError, Unknown):
-        raise Unknown(f"{text[:20]} is too large a number") from None
+        raise Unknown(
+            "programs.number_too_large", "{text} is too large a number", text=text[:20]
+        ) from None
 
 
 def truth(value):
     if not isinstance(value, bool):
-        raise Unknown("a truth value expected")
+        raise Unknown("programs.truth_value_expected", "a truth value expected")
     return value
 
 
@@ -347,9 +385,9 @@ def times(a, b):
     """The operator *: numbers, a number and a pos, two pos (vector product), two orient."""
     if isinstance(a, list) and isinstance(b, list):
         if len(a) == len(b) == 4:
-            return turn(numbers(a, 4, "an orient"), numbers(b, 4, "an orient"))
-        return cross(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
+            return turn(numbers(a, 4, AN_ORIENT), numbers(b, 4, AN_ORIENT))
+        return cross(numbers(a, 3, A_POS), numbers(b, 3, A_POS))
     if isinstance(a, list) or isinstance(b, list):
         vector, factor = (a, b) if isinstance(a, list) else (b, a)
-        return [v * number(factor) for v in numbers(vector, 3, "a pos")]
+        return [v * number(factor) for v in numbers(vector, 3, A_POS)]
     return number(a) * number(b)

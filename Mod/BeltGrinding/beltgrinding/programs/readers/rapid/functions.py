@@ -5,11 +5,22 @@ They raise Unknown, or what a wrong number or kind of arguments raises in Python
 
 import math
 
-from .data import about, inverse, number, numbers, pose_of, product, turn
+from .data import (
+    A_POS,
+    A_POSITION,
+    AN_ORIENT,
+    about,
+    inverse,
+    number,
+    numbers,
+    pose_of,
+    product,
+    turn,
+)
 
 
 def _offs(point, x, y, z):
-    position = numbers(point[0], 3, "a position")
+    position = numbers(point[0], 3, A_POSITION)
     return [[p + number(d) for p, d in zip(position, (x, y, z))], *point[1:]]
 
 
@@ -24,12 +35,12 @@ def _orient_zyx(z, y, x):
 
 
 def _normalised(q):
-    length = math.sqrt(sum(v * v for v in numbers(q, 4, "an orient")))
+    length = math.sqrt(sum(v * v for v in numbers(q, 4, AN_ORIENT)))
     return [v / length for v in q]
 
 
 def _distance(a, b):
-    return math.dist(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
+    return math.dist(numbers(a, 3, A_POS), numbers(b, 3, A_POS))
 
 
 def _rounded(value, *, dec=0.0):
@@ -42,14 +53,12 @@ FUNCTIONS = {
     "reltool": _rel_tool,
     "posemult": lambda a, b: product(pose_of(a), pose_of(b)),
     "poseinv": lambda a: inverse(pose_of(a)),
-    "posevect": lambda a, v: product(pose_of(a), [numbers(v, 3, "a pos"), [1.0, 0.0, 0.0, 0.0]])[0],
+    "posevect": lambda a, v: product(pose_of(a), [numbers(v, 3, A_POS), [1.0, 0.0, 0.0, 0.0]])[0],
     "orientzyx": _orient_zyx,
     "norient": _normalised,
     "distance": _distance,
     "vectmagn": lambda v: _distance(v, [0.0, 0.0, 0.0]),
-    "dotprod": lambda a, b: sum(
-        p * q for p, q in zip(numbers(a, 3, "a pos"), numbers(b, 3, "a pos"))
-    ),
+    "dotprod": lambda a, b: sum(p * q for p, q in zip(numbers(a, 3, A_POS), numbers(b, 3, A_POS))),
     "abs": lambda v: abs(number(v)),
     "sin": lambda v: math.sin(math.radians(number(v))),
     "cos": lambda v: math.cos(math.radians(number(v))),

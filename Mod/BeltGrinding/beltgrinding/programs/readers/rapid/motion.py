@@ -7,11 +7,16 @@ import re
 import numpy as np
 
 from ....base.frames import from_quaternions
-from ...program import Motion, Problem, Program, joint_angles, name_of
+from ...program import Fact, Motion, Program, Unknown, joint_angles, name_of, shortened
 from . import data
-from .data import PREDEFINED, Unknown, copied, inverse, number, pose_of, product
+from .data import PREDEFINED, copied, inverse, number, pose_of, product
 from .expression import Reader, arguments, tokens
 
+TOOL = Fact("programs.rapid.tool", "tool")
+WORK_OBJECT = Fact("programs.rapid.work_object", "work object")
+NO_VALUE = Fact("programs.rapid.no_value", "this file gives it no value")
+ASSIGNED = Fact("programs.assigned_at_run_time", "it is assigned at run time")
+MAX_TEXT = 200  # characters of a reason
 MAX_RESOLVING = 10  # constants defined by constants
 NAME = re.compile(
     r"(?:(?P<search>search)|move|(?P<trigg>trigg)|(?P<arc>arc)|paint|(?P<disp>disp))"
@@ -65,23 +70,34 @@ class State:
             kind, value = PREDEFINED[name]
             return value, kind
         if entry is None:
-            raise Unknown(f"{written} is not declared in this file")
+            raise Unknown(
+                "programs.rapid.not_declared", "{name} is not declared in this file", name=written
+            )
         if len(entry) == 3:
             self.resolve(entry, name)
         if entry[1] is None:
-            why = self.reasons.get(name, "this file gives it no value")
-            raise Unknown(f"{written} is not known ({why})"[:200])
+            fact = Fact(
+                "programs.not_known_since",
+                "{name} is not known ({reason})",
+                name=written,
+                reason=self.reasons.get(name, NO_VALUE),
+            )
+            raise Unknown(shortened(fact, MAX_TEXT))
         return entry[1], entry[0]
 
     def resolve(self, entry, name):
         if self.resolving >= MAX_RESOLVING:
-            raise Unknown(f"{name} is defined by too many constants")
+            raise Unknown(
+                "programs.rapid.too_many_constants",
+                "{name} is defined by too many constants",
+                name=name,
+            )
         text = entry.pop()
         self.resolving += 1
         try:
             entry[1] = copied(self.value(tokens(text)))
         except Unknown as unknown:
-            self.reasons[name] = str(unknown)
+            self.reasons[name] = unknown.fact
         finally:
             self.resolving -= 1
 
@@ -89,7 +105,12 @@ class State:
         """(index, type) of a record's component. Raises Unknown."""
         names = self.records.get(kind, {})
         if str(name).lower() not in names:
-            raise Unknown(f"{kind} has no component {name}")
+            raise Unknown(
+                "programs.rapid.no_component_of_type",
+                "{kind} has no component {name}",
+                kind=kind,
+                name=name,
+            )
         return list(names).index(name.lower()), names[name.lower()]
 
     def store(self, name, value):
@@ -99,7 +120,7 @@ class State:
         entry[1:] = [value]
         self.texts.clear()
 
-    def forget(self, name, why="it is assigned at run time"):
+    def forget(self, name, why=ASSIGNED):
         """Whoever uses the data from here on reports ``why``."""
         entry = self.entry(name)
         if name in self.constants and entry is self.globals.get(name):
@@ -126,12 +147,13 @@ class MotionRunner(State):
         self.here = None  # target, tool, work object; None: not known
         self.written = {}  # names of tools and work objects as the program writes them
 
-    def problem(self, line, message, once=None):
+    def problem(self, line, told, text=None, /, once=None, **arguments):
         """Says something once, however often a loop comes by."""
-        key = once or (line, message)
+        fact = told if text is None else Fact(told, text, **arguments)
+        key = once or (line, fact)
         if key not in self.said:
             self.said.add(key)
-            self.program.problems.append(Problem(self.file, line, message))
+            self.program.problem(self.file, line, fact)
 
     def forget_position(self):
         self.here = None
@@ -159,12 +181,12 @@ class MotionRunner(State):
             count = 2 if kind == "CIRC" else 1
             speed_at = before + count
             if len(row) <= speed_at + to_tool:
-                raise Unknown("it has too few arguments")
+                raise Unknown("programs.rapid.few_arguments", "it has too few arguments")
             tool, wobj = self.frames_of(line, row[speed_at + to_tool], options.get("wobj"))
             targets = [self.value(r) for r in row[before : before + count]]
             if joint:
                 if not data.is_joints(targets[0]):
-                    raise Unknown("its target is no joint target")
+                    raise Unknown("programs.rapid.no_joint_target", "its target is no joint target")
                 self.speed(line, kind, row[speed_at], options, None)
                 self.forget_position()
                 motion = Motion(kind, None, line, self.file)
@@ -187,7 +209,13 @@ class MotionRunner(State):
             if search:
                 self.found(line, row[1], options)
         except Unknown as unknown:
-            self.problem(line, f"{text.split()[0]} is left out: {unknown}")
+            self.problem(
+                line,
+                "programs.left_out",
+                "{what} is left out: {reason}",
+                what=text.split()[0],
+                reason=unknown.fact,
+            )
             self.gap(line)
 
     def add(self, motion, tool, wobj):
@@ -199,12 +227,19 @@ class MotionRunner(State):
         if len(point) == 1:
             self.forget(str(point[0][1]).lower())
         if options.keys() & {"stop", "pstop", "sstop"}:
-            self.problem(line, "where the search stops is known at run time; its target is taken")
+            self.problem(
+                line,
+                "programs.rapid.search",
+                "where the search stops is known at run time; its target is taken",
+            )
             self.forget_position()
 
     def displaced(self, pose):
         if self.displacement is False:
-            raise Unknown("the program displacement is known to the controller only")
+            raise Unknown(
+                "programs.rapid.displacement",
+                "the program displacement is known to the controller only",
+            )
         if self.displacement is None:
             return pose
         return pose_of(product(self.displacement, pose))
@@ -216,26 +251,38 @@ class MotionRunner(State):
                 seconds = number(self.value(options["t"]))
                 if length and seconds > 0:
                     return number(length / seconds)
-                raise Unknown("the length of the way that takes the time \\T is not known")
+                raise Unknown(
+                    "programs.rapid.length_unknown",
+                    "the length of the way that takes the time \\T is not known",
+                )
             if options.get("v"):
                 speed = number(self.value(options["v"]))
             elif len(row) == 1 and str(row[0][1]).lower() == "vmax" and self.entry("vmax") is None:
                 if kind != "PTP":
-                    self.problem(line, "vmax is the robot's own; the default speed is used", "vmax")
+                    self.problem(
+                        line,
+                        "programs.rapid.vmax",
+                        "vmax is the robot's own; the default speed is used",
+                        once="vmax",
+                    )
                 return None
             else:
                 value = self.value(row)
                 if not isinstance(value, list) or len(value) != 4:
-                    raise Unknown("it is no speeddata")
+                    raise Unknown("programs.rapid.no_speeddata", "it is no speeddata")
                 speed = number(value[0])
             speed = min(speed * self.override, self.most)
             if speed > 0:
                 return speed
-            raise Unknown("it is not positive")
+            raise Unknown("programs.not_positive", "it is not positive")
         except Unknown as unknown:
             if kind != "PTP":
-                what = f"the speed is not known: {unknown}; the default speed is used"
-                self.problem(line, what, what)
+                what = Fact(
+                    "programs.rapid.speed_unknown",
+                    "the speed is not known: {reason}; the default speed is used",
+                    reason=unknown.fact,
+                )
+                self.problem(line, what, once=what)
             return None
 
     def zone(self, line, row, options):
@@ -249,22 +296,28 @@ class MotionRunner(State):
             else:
                 value = self.value(row)
             if not isinstance(value, list) or len(value) != 7 or not isinstance(value[0], bool):
-                raise Unknown("it is no zonedata")
+                raise Unknown("programs.rapid.no_zonedata", "it is no zonedata")
             if value[0]:
                 return 0.0
             size = number(self.value(options["z"])) if options.get("z") else number(value[1])
             return max(0.0, size)
         except Unknown as unknown:
-            what = f"the zone is not known: {unknown}"
-            self.problem(line, what, what)
+            what = Fact(
+                "programs.rapid.zone_unknown",
+                "the zone is not known: {reason}",
+                reason=unknown.fact,
+            )
+            self.problem(line, what, once=what)
             return None
 
     def frames_of(self, line, tool_row, wobj_row):
         """Names of tool and work object, after a look whether they go together."""
         names = []
-        for row, what in ((tool_row, "tool"), (wobj_row or (("name", "wobj0"),), "work object")):
+        for row, what in ((tool_row, TOOL), (wobj_row or (("name", "wobj0"),), WORK_OBJECT)):
             if len(row) != 1 or row[0][0] != "name":
-                raise Unknown(f"its {what} is not given by a name")
+                raise Unknown(
+                    "programs.rapid.not_by_name", "its {what} is not given by a name", what=what
+                )
             names.append(row[0][1].lower())
             self.written.setdefault(names[-1], row[0][1])
         if (key := tuple(names)) not in self.said:
@@ -274,16 +327,36 @@ class MotionRunner(State):
                 try:
                     holds.append(self.frame_data(self.written[name], kind)[0])
                 except Unknown as unknown:
-                    self.problem(line, f"{unknown}; the poses are kept as programmed", name)
+                    self.problem(
+                        line,
+                        "programs.rapid.kept_as_programmed",
+                        "{reason}; the poses are kept as programmed",
+                        reason=unknown.fact,
+                        once=name,
+                    )
             if len(holds) == 2 and holds[0] is holds[1]:
-                who = "both are held" if holds[0] else "neither is held"
-                self.problem(line, f"{names[0]} and {names[1]}: {who} by the robot (robhold)")
+                fact = (
+                    Fact(
+                        "programs.rapid.both_held",
+                        "{tool} and {wobj}: both are held by the robot (robhold)",
+                        tool=names[0],
+                        wobj=names[1],
+                    )
+                    if holds[0]
+                    else Fact(
+                        "programs.rapid.neither_held",
+                        "{tool} and {wobj}: neither is held by the robot (robhold)",
+                        tool=names[0],
+                        wobj=names[1],
+                    )
+                )
+                self.problem(line, fact)
         return key
 
     def frame_data(self, name, kind):
         value, found = self.variable(name)
         if found != kind or len(value) < 3 or not isinstance(value[0], bool):
-            raise Unknown(f"{name} is no {kind}")
+            raise Unknown("programs.rapid.wrong_type", "{name} is no {kind}", name=name, kind=kind)
         return value
 
     def described(self, name, at):
@@ -306,7 +379,7 @@ class MotionRunner(State):
     def position(self, options):
         """The robtarget CRobT gives: the last one, in another tool or work object if asked for."""
         if self.here is None:
-            raise Unknown("where the robot is then is not known")
+            raise Unknown("programs.rapid.place_unknown", "where the robot is then is not known")
         target, tool, wobj = self.here
         names = []
         for key, own in (("tool", tool), ("wobj", wobj)):
@@ -316,14 +389,19 @@ class MotionRunner(State):
             return target
         old, new = self.flange(tool, wobj), self.flange(*names)
         if old[2] or new[2]:
-            raise Unknown("CRobT in another tool or work object than the part's in the robot")
+            raise Unknown(
+                "programs.rapid.crobt",
+                "CRobT in another tool or work object than the part's in the robot",
+            )
         flange = product(product(old[1], pose_of(target)), inverse(old[0]))
         return [*product(product(inverse(new[1]), flange), new[0]), *target[2:]]
 
     def flange(self, tool, wobj):
         held, work = self.frame_data(tool, "tooldata"), self.frame_data(wobj, "wobjdata")
         if len(work) != 5 or not work[1]:
-            raise Unknown(f"{wobj} is moved by a mechanical unit")
+            raise Unknown(
+                "programs.rapid.mechanical_unit", "{name} is moved by a mechanical unit", name=wobj
+            )
         room = product(pose_of(work[3]), pose_of(work[4]))
         return pose_of(held[1]), room, work[0] or not held[0]
 
@@ -340,4 +418,10 @@ class MotionRunner(State):
                 self.displacement = None if word == "pdispoff" else False
         except (Unknown, ValueError, IndexError) as error:
             self.displacement = False if word == "pdispset" else self.displacement
-            self.problem(line, f"{text.split()[0]} is not known: {error}")
+            self.problem(
+                line,
+                "programs.unknown_because",
+                "{name} is not known: {reason}",
+                name=text.split()[0],
+                reason=getattr(error, "fact", str(error)),
+            )

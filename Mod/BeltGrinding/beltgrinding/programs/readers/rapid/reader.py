@@ -6,11 +6,11 @@ value the module gives. What only the controller can know is a Problem.
 
 import re
 
-from ...program import LOOPED, ProgramError, work_of
+from ...program import LOOPED, ProgramError, Unknown, work_of
 from . import data
 from .calls import CHANGING, HARMLESS, Exit, Jump, Return
 from .control import TARGET, Control
-from .data import Unknown, number
+from .data import number
 from .expression import Reader, arguments, tokens
 from .motion import spec_of
 from .text import tree
@@ -31,8 +31,12 @@ def read(path):
     try:
         interpreter.run(tree(path))
     except RecursionError:
-        where = f"{interpreter.file}:{interpreter.line}"
-        raise ProgramError(f"{where}: statements and values are nested too deeply") from None
+        raise ProgramError.at(
+            interpreter.file,
+            interpreter.line,
+            "programs.rapid.nested",
+            "statements and values are nested too deeply",
+        ) from None
     return interpreter.finish()
 
 
@@ -62,6 +66,7 @@ class _Interpreter(Control):
         elif "main" not in self.routines and starts:
             self.problem(
                 starts[0][0].line,
+                "programs.rapid.no_main",
                 "there is no PROC main; the procedures nothing here calls are followed in turn",
             )
         try:
@@ -142,7 +147,13 @@ class _Interpreter(Control):
             self.constants.add(name)
         if text is not None:
             if not text.strip():
-                raise ProgramError(f"{self.file}:{node.line}: {name} is given no value")
+                raise ProgramError.at(
+                    self.file,
+                    node.line,
+                    "programs.rapid.given_no_value",
+                    "{name} is given no value",
+                    name=name,
+                )
             scope[name].append(text)
             return
         try:
@@ -162,7 +173,12 @@ class _Interpreter(Control):
         except Return:
             pass
         except Jump as jump:
-            self.problem(jump.line, f"GOTO {jump.label}: there is no such label to jump to")
+            self.problem(
+                jump.line,
+                "programs.rapid.goto_nowhere",
+                "GOTO {label}: there is no such label to jump to",
+                label=jump.label,
+            )
             self.gap(jump.line)
 
     def statement(self, node):
@@ -215,9 +231,14 @@ class _Interpreter(Control):
             self.texts.clear()
         except Unknown as unknown:
             # Not known from here on: whoever uses it reports it.
-            self.forget(name, str(unknown))
+            self.forget(name, unknown.fact)
         except ValueError:
-            self.problem(node.line, f"the assignment to {name} is not understood")
+            self.problem(
+                node.line,
+                "programs.rapid.assignment",
+                "the assignment to {name} is not understood",
+                name=name,
+            )
             self.forget(name)
 
     def instruction(self, node):
@@ -243,7 +264,12 @@ class _Interpreter(Control):
         if word not in HARMLESS and word not in CHANGING and word not in self.missing:
             self.missing.add(word)
             what = node.text.split("\n")[0][:30] if not word else re.match(r"\w+", node.text)[0]
-            self.problem(line, f"{what} is not in this file; motions in it are left out")
+            self.problem(
+                line,
+                "programs.not_in_file",
+                "{name} is not in this file; motions in it are left out",
+                name=what,
+            )
             self.gap(line)
 
     def count(self, node):
@@ -261,7 +287,12 @@ class _Interpreter(Control):
     def call(self, node):
         head, parameters, body = self.routines[node.word]
         if self.calls >= MAX_CALLS:
-            self.problem(node.line, f"{node.word} calls itself too deeply; it is left out")
+            self.problem(
+                node.line,
+                "programs.rapid.calls_itself",
+                "{word} calls itself too deeply; it is left out",
+                word=node.word,
+            )
             self.gap(node.line)
             return
         self.tick(node.line, 2)

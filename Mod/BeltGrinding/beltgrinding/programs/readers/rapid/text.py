@@ -7,7 +7,7 @@ Statements end in ';' or a keyword, not at a line's end. A module the controller
 import re
 from pathlib import Path
 
-from ...program import ProgramError, bytes_of, name_of
+from ...program import Fact, ProgramError, bytes_of, name_of
 
 MAX_NESTING = 60
 CLOSED_BY = {
@@ -79,23 +79,45 @@ def tree(path):
         if node.body is not None:
             open_nodes.append(node)
             if len(open_nodes) > MAX_NESTING:
-                raise ProgramError(f"{name}:{node.line}: blocks are nested too deeply")
+                raise ProgramError.at(
+                    name, node.line, "programs.nested_blocks", "blocks are nested too deeply"
+                )
     if open_nodes:
-        raise ProgramError(f"{name}:{last}: {_unclosed(open_nodes[-1])}; is the file cut off?")
+        raise ProgramError.at(
+            name,
+            last,
+            "programs.rapid.cut",
+            "{reason}; is the file cut off?",
+            reason=_unclosed(open_nodes[-1]),
+        )
     return root
 
 
 def _close(open_nodes, node, name):
     if not open_nodes:
-        raise ProgramError(f"{name}:{node.line}: {node.word.upper()} closes nothing")
+        raise ProgramError.at(
+            name,
+            node.line,
+            "programs.closes_nothing",
+            "{word} closes nothing",
+            word=node.word.upper(),
+        )
     if CLOSED_BY[open_nodes[-1].word] != node.word:
-        raise ProgramError(f"{name}:{node.line}: {_unclosed(open_nodes[-1])}")
+        raise ProgramError.at(
+            name, node.line, "programs.rapid.unclosed", "{reason}", reason=_unclosed(open_nodes[-1])
+        )
     open_nodes.pop()
 
 
 def _unclosed(node):
     word = node.word
-    return f"the {word.upper()} of line {node.line} has no {CLOSED_BY[word].upper()}"
+    return Fact(
+        "programs.rapid.no_block_end",
+        "the {word} of line {begun} has no {end}",
+        word=word.upper(),
+        begun=node.line,
+        end=CLOSED_BY[word].upper(),
+    )
 
 
 def _text(path):
@@ -113,7 +135,9 @@ def _without_comments(text, name):
     if head:
         end = text.find("%%%", head.end())
         if end < 0:
-            raise ProgramError(f"{name}:1: the header begun by %%% has no second %%%")
+            raise ProgramError.at(
+                name, 1, "programs.rapid.header", "the header begun by %%% has no second %%%"
+            )
         text = "\n" * text.count("\n", 0, end) + text[end + 3 :]
     return STRING_OR_COMMENT.sub(lambda m: m.group() if m.group()[0] == '"' else "", text)
 
@@ -135,7 +159,13 @@ def _statements(text, name):
         elif word in HEADS:
             head = HEADS[word].match(masked, at)
             if not head:
-                raise ProgramError(f"{name}:{line}: the head of this {word.upper()} is not sound")
+                raise ProgramError.at(
+                    name,
+                    line,
+                    "programs.rapid.head",
+                    "the head of this {word} is not sound",
+                    word=word.upper(),
+                )
             end = after = head.end()
             body = [] if word in CLOSED_BY else None
         elif word not in TAILS and first and LABEL.match(masked, at):
@@ -147,15 +177,28 @@ def _statements(text, name):
             tail = TAILS.get(word, SEMICOLON).search(masked, at)
             open_end = NO_CONTINUATION.search(masked, at, tail.start() if tail else len(masked))
             if open_end:
-                raise ProgramError(
-                    f"{name}:{line + masked.count(chr(10), at, open_end.start())}: "
-                    "the statement has no ';' at its end"
+                raise ProgramError.at(
+                    name,
+                    line + masked.count("\n", at, open_end.start()),
+                    "programs.rapid.no_semicolon",
+                    "the statement has no ';' at its end",
                 )
             if not tail:
-                raise ProgramError(f"{name}:{line}: the statement has no end; is the file cut off?")
+                raise ProgramError.at(
+                    name,
+                    line,
+                    "programs.rapid.endless_statement",
+                    "the statement has no end; is the file cut off?",
+                )
             end, after = tail.start(), tail.end()
             if tail.group() == ";" and word in TAILS and word != "if":
-                raise ProgramError(f"{name}:{line}: this {word.upper()} is not complete")
+                raise ProgramError.at(
+                    name,
+                    line,
+                    "programs.rapid.not_complete",
+                    "this {word} is not complete",
+                    word=word.upper(),
+                )
             if word == "if" and tail.group() == ";":
                 word = "if;"  # the short form: one statement and no ENDIF
             body = [] if word in CLOSED_BY else None

@@ -2,11 +2,20 @@
 
 import re
 
-from ...program import Motion, Problem, Program
-from ..urscript.expression import Unknown
+from ...program import Fact, Motion, Program, Unknown
 from ..urscript.reader import Interpreter
 from .position import NOWHERE, NUMBER, Positions
 
+THE_WAYPOINT = Fact("programs.urp.waypoint", "the waypoint")
+# Six numbers, as they are named when they are none.
+THE = {
+    "pose": Fact("programs.urp.pose", "the pose"),
+    "joints": Fact("programs.urp.joints", "the joint angles"),
+    **{
+        tag: Fact("programs.urp.part", "the {tag}", tag=tag)
+        for tag in ("BaseToFeature", "poseInFeatureCoordinates", "TCPOffset")
+    },
+}
 KINDS = {"MoveJ": "PTP", "MoveL": "LIN", "MoveP": "LIN"}
 BASE, TOOL = "Joint_0_name", "Joint_6_name"  # PolyScope's own names of its two features
 STEP = re.compile(r"([A-Za-z_][\w.-]*)(?:\[([0-9]{1,7})\])?")
@@ -23,10 +32,11 @@ class Waypoints:
         self.said, self.indices = set(), {}
         self.tool, self.tools = "", {}
 
-    def problem(self, line, message):
-        if (line, message) not in self.said:
-            self.said.add((line, message))
-            self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, code, text, /, **arguments):
+        fact = Fact(code, text, **arguments)
+        if (line, fact) not in self.said:
+            self.said.add((line, fact))
+            self.program.problem(self.file, line, fact)
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
@@ -51,7 +61,11 @@ class Waypoints:
             if at is None or at is element:
                 break
             element = at
-        raise Unknown(f"its reference '{(element.get('reference') or '')[:60]}' leads nowhere")
+        raise Unknown(
+            "programs.urp.reference",
+            "its reference '{reference}' leads nowhere",
+            reference=(element.get("reference") or "")[:60],
+        )
 
     def tagged(self, element):
         """Children by tag."""
@@ -67,16 +81,22 @@ class Waypoints:
         ``name``; None where the pose is not known. Raises Unknown."""
         kind = waypoint.get("type", "Fixed")
         if kind != "Fixed":
-            raise Unknown(f"the waypoint's position is {kind[:20].lower()}, known at run time")
+            raise Unknown(
+                "programs.urp.waypoint_kind",
+                "the waypoint's position is {kind}, known at run time",
+                kind=kind[:20].lower(),
+            )
         holder = waypoint.find("position")
         if holder is None:
-            raise Unknown("the waypoint has no position; it was not taught yet")
+            raise Unknown(
+                "programs.urp.not_taught", "the waypoint has no position; it was not taught yet"
+            )
         position = self.target(holder)
         feature = self.part(waypoint, "BaseToFeature") or NOWHERE
         inner = self.part(waypoint, "poseInFeatureCoordinates")
         pose = position.get("pose")
         if pose is not None:  # PolyScope 3
-            pose = positions.six(pose, "the pose")
+            pose = positions.six(pose, THE["pose"])
             if inner is not None and not in_base:
                 positions.taught.append((motion, pose, inner, name))
                 return positions.taught  # the feature follows when all poses are made
@@ -84,7 +104,7 @@ class Waypoints:
             return feature
         angles = position.find("JointAngles")
         text = angles.get("angles") if angles is not None else position.get("joints")
-        joints = positions.six(text, "the joint angles")
+        joints = positions.six(text, THE["joints"])
         kinematics = position.find("Kinematics")
         if kinematics is None:
             kinematics = self.root.find("kinematics")
@@ -102,19 +122,21 @@ class Waypoints:
         """The six numbers of a child's pose, None where there is no such child."""
         child = element.find(tag)
         return (
-            None
-            if child is None
-            else self.positions.six(self.target(child).get("pose"), f"the {tag}")
+            None if child is None else self.positions.six(self.target(child).get("pose"), THE[tag])
         )
 
     def waypoint(self, node, move, aux=False, arc=False):
         """One motion; whether its pose is known."""
         line, node = node.line, self.target(node)
         if move is None:
-            raise Unknown("the waypoint is in no Move")
+            raise Unknown("programs.urp.no_move", "the waypoint is in no Move")
         kind = "CIRC" if arc else KINDS.get(move.get("motionType", ""))
         if kind is None:
-            raise Unknown(f"the motion '{move.get('motionType', '')[:20]}' is not known")
+            raise Unknown(
+                "programs.urp.unknown_motion",
+                "the motion '{kind}' is not known",
+                kind=move.get("motionType", "")[:20],
+            )
         name = self.feature(move)
         motion = Motion(kind, None, line, self.file, aux=aux)
         feature = self.place(node, motion, self.positions, name)
@@ -122,8 +144,10 @@ class Waypoints:
         if feature is None:
             self.problem(
                 line,
-                f"{node.get('name', 'the waypoint')[:60]}: joint angles only; the file holds no "
-                "kinematics of the arm that would give its pose",
+                "programs.urp.joint_angles_only",
+                "{name}: joint angles only; the file holds no kinematics of the arm that "
+                "would give its pose",
+                name=node.get("name")[:60] if node.get("name") is not None else THE_WAYPOINT,
             )
             motion.aux = False
         else:
@@ -138,11 +162,16 @@ class Waypoints:
         """Two waypoints: on the way and the end."""
         if any("fixed" in value.lower() for value in node.attributes.values()):
             raise Unknown(
-                "the tool turns with the arc; only unconstrained orientation is supported"
+                "programs.urp.turning_tool",
+                "the tool turns with the arc; only unconstrained orientation is supported",
             )
         points = [w for w in _below(node) if w.find("position") is not None or w.tag == "Waypoint"]
         if len(points) != 2:
-            raise Unknown(f"the arc has {len(points)} points instead of two")
+            raise Unknown(
+                "programs.urp.arc_points",
+                "the arc has {count} points instead of two",
+                count=len(points),
+            )
         positions = self.positions
         lists = self.program.motions, positions.joints, positions.poses, positions.taught
         before = [len(kept) for kept in lists]
@@ -155,7 +184,7 @@ class Waypoints:
                 for kept, length in zip(lists, before):
                     del kept[length:]
         if not known:
-            raise Unknown("where its points are is not known")
+            raise Unknown("programs.urp.points_unknown", "where its points are is not known")
 
     def feature(self, move):
         """Name of the move's feature, '' for the base. Raises Unknown for the tool."""
@@ -164,7 +193,10 @@ class Waypoints:
             return ""
         name = self.target(holder).get("referencedName", "")
         if name == TOOL:
-            raise Unknown("the move's feature is the tool, which moves with the robot")
+            raise Unknown(
+                "programs.urp.feature_is_tool",
+                "the move's feature is the tool, which moves with the robot",
+            )
         return "" if name == BASE else name
 
     def tcp(self, node, move):
@@ -184,11 +216,18 @@ class Waypoints:
         own = node.find("motionParameters")
         own = own.attributes if own is not None else {}
         if own.get("time") not in (None, "", "0", "0.0"):
-            self.problem(line, "its time is given; the path speed is not known")
+            self.problem(
+                line, "programs.urp.time_given", "its time is given; the path speed is not known"
+            )
             return None
         text = own.get("cartesianSpeed") or move.get("speed", "")
         if not NUMBER.fullmatch(text.strip()) or not 0.0 < float(text) < 100.0:
-            self.problem(line, f"the path speed '{text[:20]}' is not understood")
+            self.problem(
+                line,
+                "programs.urp.speed",
+                "the path speed '{text}' is not understood",
+                text=text[:20],
+            )
             return None
         return 1000.0 * float(text)
 

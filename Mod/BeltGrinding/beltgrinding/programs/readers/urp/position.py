@@ -11,7 +11,7 @@ import re
 import numpy as np
 
 from ....base.frames import to_quaternions
-from ..urscript.expression import Unknown
+from ...program import Fact, Unknown
 
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 PARAMETERS = ("deltaTheta", "a", "d", "alpha")
@@ -25,10 +25,15 @@ def six(text, what):
     """Six numbers 'a, b, ...' as floats. Raises Unknown."""
     parts = [part.strip() for part in (text or "").split(",")]
     if len(parts) != 6 or not all(map(NUMBER.fullmatch, parts)):
-        raise Unknown(f"{what} '{(text or '')[:40]}' is not six numbers")
+        raise Unknown(
+            "programs.urp.not_six_numbers",
+            "{what} '{text}' is not six numbers",
+            what=what,
+            text=(text or "")[:40],
+        )
     values = tuple(map(float, parts))
     if not max(map(abs, values)) < MOST:
-        raise Unknown(f"{what} is out of all bounds")
+        raise Unknown("programs.out_of_bounds", "{what} is out of all bounds", what=what)
     return values
 
 
@@ -76,7 +81,13 @@ class Positions:
             return None
         key = id(element.attributes)
         if key not in self.arms:
-            values = [six(element.get(name), f"the kinematics' {name}") for name in PARAMETERS]
+            values = [
+                six(
+                    element.get(name),
+                    Fact("programs.urp.kinematics", "the kinematics' {name}", name=name),
+                )
+                for name in PARAMETERS
+            ]
             reach = sum(map(abs, values[1])) + sum(map(abs, values[2]))
             arm = None if reach < LEAST_ARM else sum(values, ())
             self.arms[key] = (arm, element.attributes)

@@ -10,8 +10,8 @@ kinematics) is a Problem.
 import re
 from pathlib import Path
 
-from ...program import MAX_UNROLLED, Motion, Program, ProgramError, name_of
-from ..urscript.expression import Pose, Unknown
+from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, fact_of, name_of
+from ..urscript.expression import Pose
 from ..urscript.reader import MOVE
 from ..xml_tree import read_xml
 from .motion import Waypoints
@@ -20,6 +20,7 @@ from .position import Positions, keep_kinematics
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
 MAX_LOOP = 100_000
+THE_BASE = Fact("programs.urp.base", "the base")
 SIGNS = str.maketrans({"≟": "==", "≠": "!=", "≤": "<=", "≥": ">="})  # of the expression editor
 HARMLESS = frozenset(
     "Wait Comment Popup Placeholder Timer InitVariablesNode Halt EmptyNode kinematics".split()
@@ -37,14 +38,20 @@ def read(path):
         shared=("TCPOffset", "BaseToFeature", "motionParameters"),
     )
     if root.tag != "URProgram":
-        raise ProgramError(
-            f"{name_of(path)}:{root.line}: <{root.tag}> is no PolyScope program (URProgram)"
+        raise ProgramError.at(
+            name_of(path),
+            root.line,
+            "programs.urp.no_polyscope",
+            "<{tag}> is no PolyScope program (URProgram)",
+            tag=root.tag,
         )
     reader = _Reader(name_of(path), root)
     try:
         reader.run()
     except RecursionError:
-        raise ProgramError(f"{path.name}:{reader.line}: calls are nested too deeply") from None
+        raise ProgramError.at(
+            path.name, reader.line, "programs.nested_calls", "calls are nested too deeply"
+        ) from None
     return reader.finish()
 
 
@@ -63,14 +70,22 @@ class _Reader(Waypoints):
 
     def finish(self):
         for motion in self.positions.finish():
-            self.problem(motion.line, "the waypoint's pose is no robot's; it is left out")
+            self.problem(
+                motion.line,
+                "programs.urp.far_pose",
+                "the waypoint's pose is no robot's; it is left out",
+            )
         before = None
         for motion in self.program.motions:
             changed = before is not None and motion.base != before.base and motion.kind != "PTP"
             if changed and motion.pose is not None:
-                old, new = before.base or "the base", motion.base or "the base"
-                what = f"the feature changes from {old} to {new}; each pose stays in its own"
-                self.problem(motion.line, what)
+                self.problem(
+                    motion.line,
+                    "programs.urp.feature_changes",
+                    "the feature changes from {old} to {new}; each pose stays in its own",
+                    old=before.base or THE_BASE,
+                    new=motion.base or THE_BASE,
+                )
                 break  # once is enough
             before = motion if motion.pose is not None else None
         return self.program
@@ -81,13 +96,22 @@ class _Reader(Waypoints):
         mains = [t for t in tops if t.tag == "MainProgram"]
         if not mains:
             line = self.root.line
-            raise ProgramError(f"{self.file}:{line}: there is no MainProgram; is the file whole?")
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.urp.no_main",
+                "there is no MainProgram; is the file whole?",
+            )
         try:
             for top in tops:
                 if top.tag == "SpecialSequence" and top.get("type") == "BeforeStart":
                     self.inside(top, None)
                 elif top.tag == "Thread" and self.moves(top):
-                    self.problem(top.line, "a thread runs beside the program; it is left out")
+                    self.problem(
+                        top.line,
+                        "programs.urp.thread",
+                        "a thread runs beside the program; it is left out",
+                    )
             for main in mains:
                 self.inside(main, None)
         except _Halt:
@@ -103,7 +127,9 @@ class _Reader(Waypoints):
         for node in holder.children if holder is not None else ():
             self.rounds, self.line = self.rounds + 1, node.line
             if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-                raise ProgramError(f"{self.file}:{node.line}: the program is too long")
+                raise ProgramError.at(
+                    self.file, node.line, "programs.too_long", "the program is too long"
+                )
             if node.tag == "If":
                 taken = self.branch(node, move, taken)
                 continue
@@ -111,7 +137,13 @@ class _Reader(Waypoints):
                 self.node(node, move)
             except Unknown as unknown:
                 name = node.get("name") or node.tag
-                self.problem(node.line, f"{name[:60]} is left out: {unknown}")
+                self.problem(
+                    node.line,
+                    "programs.left_out",
+                    "{what} is left out: {reason}",
+                    what=name[:60],
+                    reason=unknown.fact,
+                )
                 self.lose(node)
                 self.gap(node.line)
 
@@ -125,7 +157,11 @@ class _Reader(Waypoints):
             self.circle(node, move)
         elif tag in ("Folder", "Force"):
             if tag == "Force":
-                self.problem(node.line, "force mode is not followed; its poses are as programmed")
+                self.problem(
+                    node.line,
+                    "programs.urp.force_mode",
+                    "force mode is not followed; its poses are as programmed",
+                )
             self.inside(node, move)
         elif tag == "Loop":
             self.loop(node, move)
@@ -143,12 +179,23 @@ class _Reader(Waypoints):
                 self.tool = self.target(tcp).get("referencedName", "")
         elif tag == "Contributed":
             name = node.get("strategyProgramNodeType") or "URCap"
-            raise Unknown(f"the URCap node {name[:40]} is known to the controller only")
+            raise Unknown(
+                "programs.urp.urcap",
+                "the URCap node {name} is known to the controller only",
+                name=name[:40],
+            )
         elif tag not in HARMLESS:
             if self.moves(node):
-                raise Unknown(f"the node {tag[:40]} is not supported")
+                raise Unknown(
+                    "programs.urp.unsupported_node", "the node {tag} is not supported", tag=tag[:40]
+                )
             self.lose(node)
-            self.problem(node.line, f"the node {tag[:40]} is not known here")
+            self.problem(
+                node.line,
+                "programs.urp.unknown_node",
+                "the node {tag} is not known here",
+                tag=tag[:40],
+            )
 
     def moves(self, element):
         stack = [element]
@@ -190,14 +237,29 @@ class _Reader(Waypoints):
         if kind == "If":
             taken = False
         if taken is None:
-            self.skip(node, f"{kind or 'If'} follows an If that is decided at run time")
+            self.skip(
+                node,
+                Fact(
+                    "programs.urp.follows_if",
+                    "{word} follows an If that is decided at run time",
+                    word=kind or "If",
+                ),
+            )
             return None
         if taken:
             return True
         try:
             known = kind == "Else" or self.truth(node)
         except Unknown as unknown:
-            self.skip(node, f"If is decided at run time ({unknown})")
+            self.skip(
+                node,
+                Fact(
+                    "programs.at_run_time",
+                    "{word} is decided at run time ({reason})",
+                    reason=unknown.fact,
+                    word="If",
+                ),
+            )
             return None
         if known:
             self.inside(node, move)
@@ -209,7 +271,9 @@ class _Reader(Waypoints):
 
     def skip(self, node, why):
         if self.moves(node):
-            self.problem(node.line, f"{why}; its motions are left out")
+            self.problem(
+                node.line, "programs.motions_left_out", "{what}; its motions are left out", what=why
+            )
             self.gap(node.line)
         self.lose(node)
 
@@ -217,7 +281,9 @@ class _Reader(Waypoints):
         kind = node.get("type", "").lower()
         if kind in ("forever", "always"):
             if self.moves(node):
-                self.problem(node.line, "an endless Loop is followed once")
+                self.problem(
+                    node.line, "programs.endless", "an endless {word} is followed once", word="Loop"
+                )
             self.inside(node, move)
             return
         if node.find("expression") is not None and not kind.startswith("count"):
@@ -226,7 +292,9 @@ class _Reader(Waypoints):
                     return
                 self.rounds += 1
                 self.inside(node, move)
-            raise ProgramError(f"{self.file}:{node.line}: the loop does not end")
+            raise ProgramError.at(
+                self.file, node.line, "programs.endless_program", "the loop does not end"
+            )
         for _ in range(self.count(node)):
             self.rounds += 1
             self.inside(node, move)
@@ -235,7 +303,9 @@ class _Reader(Waypoints):
         given = [v for k, v in node.attributes.items() if "count" in k.lower()]
         given += [c.text for c in node.children if c.text is not None]
         if len(given) != 1 or not re.fullmatch(r"\s*[0-9]{1,6}\s*", given[0]):
-            raise Unknown("how often the Loop runs is not given by a number")
+            raise Unknown(
+                "programs.urp.loop_count", "how often the Loop runs is not given by a number"
+            )
         return int(given[0])
 
     def call(self, node):
@@ -243,14 +313,18 @@ class _Reader(Waypoints):
         if holder is None:
             holder = node.find("SubProgram")
         if holder is None:
-            raise Unknown("which subprogram it calls is not said")
+            raise Unknown("programs.urp.no_subprogram", "which subprogram it calls is not said")
         called = self.target(holder)
         inner = called.find("children")
         if inner is None or not inner.children:
             name = called.get("name", "")[:60]
-            raise Unknown(f"the subprogram {name} is empty here; it lies in a file of its own")
+            raise Unknown(
+                "programs.urp.empty_subprogram",
+                "the subprogram {name} is empty here; it lies in a file of its own",
+                name=name,
+            )
         if self.calls >= MAX_CALLS:
-            raise Unknown("it calls itself too deeply")
+            raise Unknown("programs.calls_itself", "it calls itself too deeply")
         self.calls += 1
         try:
             self.inside(called, None)
@@ -269,9 +343,13 @@ class _Reader(Waypoints):
                 inner = part.children[0] if part.children else part
                 pieces.append(self.target(inner).get("name", "") or "?")
             else:
-                raise Unknown(f"an expression with {part.tag[:40]} is not understood")
+                raise Unknown(
+                    "programs.urp.expression_with",
+                    "an expression with {tag} is not understood",
+                    tag=part.tag[:40],
+                )
         if not pieces:
-            raise Unknown("the expression is empty")
+            raise Unknown("programs.urp.empty_expression", "the expression is empty")
         return "".join(pieces).translate(SIGNS)
 
     def script_text(self, node):
@@ -280,16 +358,16 @@ class _Reader(Waypoints):
             return cached.text or ""
         expression = node.find("expression")
         if expression is None:
-            raise Unknown("the script's text is not in the file")
+            raise Unknown("programs.urp.no_script_text", "the script's text is not in the file")
         return self.text(expression)
 
     def assignment(self, node):
         variable = node.find("variable")
         if variable is None:
-            raise Unknown("what is assigned is not said")
+            raise Unknown("programs.urp.no_variable", "what is assigned is not said")
         name = self.target(variable).get("name", "")
         if not re.fullmatch(r"[A-Za-z_]\w*", name):
-            raise Unknown("the variable's name is not understood")
+            raise Unknown("programs.urp.variable_name", "the variable's name is not understood")
         try:
             self.run_script(node, f"global {name} = {self.text(node.find('expression'))}")
         except Unknown:  # whoever uses it reports it
@@ -305,10 +383,20 @@ class _Reader(Waypoints):
         try:
             end = script.block(script.tree(re.split(r"\r\n|\n|\r", text)))
         except ProgramError as error:
-            raise Unknown(f"its script cannot be followed ({error})") from None
+            raise Unknown(
+                "programs.urp.script",
+                "its script cannot be followed ({reason})",
+                reason=fact_of(error),
+            ) from None
         finally:
             for problem in script.program.problems:
-                self.problem(node.line, f"script line {problem.line}: {problem.message}")
+                self.problem(
+                    node.line,
+                    "programs.urp.script_line",
+                    "script line {number}: {what}",
+                    number=problem.line,
+                    what=problem.message,
+                )
             for motion in script.program.motions:
                 motion.line = node.line
             self.program.motions += script.program.motions

@@ -12,6 +12,7 @@ import re
 import numpy as np
 
 from ....base.frames import to_quaternions
+from ...program import ProgramError, Unknown, fact_of
 
 MAX_WHOLE = 2**53  # beyond, a whole number is no longer exact
 # What Python reads as a number or two, but the controller does not.
@@ -44,10 +45,6 @@ COMPARE = {
 }
 
 
-class Unknown(Exception):
-    """An expression that cannot be evaluated here; says why."""
-
-
 class Pose:
     """A pose: ``frame``, 4 x 4 in metres."""
 
@@ -74,11 +71,15 @@ class Pose:
 def pose_of(values):
     """Pose of six numbers in metres and radians."""
     if len(values) != 6:
-        raise Unknown(f"a pose has 6 components, not {len(values)}")
+        raise Unknown(
+            "programs.urscript.components",
+            "a pose has 6 components, not {count}",
+            count=len(values),
+        )
     x, y, z, rx, ry, rz = (float(number(v)) for v in values)
     angle = math.sqrt(rx * rx + ry * ry + rz * rz)
     if not math.isfinite(angle) or abs(x) + abs(y) + abs(z) > 1e6 or angle > 1e3:
-        raise Unknown("the pose is out of all bounds")
+        raise Unknown("programs.urscript.pose_out_of_bounds", "the pose is out of all bounds")
     frame = np.empty((4, 4))
     if angle > 1e-12:
         kx, ky, kz = rx / angle, ry / angle, rz / angle
@@ -100,19 +101,19 @@ def number(value):
     if type(value) is float and math.isfinite(value):  # nearly all are
         return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise Unknown("a number expected")
+        raise Unknown("programs.number_expected", "a number expected")
     if isinstance(value, int):
         if abs(value) > MAX_WHOLE:
-            raise Unknown("the whole number is too large")
+            raise Unknown("programs.urscript.whole_number", "the whole number is too large")
     elif not math.isfinite(value):
-        raise Unknown("the number is not finite")
+        raise Unknown("programs.number_not_finite", "the number is not finite")
     return value
 
 
 def a_pose(value):
     """``value`` if it is a pose."""
     if not isinstance(value, Pose):
-        raise Unknown("a pose p[..] expected")
+        raise Unknown("programs.urscript.pose_expected", "a pose p[..] expected")
     return value
 
 
@@ -121,11 +122,13 @@ def parse(text):
     """Syntax tree of an expression. Raises Unknown."""
     bare = STRING.sub('""', text)
     if FOREIGN_NUMBER.search(bare) or "'" in bare:
-        raise Unknown(f"cannot read '{text.strip()[:40]}'")
+        raise Unknown("programs.cannot_be_parsed", "cannot read '{text}'", text=text.strip()[:40])
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        raise Unknown(f"cannot read '{text.strip()[:40]}'") from None
+        raise Unknown(
+            "programs.cannot_be_parsed", "cannot read '{text}'", text=text.strip()[:40]
+        ) from None
 
 
 def evaluate(node, lookup, call):
@@ -134,9 +137,13 @@ def evaluate(node, lookup, call):
     try:
         return _value(node, lookup, call)
     except (ArithmeticError, ValueError, TypeError, IndexError) as error:
-        raise Unknown(f"it cannot be computed ({error})") from None
+        raise Unknown(
+            "programs.urscript.not_computable",
+            "it cannot be computed ({reason})",
+            reason=fact_of(error) if isinstance(error, ProgramError) else str(error),
+        ) from None
     except RecursionError:
-        raise Unknown("the expression is nested too deeply") from None
+        raise Unknown("programs.nested_expression", "the expression is nested too deeply") from None
 
 
 def _value(node, lookup, call):
@@ -165,7 +172,7 @@ def _value(node, lookup, call):
             return COMPARE[operator](number(left), number(right))
         if operator in (ast.Eq, ast.NotEq):
             if not all(isinstance(v, (bool, int, float, str)) for v in (left, right)):
-                raise Unknown("lists and poses are not compared")
+                raise Unknown("programs.urscript.not_compared", "lists and poses are not compared")
             return (left == right) == (operator is ast.Eq)
     if kind is ast.BoolOp:
         for operand in node.values:
@@ -173,12 +180,12 @@ def _value(node, lookup, call):
             if value == isinstance(node.op, ast.Or):
                 break
         return value
-    raise Unknown("the expression is not understood")
+    raise Unknown("programs.urscript.expression", "the expression is not understood")
 
 
 def _truth(value):
     if not isinstance(value, bool):
-        raise Unknown("a truth value expected")
+        raise Unknown("programs.truth_value_expected", "a truth value expected")
     return value
 
 
@@ -186,7 +193,7 @@ def _unary(node, lookup, call):
     if isinstance(node.op, ast.Not):
         return not _truth(_value(node.operand, lookup, call))
     if isinstance(node.operand, ast.UnaryOp) or not isinstance(node.op, (ast.USub, ast.UAdd)):
-        raise Unknown("two signs in a row")
+        raise Unknown("programs.two_signs", "two signs in a row")
     value = number(_value(node.operand, lookup, call))
     return -value if isinstance(node.op, ast.USub) else value
 
@@ -205,10 +212,13 @@ def _binary(node, lookup, call):
     if kind is ast.Div:
         if isinstance(left, int) and isinstance(right, int):
             if left % right:  # rounded or not: versions of the controller differ
-                raise Unknown("a quotient of two whole numbers leaves a remainder")
+                raise Unknown(
+                    "programs.urscript.remainder",
+                    "a quotient of two whole numbers leaves a remainder",
+                )
             return left // right
         return number(left / right)
-    raise Unknown("the operator is not understood")
+    raise Unknown("programs.urscript.operator", "the operator is not understood")
 
 
 def _subscript(node, lookup, call):
@@ -221,9 +231,14 @@ def _subscript(node, lookup, call):
         value = value.components()
     at = _value(node.slice, lookup, call)
     if not isinstance(value, list):
-        raise Unknown("only lists and poses have an index")
+        raise Unknown("programs.urscript.no_index", "only lists and poses have an index")
     if isinstance(at, bool) or not isinstance(at, int) or not 0 <= at < len(value):
-        raise Unknown(f"the list of {len(value)} has no element [{at}]")
+        raise Unknown(
+            "programs.urscript.no_list_element",
+            "the list of {count} has no element [{at}]",
+            count=len(value),
+            at=at,
+        )
     return value[at]
 
 
@@ -239,19 +254,24 @@ def _component(node, lookup, call):
 
 def _call(node, lookup, call):
     if not isinstance(node.func, ast.Name):
-        raise Unknown("the call is not understood")
+        raise Unknown("programs.urscript.call", "the call is not understood")
     name = node.func.id
     if name in ("pose_trans", "pose_add", "pose_inv") and not node.keywords:
         poses = [a_pose(_value(v, lookup, call)) for v in node.args]
         if len(poses) != (1 if name == "pose_inv" else 2):
-            raise Unknown(f"{name}() has {len(poses)} arguments")
+            raise Unknown(
+                "programs.urscript.argument_count",
+                "{name}() has {count} arguments",
+                name=name,
+                count=len(poses),
+            )
         if name == "pose_inv":
             return poses[0].inverse()
         frame = poses[0].frame @ poses[1].frame
         if name == "pose_add":  # positions add up, rotations follow each other
             frame[:3, 3] = poses[0].frame[:3, 3] + poses[1].frame[:3, 3]
         if not np.abs(frame[:3, 3]).max() < 1e6:
-            raise Unknown("the pose is out of all bounds")
+            raise Unknown("programs.urscript.pose_out_of_bounds", "the pose is out of all bounds")
         return Pose(frame)
     if name in FUNCTIONS and not node.keywords:
         return number(FUNCTIONS[name](*(number(_value(v, lookup, call)) for v in node.args)))

@@ -18,16 +18,17 @@ from pathlib import Path
 from ...program import (
     LOOPED,
     MAX_UNROLLED,
+    Fact,
     Motion,
-    Problem,
     Program,
     ProgramError,
+    Unknown,
     bytes_of,
     joint_angles,
     name_of,
     work_of,
 )
-from .expression import Pose, Unknown, a_pose, evaluate, number, parse, pose_of
+from .expression import Pose, a_pose, evaluate, number, parse, pose_of
 
 MAX_MOTIONS = 1_000_000
 MAX_IDLE = 25_000  # units of work since the last motion, in a loop
@@ -66,7 +67,9 @@ def read(path):
             warnings.simplefilter("ignore")  # Python's own advice on the expressions
             interpreter.run(interpreter.tree(re.split(r"\r\n|\n|\r", text)))
     except RecursionError:
-        raise ProgramError(f"{path.name}:{interpreter.line}: calls are nested too deeply") from None
+        raise ProgramError.at(
+            path.name, interpreter.line, "programs.nested_calls", "calls are nested too deeply"
+        ) from None
     return interpreter.program
 
 
@@ -93,8 +96,8 @@ class Interpreter:
         self.base = self.tool = ""
         self.here = self.returned = None  # here: position in mm, None: unknown
 
-    def problem(self, line, message):
-        self.program.problems.append(Problem(self.file, line, message))
+    def problem(self, line, told, text=None, /, **arguments):
+        self.program.problem(self.file, line, told, text, **arguments)
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
@@ -113,7 +116,9 @@ class Interpreter:
             inner = open_blocks[-1].parts[-1][2] if open_blocks else root
             if word in ("def", "while", "if", "thread", "sec"):
                 if len(open_blocks) >= MAX_NESTING:
-                    raise ProgramError(f"{self.file}:{line}: blocks are nested too deeply")
+                    raise ProgramError.at(
+                        self.file, line, "programs.nested_blocks", "blocks are nested too deeply"
+                    )
                 condition = text if word == "def" else text[len(word) :].rstrip(": \t")
                 block = _Block(word, line, condition)
                 inner.append(block)
@@ -124,12 +129,22 @@ class Interpreter:
             elif word == "end" and text == "end" and open_blocks:
                 open_blocks.pop()
             elif word in ("end", "elif", "else"):
-                self.problem(line, f"'{text[:40]}' has no beginning, or is not understood")
+                self.problem(
+                    line,
+                    "programs.urscript.no_beginning",
+                    "'{text}' has no beginning, or is not understood",
+                    text=text[:40],
+                )
             else:
                 inner.append(_Block("statement", line, text))
         for block in open_blocks:
             block.closed = False
-            self.problem(block.line, f"{block.kind} has no end; the file may be cut off")
+            self.problem(
+                block.line,
+                "programs.urscript.no_end",
+                "{word} has no end; the file may be cut off",
+                word=block.kind,
+            )
         return root
 
     def run(self, blocks):
@@ -142,7 +157,9 @@ class Interpreter:
         for block in blocks:
             self.rounds, self.line = self.rounds + work_of(block.text), block.line
             if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-                raise ProgramError(f"{self.file}:{block.line}: the program is too long")
+                raise ProgramError.at(
+                    self.file, block.line, "programs.too_long", "the program is too long"
+                )
             end = None
             if block.kind == "statement":
                 end = self.statement(block.line, block.text)
@@ -153,7 +170,14 @@ class Interpreter:
             elif block.kind == "def":
                 self.define(block)
             else:
-                self.skip(block, f"a {block.kind} runs beside the program")
+                self.skip(
+                    block,
+                    Fact(
+                        "programs.urscript.beside",
+                        "a {kind} runs beside the program",
+                        kind=block.kind,
+                    ),
+                )
             if end:
                 return end
         return None
@@ -161,7 +185,7 @@ class Interpreter:
     def define(self, block):
         match = DEFINE.match(block.text)
         if not match:
-            self.skip(block, "the def is not understood")
+            self.skip(block, Fact("programs.urscript.def", "the def is not understood"))
             return
         names = [p.partition("=") for p in match.group(2).split(",") if p.strip()]
         defaults = [(name.strip(), default) for name, _, default in names]
@@ -170,7 +194,12 @@ class Interpreter:
     def skip(self, block, why):
         """Leaves a block out: its motions are a gap, what it assigns is unknown afterwards."""
         if self.forget(block) or MOVE.search(block.text):
-            self.problem(block.line, f"{why}; its motions are left out")
+            self.problem(
+                block.line,
+                "programs.motions_left_out",
+                "{what}; its motions are left out",
+                what=why,
+            )
             self.gap(block.line)
 
     def forget(self, block):
@@ -196,7 +225,15 @@ class Interpreter:
                 try:
                     known = self.truth(condition)
                 except Unknown as unknown:
-                    self.skip(block, f"if is decided at run time ({unknown})")
+                    self.skip(
+                        block,
+                        Fact(
+                            "programs.at_run_time",
+                            "{word} is decided at run time ({reason})",
+                            reason=unknown.fact,
+                            word="if",
+                        ),
+                    )
                     return None
                 if not known:
                     continue
@@ -212,13 +249,23 @@ class Interpreter:
                 if not self.truth(condition):
                     return None
             except Unknown as unknown:
-                self.skip(block, f"while is decided at run time ({unknown})")
+                self.skip(
+                    block,
+                    Fact(
+                        "programs.at_run_time",
+                        "{word} is decided at run time ({reason})",
+                        reason=unknown.fact,
+                        word="while",
+                    ),
+                )
                 return None
             self.rounds += 1
             if len(self.program.motions) > count:
                 count, start = len(self.program.motions), self.rounds
             if self.rounds > min(MAX_UNROLLED, start + MAX_IDLE):
-                raise ProgramError(f"{self.file}:{block.line}: the loop does not end")
+                raise ProgramError.at(
+                    self.file, block.line, "programs.endless_program", "the loop does not end"
+                )
             end = self.block(blocks)
             if end == "break":
                 return None
@@ -226,13 +273,18 @@ class Interpreter:
                 return end
             if once:
                 if any(MOVE.search(b.text or "") for b in blocks):
-                    self.problem(block.line, "an endless while is followed once")
+                    self.problem(
+                        block.line,
+                        "programs.endless",
+                        "an endless {word} is followed once",
+                        word="while",
+                    )
                 return None
 
     def truth(self, condition):
         value = self.evaluate(condition)
         if not isinstance(value, bool):
-            raise Unknown("the condition is no truth value")
+            raise Unknown("programs.no_truth_value", "the condition is no truth value")
         return value
 
     def lookup(self, name):
@@ -241,7 +293,9 @@ class Interpreter:
                 return scope[name]
         if name in ("true", "false"):
             return name == "true"
-        raise Unknown(f"{name} has no value that this file gives")
+        raise Unknown(
+            "programs.urscript.no_value", "{name} has no value that this file gives", name=name
+        )
 
     def evaluate(self, text):
         return evaluate(parse(text), self.lookup, self.function)
@@ -254,17 +308,31 @@ class Interpreter:
             value = self.invoke(name, node.args, node.keywords)
             if value is not None:
                 return value
-            raise Unknown(f"{name}() returns no value that is known here")
-        raise Unknown(f"the function {name}() is known to the controller only")
+            raise Unknown(
+                "programs.urscript.no_return_value",
+                "{name}() returns no value that is known here",
+                name=name,
+            )
+        raise Unknown(
+            "programs.called_function_of_controller",
+            "the function {name}() is known to the controller only",
+            name=name,
+        )
 
     def invoke(self, name, arguments, keywords=()):
         """Runs a routine of this file; its value, None where it has none."""
         self.called = True
         if len(self.scopes) > MAX_CALLS:
-            raise Unknown(f"{name} calls itself too deeply")
+            raise Unknown(
+                "programs.urscript.calls_itself", "{name} calls itself too deeply", name=name
+            )
         parameters, blocks = self.routines[name]
         if len(arguments) > len(parameters) or keywords:
-            raise Unknown(f"{name}() does not take these arguments")
+            raise Unknown(
+                "programs.urscript.wrong_arguments",
+                "{name}() does not take these arguments",
+                name=name,
+            )
         scope = {}
         for k, (parameter, default) in enumerate(parameters):
             with contextlib.suppress(Unknown):  # whoever uses it reports it
@@ -293,7 +361,12 @@ class Interpreter:
                 values = inside.components() if isinstance(inside, Pose) else inside
                 values = list(values) if isinstance(values, list) else []
                 if type(at) is not int or not 0 <= at < len(values):
-                    raise Unknown(f"{name} has no element {index}")
+                    raise Unknown(
+                        "programs.no_element",
+                        "{name} has no element {index}",
+                        name=name,
+                        index=index,
+                    )
                 values[at] = value
                 value = pose_of(values) if isinstance(inside, Pose) else values
             scope[name] = value
@@ -302,9 +375,19 @@ class Interpreter:
             for known in (inner, outer):
                 known.pop(name, None)
             if name == "ref_frame":
-                self.problem(line, f"ref_frame is not known: {unknown}")
+                self.problem(
+                    line,
+                    "programs.urscript.ref_frame",
+                    "ref_frame is not known: {reason}",
+                    reason=unknown.fact,
+                )
             elif MOVE.search(text):
-                self.problem(line, f"the motion is left out: {unknown}")
+                self.problem(
+                    line,
+                    "programs.motion_left_out",
+                    "the motion is left out: {reason}",
+                    reason=unknown.fact,
+                )
                 self.gap(line)
 
     def statement(self, line, text):
@@ -321,7 +404,7 @@ class Interpreter:
         try:
             tree = parse(text)
             if not isinstance(tree, ast.Call) or not isinstance(tree.func, ast.Name):
-                raise Unknown("the statement is not understood")
+                raise Unknown("programs.urscript.statement", "the statement is not understood")
             name = tree.func.id
             if name in PARAMETERS:
                 self.motion(line, name, tree)
@@ -332,11 +415,22 @@ class Interpreter:
             elif not HARMLESS.match(name):
                 if name not in self.missing:
                     self.missing.add(name)
-                    self.problem(line, f"{name}() is not known here; motions in it are left out")
+                    self.problem(
+                        line,
+                        "programs.urscript.unknown_call",
+                        "{name}() is not known here; motions in it are left out",
+                        name=name,
+                    )
                 self.gap(line)
         except Unknown as unknown:
             word = re.match(r"\w*", text).group(0) or text[:40]
-            self.problem(line, f"{word} is left out: {unknown}")
+            self.problem(
+                line,
+                "programs.left_out",
+                "{what} is left out: {reason}",
+                what=word,
+                reason=unknown.fact,
+            )
             self.gap(line)
         return None
 
@@ -345,28 +439,42 @@ class Interpreter:
             self.tool = str(a_pose(self.node(tree.args[0]) if tree.args else None))
         except Unknown as unknown:
             self.tool = ""
-            self.problem(line, f"the tool of set_tcp is not known: {unknown}")
+            self.problem(
+                line,
+                "programs.urscript.tool",
+                "the tool of set_tcp is not known: {reason}",
+                reason=unknown.fact,
+            )
 
     def motion(self, line, name, tree):
         names = PARAMETERS[name]
         given = dict(zip(names, tree.args))
         for keyword in tree.keywords:
             if keyword.arg in given or (keyword.arg not in names and keyword.arg != "pose"):
-                raise Unknown(f"the argument {keyword.arg} is not understood")
+                raise Unknown(
+                    "programs.urscript.argument",
+                    "the argument {name} is not understood",
+                    name=keyword.arg,
+                )
             given[keyword.arg if keyword.arg in names else names[0]] = keyword.value
         targets = names[:2] if name == "movec" else names[:1]
         if len(tree.args) > len(names) or any(target not in given for target in targets):
-            raise Unknown("its arguments are too many or too few")
+            raise Unknown("programs.urscript.arguments", "its arguments are too many or too few")
         values = [self.node(given[target]) for target in targets]
         if name == "movec" and "mode" in given and self.node(given["mode"]) != 0:
-            raise Unknown("mode 1 turns the tool with the arc; only mode 0 is supported")
+            raise Unknown(
+                "programs.urscript.mode_1",
+                "mode 1 turns the tool with the arc; only mode 0 is supported",
+            )
         if isinstance(values[0], list) and name != "movec":
             if len(values[0]) != 6:
-                raise Unknown(f"it has {len(values[0])} joints")
+                raise Unknown(
+                    "programs.urscript.joints", "it has {count} joints", count=len(values[0])
+                )
             for joint in values[0]:
                 number(joint)
             if KINDS[name] != "PTP":
-                raise Unknown("its target is a joint position")
+                raise Unknown("programs.joint_target", "its target is a joint position")
             self.here = None
             motion = Motion("PTP", None, line, self.file, tool=self.tool)
             motion.joints_deg = joint_angles(values[0], math.degrees(1.0))
@@ -398,24 +506,39 @@ class Interpreter:
         try:
             return max(0.0, 1000.0 * number(self.node(given["r"]))) if "r" in given else 0.0
         except Unknown as unknown:
-            self.problem(line, f"the blend radius is not known: {unknown}")
+            self.problem(
+                line,
+                "programs.urscript.blend_radius",
+                "the blend radius is not known: {reason}",
+                reason=unknown.fact,
+            )
             return None
 
     def speed(self, line, name, given, frames):
         """mm/s by t (before v) or v; None: not known."""
         try:
             if name == "optimovel":
-                raise Unknown("optimovel takes a part of what the robot can")
+                raise Unknown(
+                    "programs.urscript.optimovel", "optimovel takes a part of what the robot can"
+                )
             time = number(self.node(given["t"])) if "t" in given else 0.0
             if time > 0 and self.here is None:
-                raise Unknown("t is given, and the position before is not known")
+                raise Unknown(
+                    "programs.urscript.time_from_unknown",
+                    "t is given, and the position before is not known",
+                )
             if time > 0:
                 length = math.dist(self.here, frames[-1][:3, 3])
                 return number(length / time) if length > 0 else None
             speed = number(self.node(given["v"])) if "v" in given else DEFAULT_SPEED
             if speed <= 0:
-                raise Unknown("v is not positive")
+                raise Unknown("programs.urscript.speed_not_positive", "v is not positive")
             return number(1000.0 * speed)
         except Unknown as unknown:
-            self.problem(line, f"the path speed is not known: {unknown}")
+            self.problem(
+                line,
+                "programs.path_speed_unknown",
+                "the path speed is not known: {reason}",
+                reason=unknown.fact,
+            )
             return None

@@ -2,10 +2,10 @@
 
 import re
 
-from ...program import ProgramError, work_of
-from .data import Missing, Unknown, number
+from ...program import Fact, ProgramError, Unknown, work_of
+from .data import Missing, number
 from .expression import place, split, truth
-from .state import State
+from .state import ASSIGNED, State
 
 MOTION = re.compile(r"(?:([^=\"(]*?)\s*=(?!=)\s*)?((?:move|alterMove|alter)\w*)\s*\((.*)\)$")
 MOVES = re.compile(r"(?<![\w.])(?:move|alter)\w*\s*\(")
@@ -58,7 +58,7 @@ class Control(State):
         try:
             for part in split(text):
                 if ASSIGN.match(part + "=0") and "[" in part:
-                    self.unknown(part, "it is assigned at run time")
+                    self.unknown(part, ASSIGNED)
                 else:
                     self.lose(part)
         except Unknown:
@@ -117,7 +117,12 @@ class Control(State):
             try:
                 known = truth(self.value(re.sub(r"(?i)\bthen\s*$", "", condition)))
             except Unknown as unknown:
-                message = f"if is decided at run time ({unknown}); its motions are left out"
+                message = Fact(
+                    "programs.decided_at_run_time",
+                    "{word} is decided at run time ({reason}); its motions are left out",
+                    reason=unknown.fact,
+                    word="if",
+                )
                 self.skip([n for b in branches[k:] for n in b[2]], line, message)
                 return
             if known:
@@ -128,14 +133,19 @@ class Control(State):
         match = FOR.match(node.text)
         try:
             if not match:
-                raise Unknown("it is not understood")
+                raise Unknown("programs.it_is_not_understood", "it is not understood")
             target = match[1]
             first, last = number(self.value(match[2])), number(self.value(match[3]))
             step = number(self.value(match[4])) if match[4] else 1.0
             if step == 0.0:
-                raise Unknown("its step is 0")
+                raise Unknown("programs.step_is_zero", "its {word} is 0", word="step")
         except Unknown as unknown:
-            message = f"for has no static bounds ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.no_static_bounds",
+                "{word} has no static bounds ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="for",
+            )
             self.skip([node, *node.body] if not match else node.body, node.line, message)
             return
         k, value, slack = 0, first, 1e-9 * abs(step)
@@ -149,9 +159,13 @@ class Control(State):
                     first, k = now, 1
                 value = first + k * step
                 if value == now:
-                    raise Unknown("the step is too small")
+                    raise Unknown("programs.val3.small_step", "the step is too small")
         except Unknown as unknown:
-            message = f"for goes on as only the controller knows ({unknown}); the rest is left out"
+            message = Fact(
+                "programs.val3.rest_left_out",
+                "for goes on as only the controller knows ({reason}); the rest is left out",
+                reason=unknown.fact,
+            )
             self.skip(node.body, node.line, message)
 
     def while_(self, node):
@@ -164,14 +178,21 @@ class Control(State):
                 self.tick(node.line)
                 self.block(node.body)
         except Unknown as unknown:
-            message = f"while is decided at run time ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.decided_at_run_time",
+                "{word} is decided at run time ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="while",
+            )
             self.skip(node.body, node.line, message)
 
     def once(self, node):
         before = len(self.program.motions)
         self.block(node.body)
         if len(self.program.motions) > before:
-            self.problem(node.line, "an endless loop is followed once")
+            self.problem(
+                node.line, "programs.endless", "an endless {word} is followed once", word="loop"
+            )
 
     def do_(self, node):
         """do .. until; the body runs at least once."""
@@ -185,7 +206,11 @@ class Control(State):
                 if truth(self.value(node.text)):
                     return
             except Unknown as unknown:
-                message = f"until is decided at run time ({unknown}); further rounds are left out"
+                message = Fact(
+                    "programs.val3.rounds_at_run_time",
+                    "until is decided at run time ({reason}); further rounds are left out",
+                    reason=unknown.fact,
+                )
                 self.skip(node.body, node.line, message)
                 return
 
@@ -207,7 +232,12 @@ class Control(State):
                     body = statements
                     break
         except Unknown as unknown:
-            message = f"switch is decided at run time ({unknown}); its motions are left out"
+            message = Fact(
+                "programs.decided_at_run_time",
+                "{word} is decided at run time ({reason}); its motions are left out",
+                reason=unknown.fact,
+                word="switch",
+            )
             self.skip(node.body, node.line, message)
             return
         try:

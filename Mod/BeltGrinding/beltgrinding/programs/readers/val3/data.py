@@ -10,6 +10,7 @@ import math
 import re
 
 import numpy as np
+from ...program import Fact, Reason, Unknown
 
 MAX_SIZE = 1_000_000  # elements of all data
 MAX_LENGTH = 1e6  # mm; a robot's world ends before
@@ -36,17 +37,12 @@ WORDS = frozenset(
 )
 
 
-class Unknown(Exception):
-    """An expression that cannot be evaluated here; says why."""
+class Missing(Reason):
+    """The place of a value that is not known; ``why``, a Fact, says why."""
 
-
-class Missing:
-    """The place of a value that is not known; ``why`` says why."""
-
-    __slots__ = ("why",)
-
-    def __init__(self, why):
-        self.why = why
+    @property
+    def why(self):
+        return self.fact
 
 
 class Record:
@@ -63,7 +59,12 @@ class Record:
         if isinstance(value, Missing):
             raise Unknown(value.why)
         if value is None:
-            raise Unknown(f"a {self.kind} has no field {field}")
+            raise Unknown(
+                "programs.val3.type_without_field",
+                "a {kind} has no field {field}",
+                kind=self.kind,
+                field=field,
+            )
         return value
 
 
@@ -102,7 +103,11 @@ def initial(kind):
         return Record("mdesc", dict(MDESC))
     if kind == "config":
         return Record("config", dict.fromkeys(CONFIG, ""))
-    return Missing(f"data of the type {kind} is known to the controller only")
+    return Missing(
+        "programs.type_of_controller",
+        "data of the type {kind} is known to the controller only",
+        kind=kind,
+    )
 
 
 def trsf(values):
@@ -123,7 +128,9 @@ def number(value):
         return value
     if isinstance(value, Missing):
         raise Unknown(value.why)
-    raise Unknown("the number is not finite" if type(value) is float else "a number expected")
+    if type(value) is float:
+        raise Unknown("programs.number_not_finite", "the number is not finite")
+    raise Unknown("programs.number_expected", "a number expected")
 
 
 def as_kind(kind, value):
@@ -136,7 +143,7 @@ def as_kind(kind, value):
     if type(value) is not type(expected) or getattr(value, "kind", 0) != getattr(
         expected, "kind", 0
     ):
-        raise Unknown(f"a {kind} expected")
+        raise Unknown("programs.val3.type_expected", "a {kind} expected", kind=kind)
     return copied(value)
 
 
@@ -145,15 +152,26 @@ def _literal(kind, values):
     if isinstance(value, Missing):
         raise Unknown(value.why)
     if not isinstance(value, Record) or len(values) > len(value.fields):
-        raise Unknown(f"the literal is no {kind}")
+        raise Unknown("programs.val3.literal", "the literal is no {kind}", kind=kind)
     if kind in ("trsf", *JOINTS) and len(values) != len(value.fields):
-        raise Unknown(f"a {kind} has {len(value.fields)} components, not {len(values)}")
+        raise Unknown(
+            "programs.val3.literal_components",
+            "a {kind} has {count} components, not {given}",
+            kind=kind,
+            count=len(value.fields),
+            given=len(values),
+        )
     for name, given in zip(value.fields, values):
         before = value.fields[name]
         if isinstance(before, Record):
             given = as_kind(before.kind, given)
         elif type(given) is not type(before):
-            raise Unknown(f"the literal's {name} is no {kind}'s")
+            raise Unknown(
+                "programs.val3.literal_field",
+                "the literal's {name} is no {kind}'s",
+                name=name,
+                kind=kind,
+            )
         value.fields[name] = given
     return value
 
@@ -161,12 +179,16 @@ def _literal(kind, values):
 def six(record):
     """The components of a trsf as six finite floats. Raises Unknown."""
     if not isinstance(record, Record) or record.kind != "trsf":
-        raise Unknown("a trsf expected")
+        raise Unknown("programs.val3.trsf_expected", "a trsf expected")
     values = tuple(record.fields.values())
     for value in values:
         number(value)
     if max(values) > MAX_LENGTH or min(values) < -MAX_LENGTH:
-        raise Unknown(f"{max(values, key=abs):g} is no robot's position")
+        raise Unknown(
+            "programs.val3.far_position",
+            "{value:g} is no robot's position",
+            value=max(values, key=abs),
+        )
     return values
 
 
@@ -233,7 +255,10 @@ def in_world(record, depth=0):
     if record.father is None:
         return own
     if depth > 20:
-        raise Unknown("the frames hang on each other in a circle, or the chain is too long")
+        raise Unknown(
+            "programs.val3.circle_or_chain",
+            "the frames hang on each other in a circle, or the chain is too long",
+        )
     return product(in_world(record.father, depth + 1), own)
 
 
@@ -242,13 +267,16 @@ def words(values):
 
 
 def load(root, file):
-    """Arrays by name, and messages (line, text), of a .dtx's root Element."""
+    """Arrays by name, and notes (line, Fact), of a .dtx's root Element."""
     arrays, notes, total = {}, [], 0
     holder = root.find("Datas") if root.tag == "Database" else None
     if holder is None:
-        notes.append(
-            (root.line, f"<{root.tag}> is no VAL3 data of s7 or later; save it with those")
+        fact = Fact(
+            "programs.val3.no_dtx",
+            "<{tag}> is no VAL3 data of s7 or later; save it with those",
+            tag=root.tag,
         )
+        notes.append((root.line, fact))
         return arrays, notes
     for data in holder.children:
         name, kind = data.get("name", ""), data.get("type", "")
@@ -261,8 +289,17 @@ def load(root, file):
         )
         total += max(count, len(data.children))
         if total > MAX_SIZE:
-            notes.append((data.line, f"{name}: the size '{size[:20]}' is not sensible"))
-            arrays[name] = Array(kind, Missing(f"{name} has no sensible size"))
+            fact = Fact(
+                "programs.val3.size_of",
+                "{name}: the size '{text}' is not sensible",
+                name=name,
+                text=size[:20],
+            )
+            notes.append((data.line, fact))
+            arrays[name] = Array(
+                kind,
+                Missing("programs.val3.no_sensible_size", "{name} has no sensible size", name=name),
+            )
             break
         if _form(data) == "collection" or "," in size:
             items = {child.get("key", ""): child for child in data.children}
@@ -272,14 +309,34 @@ def load(root, file):
         for child in data.children:
             key = child.get("key", "")
             if not (key.isascii() and key.isdigit() and len(key) < 8 and int(key) < len(items)):
-                notes.append((child.line, f"{name} has no element '{key[:20]}'"))
+                fact = Fact(
+                    "programs.val3.no_element",
+                    "{name} has no element '{index}'",
+                    name=name,
+                    index=key[:20],
+                )
+                notes.append((child.line, fact))
                 continue
             if items[int(key)] is not None:
-                notes.append((child.line, f"{name}[{key}] is given twice"))
-                child = Missing(f"{name}[{key}] is given twice in {file}")
+                fact = Fact(
+                    "programs.val3.twice", "{name}[{index}] is given twice", name=name, index=key
+                )
+                notes.append((child.line, fact))
+                child = Missing(
+                    "programs.val3.given_twice",
+                    "{name}[{index}] is given twice in {file}",
+                    name=name,
+                    index=key,
+                    file=file,
+                )
             items[int(key)] = child
         if len(notes) > before:  # what is absent may be what the damaged ones were
-            lost = Missing(f"{name} has damaged elements in {file}")
+            lost = Missing(
+                "programs.val3.damaged_elements",
+                "{name} has damaged elements in {file}",
+                name=name,
+                file=file,
+            )
             items = [lost if item is None else item for item in items]
         arrays[name] = Array(kind, items)
     return arrays, notes
@@ -297,7 +354,6 @@ def parsed(kind, element, file, frame_of):
     value = initial(kind)
     if isinstance(value, Missing):
         return value
-    where = f"{file}:{element.line}"
     given = element.attributes
 
     def figure(name, default=0.0):
@@ -305,7 +361,14 @@ def parsed(kind, element, file, frame_of):
         if text is None:
             return default
         if not NUMBER.fullmatch(text.strip()):
-            raise Unknown(f"{where}: {name}='{text[:20]}' is no number")
+            raise Unknown(
+                "programs.val3.no_number",
+                "{file}:{line}: {name}='{text}' is no number",
+                file=file,
+                line=element.line,
+                name=name,
+                text=text[:20],
+            )
         return number(float(text))
 
     if kind == "num":
@@ -313,7 +376,13 @@ def parsed(kind, element, file, frame_of):
     if kind == "bool":
         text = given.get("value", "false").lower()
         if text not in ("true", "false"):
-            raise Unknown(f"{where}: '{text[:20]}' is neither true nor false")
+            raise Unknown(
+                "programs.val3.no_truth_value",
+                "{file}:{line}: '{text}' is neither true nor false",
+                file=file,
+                line=element.line,
+                text=text[:20],
+            )
         return text == "true"
     if kind == "string":
         return given.get("value", "")[:10_000]
@@ -329,7 +398,14 @@ def parsed(kind, element, file, frame_of):
     if kind in POSED or kind == "trsf":
         odd = [name for name in given if len(name) < 3 and name not in TRSF]
         if odd:  # a zero is left out: a damaged name must not become one
-            raise Unknown(f"{where}: {odd[0]} is no component of a {kind}")
+            raise Unknown(
+                "programs.val3.odd_component",
+                "{file}:{line}: {name} is no component of a {kind}",
+                file=file,
+                line=element.line,
+                name=odd[0],
+                kind=kind,
+            )
     if kind in POSED:
         fields["trsf"] = trsf(map(figure, TRSF))
         if value.kind == "point":

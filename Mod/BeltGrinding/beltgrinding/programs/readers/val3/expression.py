@@ -8,7 +8,8 @@ import functools
 import math
 import re
 
-from .data import WORDS, Missing, Record, Unknown, as_kind, inverse, number, product, six, trsf
+from ...program import Fact, Unknown
+from .data import WORDS, Missing, Record, as_kind, inverse, number, product, six, trsf
 from .functions import FUNCTIONS, truth
 
 TOKEN = re.compile(
@@ -18,6 +19,7 @@ TOKEN = re.compile(
         |(?P<op>==|!=|<>|<=|>=|&&|\|\||[-+*/%&!(){}\[\],.<>]))""",
     re.VERBOSE,
 )
+END = Fact("programs.end_of_statement", "the end of the statement")
 MAX_DEPTH = 40
 MAX_TERMS = 300
 MAX_TEXT = 10_000
@@ -35,7 +37,9 @@ def tokens(text):
     while at < len(text):
         match = TOKEN.match(text, at)
         if not match:
-            raise Unknown(f"cannot read '{text[at:].strip()[:30]}'")
+            raise Unknown(
+                "programs.cannot_be_parsed", "cannot read '{text}'", text=text[at:].strip()[:30]
+            )
         found.append((match.lastgroup, match.group(match.lastgroup)))
         at = match.end()
     return found
@@ -61,10 +65,10 @@ def split(text):
             parts.append(text[start:at].strip())
             start = at + 1
     if depth or quoted:
-        raise Unknown("the brackets do not match")
+        raise Unknown("programs.brackets", "the brackets do not match")
     parts.append(text[start:].strip())
     if not all(parts):
-        raise Unknown("an argument is missing")
+        raise Unknown("programs.argument_missing", "an argument is missing")
     return parts
 
 
@@ -74,7 +78,11 @@ def expression(text):
     parser = _Parser(tokens(text))
     function = parser.expression()
     if parser.at < len(parser.tokens):
-        raise Unknown(f"'{parser.peek()}' is not understood there")
+        raise Unknown(
+            "programs.not_understood_there",
+            "'{found}' is not understood there",
+            found=parser.peek(),
+        )
     return function
 
 
@@ -84,10 +92,16 @@ def place(text):
     parser = _Parser(tokens(text))
     kind, name = parser.next()
     if kind != "name":
-        raise Unknown(f"'{text[:30]}' cannot be assigned to")
+        raise Unknown(
+            "programs.val3.not_assignable", "'{text}' cannot be assigned to", text=text[:30]
+        )
     key, fields = parser.selection()
     if parser.at < len(parser.tokens):
-        raise Unknown(f"'{parser.peek()}' is not understood there")
+        raise Unknown(
+            "programs.not_understood_there",
+            "'{found}' is not understood there",
+            found=parser.peek(),
+        )
     return name, key, fields
 
 
@@ -102,7 +116,7 @@ class _Parser:
 
     def next(self):
         if self.at >= len(self.tokens):
-            raise Unknown("the statement ends too early")
+            raise Unknown("programs.statement_ends_early", "the statement ends too early")
         self.at += 1
         return self.tokens[self.at - 1]
 
@@ -115,12 +129,17 @@ class _Parser:
 
     def expect(self, text):
         if not self.accept(text):
-            raise Unknown(f"'{text}' expected, not '{self.peek() or 'the end of the statement'}'")
+            raise Unknown(
+                "programs.expected",
+                "'{text}' expected, not '{found}'",
+                text=text,
+                found=self.peek() or END,
+            )
 
     def nested(self, function):
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise Unknown("the expression is nested too deeply")
+            raise Unknown("programs.nested_expression", "the expression is nested too deeply")
         result = function()
         self.depth -= 1
         return result
@@ -169,12 +188,12 @@ class _Parser:
     def unary(self):
         self.terms += 1
         if self.terms > MAX_TERMS:
-            raise Unknown("the expression is too long")
+            raise Unknown("programs.val3.long_expression", "the expression is too long")
         operator = self.accept("-", "+", "!")
         if not operator:
             return self.primary()
         if operator != "!" and self.peek() in ("-", "+"):
-            raise Unknown("two signs in a row")
+            raise Unknown("programs.two_signs", "two signs in a row")
         inner = self.nested(self.unary)
         if operator == "!":
             return lambda env: _inverted(inner(env))
@@ -187,7 +206,9 @@ class _Parser:
         if kind == "number":
             value = float(text)
             if not math.isfinite(value):
-                raise Unknown(f"{text[:20]} is too large a number")
+                raise Unknown(
+                    "programs.number_too_large", "{text} is too large a number", text=text[:20]
+                )
             return lambda env: value
         if kind == "string":
             return lambda env: text[1:-1]
@@ -199,7 +220,7 @@ class _Parser:
             parts = self.list("}")
             return lambda env: [part(env) for part in parts]
         if kind != "name":
-            raise Unknown(f"a value expected, not '{text}'")
+            raise Unknown("programs.value_expected", "a value expected, not '{text}'", text=text)
         if text in ("true", "false"):
             return lambda env: text == "true"
         if self.accept("("):
@@ -223,10 +244,14 @@ class _Parser:
         while self.accept("."):
             kind, name = self.next()
             if kind != "name":
-                raise Unknown(f"a field expected, not '{name}'")
+                raise Unknown(
+                    "programs.val3.field_expected", "a field expected, not '{name}'", name=name
+                )
             fields.append(name)
             if self.accept("["):
-                raise Unknown("a field with an index is not understood")
+                raise Unknown(
+                    "programs.val3.field_with_index", "a field with an index is not understood"
+                )
         return key, tuple(fields)
 
     def call(self, name):
@@ -245,7 +270,7 @@ class _Parser:
 
 
 def _refused(env):
-    raise Unknown("arrays of several dimensions are not supported")
+    raise Unknown("programs.val3.dimensions", "arrays of several dimensions are not supported")
 
 
 def _items(array, name):
@@ -264,7 +289,9 @@ def _read(name, key, fields, env):
     value = env.item(array, 0.0 if key is None else key(env), name)
     for field in fields:
         if not isinstance(value, Record):
-            raise Unknown(f"{name} has no field {field}")
+            raise Unknown(
+                "programs.val3.no_field", "{name} has no field {field}", name=name, field=field
+            )
         value = value.get(field)
     if isinstance(value, Missing):
         raise Unknown(value.why)
@@ -283,7 +310,7 @@ def _both(left, right):
 
 def _equal(left, right):
     if type(left) is not type(right) or isinstance(left, (list, Record)):
-        raise Unknown("these values are not compared")
+        raise Unknown("programs.val3.not_compared", "these values are not compared")
     return left == right
 
 
@@ -292,10 +319,10 @@ def _sum(left, right, operator):
         a, b = left(env), right(env)
         if isinstance(a, str) and isinstance(b, str) and operator != "-":
             if len(a) + len(b) > MAX_TEXT:
-                raise Unknown("the string is too long")
+                raise Unknown("programs.string_too_long", "the string is too long")
             return a + b
         if operator == "&":
-            raise Unknown("'&' joins strings")
+            raise Unknown("programs.val3.join", "'&' joins strings")
         return number(number(a) - number(b) if operator == "-" else number(a) + number(b))
 
     return value
@@ -309,7 +336,7 @@ def _product(left, right, operator):
                 return trsf(product(six(as_kind("trsf", a)), six(as_kind("trsf", b))))
             return number(number(a) * number(b))
         if number(b) == 0.0:
-            raise Unknown("division by zero")
+            raise Unknown("programs.division_by_zero", "division by zero")
         return number(number(a) / b) if operator == "/" else math.fmod(number(a), b)
 
     return value
@@ -324,4 +351,8 @@ def _called(name, parts, env):
     try:
         return FUNCTIONS[name](*values)
     except (TypeError, ValueError, OverflowError, ZeroDivisionError):
-        raise Unknown(f"{name}() cannot be evaluated for these arguments") from None
+        raise Unknown(
+            "programs.val3.not_computable",
+            "{name}() cannot be evaluated for these arguments",
+            name=name,
+        ) from None

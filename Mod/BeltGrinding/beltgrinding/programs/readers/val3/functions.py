@@ -5,12 +5,13 @@ They raise Unknown, or what a wrong number or kind of arguments raises in Python
 
 import math
 
-from .data import Missing, Record, Unknown, as_kind, in_world, inverse, number, product, six, trsf
+from ...program import Unknown
+from .data import Missing, Record, as_kind, in_world, inverse, number, product, six, trsf
 
 
 def truth(value):
     if not isinstance(value, bool):
-        raise Unknown("a truth value expected")
+        raise Unknown("programs.truth_value_expected", "a truth value expected")
     return value
 
 
@@ -47,7 +48,7 @@ def _numeric(function):
 
 def _point(value):
     if not isinstance(value, Record) or value.kind != "point":
-        raise Unknown("a point expected")
+        raise Unknown("programs.val3.point_expected", "a point expected")
     return value
 
 
@@ -65,7 +66,7 @@ def _appro(point, change):
 def _frame(value):
     """Six components of a frame in the world."""
     if not isinstance(value, Record) or value.kind != "frame":
-        raise Unknown("a frame expected")
+        raise Unknown("programs.val3.frame_expected", "a frame expected")
     return in_world(value)
 
 

@@ -7,7 +7,7 @@ import math
 import re
 from pathlib import Path
 
-from ...program import ProgramError, name_of, work_of
+from ...program import Fact, ProgramError, name_of, work_of
 from ..rapid.text import Node
 from ..xml_tree import read_xml
 from . import data as val3_data
@@ -42,7 +42,7 @@ class Project:
     def __init__(self, path):
         self.path = Path(path)
         self.routines = {}
-        self.notes = []  # (file, line, message)
+        self.notes = []  # (file, line, Fact)
         self.millimetres = True
         self.data_file = None
 
@@ -69,9 +69,16 @@ class Project:
         if path is None:
             if len(folder) > 1:
                 names = ", ".join(p.name for p in folder[:5])
-                what = f"which of {names} holds its data is not known; give that one its name"
+                what = Fact(
+                    "programs.val3.which_data",
+                    "which of {names} holds its data is not known; give that one its name",
+                    names=names,
+                )
             else:
-                what = "there is no .dtx beside it; what its data are is not known"
+                what = Fact(
+                    "programs.val3.no_data",
+                    "there is no .dtx beside it; what its data are is not known",
+                )
             self.notes.append((self.path.name, 1, what))
             return {}
         self.data_file = name_of(path)
@@ -114,9 +121,12 @@ def routines(path):
     root = read_xml(path, text_of=("Code",))
     found = [e for e in root.children if e.tag == "Program"] if root.tag == "Programs" else []
     if not found:
-        raise ProgramError(
-            f"{file}:{root.line}: <{root.tag}> holds no VAL3 program of s7 or later; "
-            "save it with Stäubli Robotics Suite"
+        raise ProgramError.at(
+            file,
+            root.line,
+            "programs.val3.no_program",
+            "<{tag}> holds no VAL3 program of s7 or later; save it with Stäubli Robotics Suite",
+            tag=root.tag,
         )
     return [_routine(element, file) for element in found]
 
@@ -133,7 +143,13 @@ def _routine(element, file):
                 target.append((name, kind, _size(item.get("size", "1"))))
     code = element.find("Code")
     if code is None or code.text is None:
-        raise ProgramError(f"{file}:{element.line}: the program {routine.name} has no code")
+        raise ProgramError.at(
+            file,
+            element.line,
+            "programs.val3.no_code",
+            "the program {name} has no code",
+            name=routine.name,
+        )
     routine.line = code.text_line
     _tree(routine, code)
     return routine
@@ -160,7 +176,13 @@ def _tree(routine, code):
             return
         if word in ENDS:
             if not open_nodes or word not in CLOSED_BY[open_nodes[-1].word]:
-                raise ProgramError(f"{routine.file}:{line}: {statement[:20]} closes nothing")
+                raise ProgramError.at(
+                    routine.file,
+                    line,
+                    "programs.closes_nothing",
+                    "{word} closes nothing",
+                    word=statement[:20],
+                )
             node = open_nodes.pop()
             if word == "until":
                 node.text = statement[len("until") :].strip()
@@ -170,11 +192,19 @@ def _tree(routine, code):
         if node.body is not None:
             open_nodes.append(node)
             if len(open_nodes) > MAX_NESTING:
-                raise ProgramError(f"{routine.file}:{line}: blocks are nested too deeply")
+                raise ProgramError.at(
+                    routine.file, line, "programs.nested_blocks", "blocks are nested too deeply"
+                )
     if open_nodes:
         node = open_nodes[-1]
-        raise ProgramError(
-            f"{routine.file}:{line}: the {node.word} of line {node.line} is not closed; "
-            "is the file cut off?"
+        raise ProgramError.at(
+            routine.file,
+            line,
+            "programs.val3.not_closed",
+            "the {word} of line {begun} is not closed; is the file cut off?",
+            word=node.word,
+            begun=node.line,
         )
-    raise ProgramError(f"{routine.file}:{line}: the program has no end; is the file cut off?")
+    raise ProgramError.at(
+        routine.file, line, "programs.val3.no_end", "the program has no end; is the file cut off?"
+    )

@@ -9,14 +9,17 @@ a program gives its points as PTP targets, over which nothing is ground.
 
 from pathlib import Path
 
-from ...program import Motion, ProgramError
+from ...program import Fact, Motion, ProgramError, Unknown, cannot_be_read, fact_of
 from . import data
 from .control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Break, Control
-from .data import Array, Missing, Record, Unknown, number, six
+from .data import Array, Missing, Record, number, six
 from .expression import split
 from .project import Project, routines
 from .state import PER_VALUE, State
 
+NO_TVEL = Fact(
+    "programs.val3.no_tvel", "the mdesc sets no tvel, and vel is a share of the joints' speed"
+)
 MAX_CALLS = 20
 KINDS = {"movej": "PTP", "movel": "LIN", "movec": "CIRC"}
 
@@ -34,10 +37,14 @@ def read(path):
         interpreter = _Interpreter(Project(path))
         interpreter.run()
     except RecursionError:
-        where = f"{interpreter.file}:{interpreter.line}" if interpreter else path.name
-        raise ProgramError(f"{where}: values or calls are nested too deeply") from None
+        error = ProgramError("programs.val3.nested", "values or calls are nested too deeply")
+        if interpreter is None:
+            raise error.within("programs.in_file", "{file}: ", file=path.name) from None
+        raise error.within(
+            "programs.at", "{file}:{line}: ", file=interpreter.file, line=interpreter.line
+        ) from None
     except OSError as error:
-        raise ProgramError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     return interpreter.finish()
 
 
@@ -50,7 +57,9 @@ def _points(path):
         state.problem(line, message)
     state.file = path.name
     state.problem(
-        1, "there is no program of this name beside it; its points are given as PTP targets"
+        1,
+        "programs.val3.no_program_beside",
+        "there is no program of this name beside it; its points are given as PTP targets",
     )
     for name, array in state.globals.items():
         keys = array.items if isinstance(array.items, dict) else range(len(array.items or ()))
@@ -64,7 +73,14 @@ def _points(path):
                 point = state.item(array, key if isinstance(key, str) else float(key), name)
                 row = six(point.get("trsf"))
             except Unknown as unknown:
-                state.problem(line, f"{name}[{key}] is left out: {unknown}")
+                state.problem(
+                    line,
+                    "programs.val3.point_left_out",
+                    "{name}[{index}] is left out: {reason}",
+                    name=name,
+                    index=key,
+                    reason=unknown.fact,
+                )
                 state.gap(line)
                 continue
             motion = Motion("PTP", None, line, path.name)
@@ -102,7 +118,14 @@ class _Interpreter(Control):
             self.problem(line, message)
         self.file = found.file
         scope = {
-            name: Array(kind, Missing(f"{name} is a parameter that the caller gives"))
+            name: Array(
+                kind,
+                Missing(
+                    "programs.val3.parameter",
+                    "{name} is a parameter that the caller gives",
+                    name=name,
+                ),
+            )
             for name, kind, _ in found.parameters
         }
         self.routine(found, scope)
@@ -110,15 +133,25 @@ class _Interpreter(Control):
         if not self.rows:
             moves = any(MOVES.search(n.text) for n in _every(found.body))
             why = (
-                "what its motions depend on is not known here"
+                Fact("programs.val3.not_known_here", "what its motions depend on is not known here")
                 if moves or self.program.motions
-                else ("it commands no motion (movej, movel, movec)")
+                else Fact("programs.val3.no_motion", "it commands no motion (movej, movel, movec)")
             )
-            self.problem(found.line, f"the program {found.name} gives no pose: {why}")
+            self.problem(
+                found.line,
+                "programs.val3.no_pose",
+                "the program {name} gives no pose: {reason}",
+                name=found.name,
+                reason=why,
+            )
 
     def routine(self, routine, scope):
         for name, kind, size in routine.local_data:
-            items = [None] * size if 0 < size <= data.MAX_SIZE else Missing(f"{name} has no size")
+            items = (
+                [None] * size
+                if 0 < size <= data.MAX_SIZE
+                else Missing("programs.val3.no_size", "{name} has no size", name=name)
+            )
             scope[name] = Array(kind, items)
             self.rounds += size // 8
         self.rounds -= routine.work
@@ -131,7 +164,9 @@ class _Interpreter(Control):
             pass
         except Break as end:
             self.problem(
-                end.line, "break leaves no switch; what follows in the program is left out"
+                end.line,
+                "programs.val3.break",
+                "break leaves no switch; what follows in the program is left out",
             )
             self.gap(end.line)
         finally:
@@ -152,7 +187,11 @@ class _Interpreter(Control):
         elif word == "break":
             raise Break(node.line)
         elif word == "taskcreate" or word == "taskcreatesync":
-            self.problem(node.line, "a task runs beside the program; open the task's own program")
+            self.problem(
+                node.line,
+                "programs.val3.task",
+                "a task runs beside the program; open the task's own program",
+            )
             self.gap(node.line)
         elif match := ASSIGN.match(node.text):
             self.assignment(node, *match.groups())
@@ -162,18 +201,34 @@ class _Interpreter(Control):
     def motion(self, node, target, word, text):
         try:
             if word not in KINDS:
-                raise Unknown("this motion is decided at run time, or is not known")
+                raise Unknown(
+                    "programs.val3.motion_at_run_time",
+                    "this motion is decided at run time, or is not known",
+                )
             row = split(text)
             count = 2 if word == "movec" else 1
             if len(row) != count + 2:
-                raise Unknown(f"it has {len(row)} arguments instead of {count + 2}")
+                raise Unknown(
+                    "programs.val3.arguments",
+                    "it has {count} arguments instead of {expected}",
+                    count=len(row),
+                    expected=count + 2,
+                )
             targets = [self.value(part) for part in row[:count]]
             self.move(node.line, KINDS[word], targets, row[count], row[count + 1])
         except Unknown as unknown:
-            self.problem(node.line, f"{word} is left out: {unknown}")
+            self.problem(
+                node.line,
+                "programs.left_out",
+                "{what} is left out: {reason}",
+                what=word,
+                reason=unknown.fact,
+            )
             self.gap(node.line)
         if target:
-            self.unknown(target, "it numbers a motion at run time")
+            self.unknown(
+                target, Fact("programs.val3.motion_number", "it numbers a motion at run time")
+            )
 
     def move(self, line, kind, targets, tool, mdesc):
         end = targets[-1]
@@ -183,7 +238,7 @@ class _Interpreter(Control):
             end = data.as_kind("jointRs" if len(end) == 4 else "joint", end)
         if isinstance(end, Record) and end.kind == "joint":
             if kind != "PTP":
-                raise Unknown("its target is a joint position")
+                raise Unknown("programs.joint_target", "its target is a joint position")
             for name in end.fields:
                 number(end.get(name))
             motion = Motion("PTP", None, line, self.file, tool=self.tool(line, tool))
@@ -193,12 +248,15 @@ class _Interpreter(Control):
         rows = []
         for point in targets:
             if not isinstance(point, Record) or point.kind != "point":
-                raise Unknown("its target is no point")
+                raise Unknown("programs.val3.no_point", "its target is no point")
             row = six(point.get("trsf"))
             if isinstance(point.father, Missing):
                 raise Unknown(point.father.why)
             if point.father is None and not any(row):
-                raise Unknown("the point has no value: it was not taught, or the .dtx is not whole")
+                raise Unknown(
+                    "programs.val3.not_taught",
+                    "the point has no value: it was not taught, or the .dtx is not whole",
+                )
             if isinstance(getattr(end, "father", None), Missing):
                 raise Unknown(end.father.why)
             if point.father is not end.father:  # an arc's point in another frame
@@ -208,8 +266,13 @@ class _Interpreter(Control):
         base, held = self.described(end.father, "world"), self.tool(line, tool)
         if kind != "PTP" and self.frame is not None and self.frame[0] is not end.father:
             before = self.described(self.frame[0], "world")
-            message = f"the frame changes from {before} to {base}; each pose stays in its own"
-            self.problem(line, message, "the frame changes")  # once is enough
+            message = Fact(
+                "programs.val3.frame_changes",
+                "the frame changes from {before} to {after}; each pose stays in its own",
+                before=before,
+                after=base,
+            )
+            self.problem(line, message, once="the frame changes")  # once is enough
         speed = self.speed(line, kind, mdesc)
         for k, row in enumerate(rows):
             motion = Motion(kind, None, line, self.file, speed, tool=held, base=base)
@@ -222,10 +285,17 @@ class _Interpreter(Control):
         try:
             value = self.value(text)
             if not isinstance(value, Record) or value.kind != "tool":
-                raise Unknown("it is no tool")
+                raise Unknown("programs.val3.no_tool", "it is no tool")
             return self.described(value, "flange")
         except Unknown as unknown:
-            self.problem(line, f"the tool {text[:40]} is not known: {unknown}", ("tool", text))
+            self.problem(
+                line,
+                "programs.val3.tool_unknown",
+                "the tool {text} is not known: {reason}",
+                text=text[:40],
+                reason=unknown.fact,
+                once=("tool", text),
+            )
             return text[:40]
 
     def speed(self, line, kind, text):
@@ -235,18 +305,21 @@ class _Interpreter(Control):
         try:
             value = self.value(text)
             if not isinstance(value, Record) or value.kind != "mdesc":
-                raise Unknown(f"{text[:40]} is no mdesc")
+                raise Unknown("programs.val3.no_mdesc", "{text} is no mdesc", text=text[:40])
             speed = number(value.get("tvel"))
             if speed <= 0:
-                raise Unknown("tvel is not positive")
+                raise Unknown("programs.val3.speed_not_positive", "tvel is not positive")
             if speed < data.NO_LIMIT:
                 return speed * self.project.unit
-            raise Unknown("the mdesc sets no tvel, and vel is a share of the joints' speed")
+            raise Unknown(NO_TVEL)
         except Unknown as unknown:
             self.problem(
                 line,
-                f"the path speed of {text[:40]} is not known: {unknown}; the default is used",
-                ("speed", text, str(unknown)),
+                "programs.val3.speed_unknown",
+                "the path speed of {text} is not known: {reason}; the default is used",
+                text=text[:40],
+                reason=unknown.fact,
+                once=("speed", text, unknown.fact),
             )
             return None
 
@@ -255,13 +328,18 @@ class _Interpreter(Control):
             self.assign(target, self.value(text))
         except Unknown as unknown:
             # Not known from here on: whoever uses it reports it.
-            self.unknown(target, str(unknown))
+            self.unknown(target, unknown.fact)
 
     def instruction(self, node):
         match = INSTRUCTION.match(node.text)
         if not match:
             if node.word not in ("putln", "put", "wait", "title", "popupmsg", "logmsg"):
-                self.problem(node.line, f"'{node.text[:40]}' is not understood")
+                self.problem(
+                    node.line,
+                    "programs.not_understood",
+                    "'{text}' is not understood",
+                    text=node.text[:40],
+                )
                 if MOVES.search(node.text):
                     self.gap(node.line)
                 else:
@@ -271,8 +349,12 @@ class _Interpreter(Control):
         if word in ("link", "resize"):
             self.change(node, word, text)
         elif word not in HARMLESS:
-            message = f"{word}() is known to the controller only; what it changes is not known"
-            self.problem(node.line, message, ("instruction", word))
+            message = Fact(
+                "programs.val3.instruction",
+                "{word}() is known to the controller only; what it changes is not known",
+                word=word,
+            )
+            self.problem(node.line, message, once=("instruction", word))
             self.handed(text)
 
     def change(self, node, word, text):
@@ -283,17 +365,25 @@ class _Interpreter(Control):
                 value, father = self.value(row[0]), self.value(row[1])
                 kinds = {getattr(value, "kind", ""), getattr(father, "kind", "")}
                 if father is value or not kinds <= {"point", "frame"}:
-                    raise Unknown("a point and a frame expected")
+                    raise Unknown(
+                        "programs.val3.point_and_frame_expected", "a point and a frame expected"
+                    )
                 value.father = None if row[1] == "world" else father
                 self.texts.clear()
                 return
             array, size = self.array(row[0]), number(self.value(row[-1]))
             if isinstance(array.items, dict) or not 1 <= size <= data.MAX_SIZE:
-                raise Unknown("the size is not sensible")
+                raise Unknown("programs.val3.size", "the size is not sensible")
             self.rounds += int(size) // 8
             array.items[int(size) :] = [None] * max(0, int(size) - len(array.items))
         except (Unknown, IndexError) as unknown:
-            self.problem(node.line, f"{word} is not followed: {unknown}")
+            self.problem(
+                node.line,
+                "programs.val3.not_followed",
+                "{word} is not followed: {reason}",
+                word=word,
+                reason=getattr(unknown, "fact", str(unknown)),
+            )
             self.lose(text)
 
     def call(self, node):
@@ -302,19 +392,33 @@ class _Interpreter(Control):
         try:
             row = split(match[2] or "") if match else []
             if ":" in name:
-                raise Unknown("it belongs to a library")
+                raise Unknown("programs.val3.library", "it belongs to a library")
             if self.calls >= MAX_CALLS:
-                raise Unknown("it calls itself too deeply")
+                raise Unknown("programs.calls_itself", "it calls itself too deeply")
             try:
                 routine = self.project.routine(name)
             except ProgramError as error:
-                raise Unknown(str(error)) from None
+                raise Unknown(fact_of(error)) from None
             if routine is None:
-                raise Unknown(f"there is no {name}.pgx beside it")
+                raise Unknown(
+                    "programs.val3.no_program_of_name",
+                    "there is no {name}.pgx beside it",
+                    name=name,
+                )
             if len(row) != len(routine.parameters):
-                raise Unknown(f"it has {len(routine.parameters)} parameters, not {len(row)}")
+                raise Unknown(
+                    "programs.val3.parameters",
+                    "it has {count} parameters, not {given}",
+                    count=len(routine.parameters),
+                    given=len(row),
+                )
         except Unknown as unknown:
-            message = f"call {name} is left out: {unknown}; motions in it are left out"
+            message = Fact(
+                "programs.val3.call_left_out",
+                "call {name} is left out: {reason}; motions in it are left out",
+                name=name,
+                reason=unknown.fact,
+            )
             self.problem(node.line, message)
             self.gap(node.line)
             self.handed(match[2] or "" if match else node.text)
@@ -341,13 +445,13 @@ class _Interpreter(Control):
             try:
                 self.assign(text, value)
             except Unknown as unknown:
-                self.unknown(text, str(unknown))
+                self.unknown(text, unknown.fact)
 
     def parameter(self, kind, text):
         try:
             return Array(kind, [data.as_kind(kind, self.value(text))])
         except Unknown as unknown:
-            return Array(kind, Missing(str(unknown)))
+            return Array(kind, Missing(unknown.fact))
 
 
 def _every(nodes):

@@ -2,12 +2,13 @@
 
 import re
 
-from ...program import MAX_UNROLLED, Motion, Problem, Program, ProgramError
+from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, shortened
 from ..xml_tree import Element
 from . import data
-from .data import Array, Missing, Record, Unknown
+from .data import Array, Missing, Record
 from .expression import expression, place
 
+ASSIGNED = Fact("programs.assigned_at_run_time", "it is assigned at run time")
 PER_VALUE = 6  # units of work in a loop that a value of the .dtx may take
 MAX_MOTIONS = 1_000_000
 ELEMENT = re.compile(r"([^\W\d]\w*)\[([0-9]{1,6})\]")
@@ -29,18 +30,23 @@ class State:
         self.frame = None  # (the Record of) the frame of the last pose, in a tuple
         self.texts = {}  # frames and tools in words; cleared when data change
 
-    def problem(self, line, message, once=None):
+    def problem(self, line, told, text=None, /, once=None, **arguments):
         """Says something once, however often a loop comes by."""
-        key = once or (self.file, line, message)
+        if once in self.said:
+            return
+        fact = told if text is None else Fact(told, text, **arguments)
+        key = once or (self.file, line, fact)
         if key not in self.said:
             self.said.add(key)
-            self.program.problems.append(Problem(self.file, line, message))
+            self.program.problem(self.file, line, fact)
 
     def tick(self, line, work=1):
         self.line = line
         self.rounds += work
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError(f"{self.file}:{line}: the program is too long or does not end")
+            raise ProgramError.at(
+                self.file, line, "programs.val3.too_long", "the program is too long or does not end"
+            )
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
@@ -56,8 +62,12 @@ class State:
                 kind = "frame" if name == "world" else "tool"
                 return Array(kind, [data.posed(kind, (0.0,) * 6)])
             if ":" in name:
-                raise Unknown(f"{name} belongs to a library")
-            raise Unknown(f"{name} is not declared in the files here")
+                raise Unknown(
+                    "programs.val3.name_of_library", "{name} belongs to a library", name=name
+                )
+            raise Unknown(
+                "programs.val3.not_declared", "{name} is not declared in the files here", name=name
+            )
         if isinstance(found.items, Missing):
             raise Unknown(found.items.why)
         return found
@@ -70,11 +80,21 @@ class State:
             if isinstance(key, float) and key == 0.0 and "0" in array.items:
                 return "0"
             if not isinstance(key, str) or key not in array.items:
-                raise Unknown(f"{name} has no element {str(key)[:30]}")
+                raise Unknown(
+                    "programs.no_element",
+                    "{name} has no element {index}",
+                    name=name,
+                    index=str(key)[:30],
+                )
             return key
         index = data.number(key)
         if index != int(index) or not 0 <= index < len(array.items):
-            raise Unknown(f"{name} has no element {index:g}")
+            raise Unknown(
+                "programs.val3.no_number_element",
+                "{name} has no element {index:g}",
+                name=name,
+                index=index,
+            )
         return int(index)
 
     def item(self, array, key, name):
@@ -84,15 +104,21 @@ class State:
         if value is None:
             value = items[at] = self.named(data.initial(array.kind), name, at)
         elif isinstance(value, Element):
-            items[at] = Missing("the frames hang on each other in a circle")
+            items[at] = Missing("programs.val3.circle", "the frames hang on each other in a circle")
             try:
                 value = data.parsed(array.kind, value, self.project.data_file, self.father)
                 value = self.named(value, name, at)
             except Unknown as unknown:
-                value = Missing(str(unknown))
+                value = Missing(unknown.fact)
             items[at] = value
         if isinstance(value, Missing):
-            raise Unknown(f"{name} is not known: {value.why}"[:300])
+            fact = Fact(
+                "programs.unknown_because",
+                "{name} is not known: {reason}",
+                name=name,
+                reason=value.why,
+            )
+            raise Unknown(shortened(fact, 300))
         return value
 
     @staticmethod
@@ -108,17 +134,28 @@ class State:
         if not text or (match and match[1] == root):
             return None
         if not match:
-            return Missing(f"its frame '{text[:30]}' is not understood")
+            return Missing(
+                "programs.val3.frame_not_understood",
+                "its frame '{text}' is not understood",
+                text=text[:30],
+            )
         try:
             name = match[1]
             array = self.globals.get(name)
             if array is None or array.kind != ("tool" if kind == "tool" else "frame"):
-                raise Unknown(f"its frame {name} is not declared in the files here")
+                raise Unknown(
+                    "programs.val3.frame_not_declared",
+                    "its frame {name} is not declared in the files here",
+                    name=name,
+                )
             return self.item(array, float(match[2] or 0), name)
         except Unknown as unknown:
-            return Missing(str(unknown))
+            return Missing(unknown.fact)
         except RecursionError:
-            return Missing("the frames hang on each other in a circle, or the chain is too long")
+            return Missing(
+                "programs.val3.circle_or_chain",
+                "the frames hang on each other in a circle, or the chain is too long",
+            )
 
     def value(self, text):
         element = ELEMENT.fullmatch(text)
@@ -128,15 +165,27 @@ class State:
 
     def result(self, name, parts):
         if name in ("here", "herej", "jointToPoint", "pointToJoint", "getLatch"):
-            raise Unknown(f"{name}() depends on where the robot is, or on its geometry")
-        raise Unknown(f"the function {name}() is known to the controller only")
+            raise Unknown(
+                "programs.val3.place_of_robot",
+                "{name}() depends on where the robot is, or on its geometry",
+                name=name,
+            )
+        raise Unknown(
+            "programs.called_function_of_controller",
+            "the function {name}() is known to the controller only",
+            name=name,
+        )
 
     def assign(self, target, value):
         """Stores a value; a Missing one makes the place unknown. Raises Unknown if there is none."""
         name, key, fields = place(target)
         if name not in self.scope and name not in self.globals:
             if key is not None or fields or not isinstance(value, (float, str, bool)):
-                raise Unknown(f"{name} is not declared in the files here")
+                raise Unknown(
+                    "programs.val3.not_declared",
+                    "{name} is not declared in the files here",
+                    name=name,
+                )
             kind = {float: "num", str: "string", bool: "bool"}[type(value)]
             self.globals[name] = Array(kind, [value])
             return
@@ -145,15 +194,29 @@ class State:
         try:
             at = self.key(array, 0.0 if key is None else key(self), name)
         except Unknown as unknown:
-            array.items = Missing(f"which element of {name} is assigned is not known: {unknown}")
+            array.items = Missing(
+                "programs.val3.element_unknown",
+                "which element of {name} is assigned is not known: {reason}",
+                name=name,
+                reason=unknown.fact,
+            )
             raise
         if fields:
             holder = self.item(array, at if isinstance(at, str) else float(at), name)
             for field in fields[:-1]:
                 holder = holder.get(field) if isinstance(holder, Record) else None
             if not isinstance(holder, Record) or fields[-1] not in holder.fields:
-                array.items[at] = Missing(f"{target[:40]} is not understood")
-                raise Unknown(f"{name} has no field {fields[-1]}")
+                array.items[at] = Missing(
+                    "programs.val3.target_not_understood",
+                    "{text} is not understood",
+                    text=target[:40],
+                )
+                raise Unknown(
+                    "programs.val3.no_field",
+                    "{name} has no field {field}",
+                    name=name,
+                    field=fields[-1],
+                )
             if not isinstance(value, Missing):
                 value = self.field_value(holder, fields[-1], value)
             holder.fields[fields[-1]] = value
@@ -170,7 +233,11 @@ class State:
             return data.as_kind(before.kind, value)
         text = holder.kind == "config" or field == "blend"
         if isinstance(value, str) != text or isinstance(value, (bool, list, Record)):
-            raise Unknown(f"the value is none for the field {field}")
+            raise Unknown(
+                "programs.val3.wrong_field_value",
+                "the value is none for the field {field}",
+                field=field,
+            )
         return value
 
     def replace(self, array, at, value, name):
@@ -183,7 +250,7 @@ class State:
             return
         array.items[at] = self.named(value, name, at)
 
-    def forget(self, name, why="it is assigned at run time"):
+    def forget(self, name, why=ASSIGNED):
         """Whoever uses the data from here on reports ``why``."""
         for holder in (self.scope, self.globals):  # which one is meant may not be known either
             array = holder.get(name)
@@ -193,7 +260,10 @@ class State:
                 for item in array.items:
                     if isinstance(item, Record):
                         item.fields["trsf"] = Missing(why)
-            array.items = Missing(f"{name} is not known ({why})"[:200])
+            fact = Fact(
+                "programs.not_known_since", "{name} is not known ({reason})", name=name, reason=why
+            )
+            array.items = Missing(shortened(fact, 200))
             self.texts.clear()
 
     def described(self, record, root):

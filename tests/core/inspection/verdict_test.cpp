@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "beltgrinding/error.h"
+#include "inspection/zones.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

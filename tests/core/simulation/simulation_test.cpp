@@ -1,5 +1,6 @@
 #include "beltgrinding/simulation.h"
 #include "contact/wheel_rim.h"
+#include "simulation/recording.h"
 
 #include <gtest/gtest.h>
 

@@ -32,8 +32,14 @@ NAMED = re.compile(
     r"^(?:ORI\w+|CUT2D\w*|SOFT|BRISK|COMP\w+|FFWO[NF]|FIFOCTRL|UPATH|SPATH|MSG|STOPRE|"
     r"WORKPIECE|T\s*=?\s*\"[^\"]*\"|D\d+|CYCLE832)$"
 )
-# Reasons that hold for many motions of a file.
-KINEMATICS = ("programs.gcode.kinematics", "programs.gcode.a_and_b")
+# Reasons that hold for many motions of a file, made once.
+MACHINE_COORDINATES = Fact(
+    "programs.gcode.kinematics",
+    "rotary axes without G43.4 or TRAORI are machine coordinates: the machine's kinematics is "
+    "needed; post-process with tool-centre-point control",
+)
+A_AND_B = Fact("programs.gcode.a_and_b", "A and B together depend on the machine's kinematics")
+KINEMATICS = {fact.code for fact in (MACHINE_COORDINATES, A_AND_B)}
 FRAMES = re.compile(r"A?(?:TRANS|ROT|SCALE|MIRROR)S?\b|CYCLE800\b")
 
 
@@ -412,17 +418,10 @@ class _Reader:
         if not any(self.rotary.values()):
             return (0.0, 0.0, 1.0)
         if self.tcp is None:
-            raise Unknown(
-                "programs.gcode.kinematics",
-                "rotary axes without G43.4 or TRAORI are machine coordinates: the "
-                "machine's kinematics is needed; post-process with tool-centre-point "
-                "control",
-            )
+            raise Unknown(MACHINE_COORDINATES)
         a, b, c = (math.radians(self.rotary.get(letter, 0.0)) for letter in "ABC")
         if a and b:
-            raise Unknown(
-                "programs.gcode.a_and_b", "A and B together depend on the machine's kinematics"
-            )
+            raise Unknown(A_AND_B)
         x, y, z = math.sin(b), -math.sin(a), math.cos(a) * math.cos(b)
         return (math.cos(c) * x - math.sin(c) * y, math.sin(c) * x + math.cos(c) * y, z)
 

@@ -41,8 +41,9 @@ fs::path own_object() {
 }
 
 /// Beside the object that this code is in, where its links lead (the Debian package links its
-/// modules from FreeCAD's folder), and where the library was installed. Beside a module
-/// `core.TAG.so` a reader `kProgram.TAG` comes first: builds for several systems lie side by side.
+/// modules from FreeCAD's folder), in libexec of the same prefix, and where the library was
+/// installed. Beside a module `core.TAG.so` a reader `kProgram.TAG` comes first: builds for several
+/// systems lie side by side.
 std::vector<fs::path> places() {
     std::vector<fs::path> found;
     const fs::path object = own_object();
@@ -55,6 +56,8 @@ std::vector<fs::path> places() {
          {object.parent_path(), fs::canonical(object, error).parent_path()}) {
         if (!tag.empty()) found.push_back(folder / (kProgram + tag));
         found.push_back(folder / kProgram);
+        for (const fs::path& prefix : {folder.parent_path(), folder.parent_path().parent_path()})
+            found.push_back(prefix / "libexec" / "beltgrinding" / kProgram);
     }
 #ifdef BELTGRINDING_LIBEXEC
     found.push_back(fs::path(BELTGRINDING_LIBEXEC) / kProgram);

@@ -1107,14 +1107,6 @@
         <translation>Gemessene Fläche</translation>
     </message>
     <message>
-        <source>Choose the file of the start.</source>
-        <translation>Die Datei des Anfangs wählen.</translation>
-    </message>
-    <message>
-        <source>Choose the scan&apos;s file.</source>
-        <translation>Die Datei des Scans wählen.</translation>
-    </message>
-    <message>
         <source>Compare</source>
         <translation>Vergleichen</translation>
     </message>
@@ -1169,10 +1161,6 @@
     <message>
         <source>Start</source>
         <translation>Anfang</translation>
-    </message>
-    <message>
-        <source>The comparison is still running.</source>
-        <translation>Der Vergleich läuft noch.</translation>
     </message>
     <message>
         <source>aligned already</source>
@@ -1233,10 +1221,6 @@
     <message>
         <source>A new belt is on.</source>
         <translation>Ein neues Band ist aufgelegt.</translation>
-    </message>
-    <message>
-        <source>A rigid tool has no force: set the control to position.</source>
-        <translation>Ein starres Werkzeug hat keine Kraft: die Regelung auf Lage stellen.</translation>
     </message>
     <message>
         <source>Add selected</source>
@@ -1369,18 +1353,6 @@
     <message>
         <source>Cell</source>
         <translation>Zelle</translation>
-    </message>
-    <message>
-        <source>Choose the file that `beltgrind surrogate` wrote.</source>
-        <translation>Bitte die Datei wählen, die `beltgrind surrogate` geschrieben hat.</translation>
-    </message>
-    <message>
-        <source>Choose the mesh: an object or a file.</source>
-        <translation>Bitte das Netz wählen: ein Objekt oder eine Datei.</translation>
-    </message>
-    <message>
-        <source>Choose the solid that is the stock.</source>
-        <translation>Bitte den Volumenkörper wählen, der das Rohteil ist.</translation>
     </message>
     <message>
         <source>Choose the table of measured grinds.</source>
@@ -1831,10 +1803,6 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <translation>Querkontraktionszahl</translation>
     </message>
     <message>
-        <source>Poisson&apos;s ratio lies from 0 to 0.499.</source>
-        <translation>Die Querkontraktionszahl liegt zwischen 0 und 0,499.</translation>
-    </message>
-    <message>
         <source>Pose</source>
         <translation>Pose</translation>
     </message>
@@ -1989,14 +1957,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Zuerst Flächen in der 3D-Ansicht auswählen.</translation>
     </message>
     <message>
-        <source>Select one CAM path or robot trajectory in the tree first.</source>
-        <translation>Zuerst eine CAM-Bahn oder Roboterbahn im Baum auswählen.</translation>
-    </message>
-    <message>
-        <source>Select the faces to be ground, or the part, first.</source>
-        <translation>Zuerst die zu schleifenden Flächen oder das Werkstück auswählen.</translation>
-    </message>
-    <message>
         <source>Set the belt speed to {} m/s</source>
         <translation>Bandgeschwindigkeit auf {} m/s setzen</translation>
     </message>
@@ -2093,20 +2053,8 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Tangentialer Bogen</translation>
     </message>
     <message>
-        <source>The belt speed must be positive.</source>
-        <translation>Die Bandgeschwindigkeit muss positiv sein.</translation>
-    </message>
-    <message>
         <source>The lower limit lies above the upper limit.</source>
         <translation>Die untere Grenze liegt über der oberen.</translation>
-    </message>
-    <message>
-        <source>The rim must be thinner than the wheel&apos;s radius.</source>
-        <translation>Der Belag muss dünner sein als der Radius der Scheibe.</translation>
-    </message>
-    <message>
-        <source>The sample spacing must be positive.</source>
-        <translation>Der Abtastabstand muss positiv sein.</translation>
     </message>
     <message>
         <source>The standard colours can be told apart with any colour vision</source>
@@ -2115,14 +2063,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     <message>
         <source>The unit does not fit: {}</source>
         <translation>Die Einheit passt nicht: {}</translation>
-    </message>
-    <message>
-        <source>The wheel&apos;s radius must be positive.</source>
-        <translation>Der Radius der Scheibe muss positiv sein.</translation>
-    </message>
-    <message>
-        <source>The wheel&apos;s width must be positive.</source>
-        <translation>Die Breite der Scheibe muss positiv sein.</translation>
     </message>
     <message>
         <source>This is no number: {}</source>
@@ -2243,10 +2183,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     <message>
         <source>Young&apos;s modulus E in MPa from the Shore A hardness S:</source>
         <translation>E-Modul E in MPa aus der Shore-A-Härte S:</translation>
-    </message>
-    <message>
-        <source>Young&apos;s modulus must be positive.</source>
-        <translation>Der E-Modul muss positiv sein.</translation>
     </message>
     <message>
         <source>Zigzag</source>
@@ -2395,10 +2331,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     <message>
         <source>Robot in base</source>
         <translation>Roboter in Basis</translation>
-    </message>
-    <message>
-        <source>Select the robot path that is to be written.</source>
-        <translation>Bitte die Roboterbahn auswählen, die geschrieben werden soll.</translation>
     </message>
     <message>
         <source>The robot follows the whole program; nothing to report.</source>
@@ -2671,10 +2603,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     <message>
         <source>Speed, as a multiple of the real time</source>
         <translation>Geschwindigkeit, als Vielfaches der Echtzeit</translation>
-    </message>
-    <message>
-        <source>The recording is of another field; simulate again.</source>
-        <translation>Die Aufzeichnung gehört zu einem anderen Feld; erneut simulieren.</translation>
     </message>
     <message>
         <source>There is no result yet.</source>
@@ -3073,10 +3001,6 @@ im Mittel {} abgetragen</translation>
         <translation>Abgetragen {:,.1f} mm³, übrig {:,.1f} mm³, zu tief {:,.1f} mm³</translation>
     </message>
     <message>
-        <source>Row {}: a zone needs a name.</source>
-        <translation>Zeile {}: Eine Zone braucht einen Namen.</translation>
-    </message>
-    <message>
         <source>Share, %</source>
         <translation>Anteil, %</translation>
     </message>
@@ -3197,20 +3121,8 @@ im Mittel {} abgetragen</translation>
         <translation>{:.2f} % in Toleranz, {:.2f} % zu hoch, {:.2f} % zu tief</translation>
     </message>
     <message>
-        <source>{}: &apos;{}&apos; is no number of millimetres.</source>
-        <translation>{}: „{}“ ist keine Zahl von Millimetern.</translation>
-    </message>
-    <message>
-        <source>{}: give both limits, or none.</source>
-        <translation>{}: Geben Sie beide Grenzen an oder keine.</translation>
-    </message>
-    <message>
         <source>{}: thickness</source>
         <translation>{}: Dicke</translation>
-    </message>
-    <message>
-        <source>{}: write the faces&apos; numbers, such as 1 2 5.</source>
-        <translation>{}: Schreiben Sie die Nummern der Flächen, etwa 1 2 5.</translation>
     </message>
     <message>
         <source>All events ({})</source>

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import math
-import re
 import subprocess
 import sys
 import xml.etree.ElementTree as tree
@@ -99,9 +98,9 @@ def test_missed_samples_leave_a_gap(result):
     rows = list(csv.DictReader(io.StringIO(section.csv_text(found))))
     missed = [row for row in rows if row["verdict"] == "missed"]
     assert len(missed) == 3 and all(row["deviation_mm"] == row["sd_mm"] == "" for row in missed)
-    chart = section_plot.plot(found).chart
-    assert len(chart.one("ground").lines) == len(chart.one("stock").lines) == 2
-    assert len(chart.one("design").lines) == 1
+    layers = {layer["key"]: layer for layer in section_plot.plot(found)["layers"]}
+    assert len(layers["ground"]["lines"]) == len(layers["stock"]["lines"]) == 2
+    assert len(layers["design"]["lines"]) == 1
     assert math.isfinite(section.summary(found)["deviation_mm"]["rms"])
     assert "nan" not in section_plot.svg(found)
 
@@ -110,25 +109,17 @@ def test_the_svg_shows_the_curves_where_they_are(result, tmp_path):
     found = section.section(result, (0, 20, 0), (0, 1, 0))
     section.write_svg(found, tmp_path / "section.svg")
     root = tree.fromstring((tmp_path / "section.svg").read_text())
-    groups = {group.get("class"): group for group in root.iter(f"{SVG}g") if group.get("class")}
-    assert set(groups) == {"tolerance", "uncertainty", "design", "stock", "ground"}
+    lines = {line.get("class"): line for line in root.iter(f"{SVG}polyline")}
+    assert set(lines) == {"design", "stock", "ground"}
+    assert {p.get("class") for p in root.iter(f"{SVG}polygon")} == {"tolerance", "uncertainty"}
 
-    def points(name):
-        (path,) = groups[name].iter(f"{SVG}path")
-        numbers = re.findall(r"-?[\d.]+", path.get("d"))
-        return np.array(numbers, dtype=float).reshape(-1, 2)
+    def heights(name):
+        return np.array([float(p.split(",")[1]) for p in lines[name].get("points").split()])
 
     # The stock's 0.2 mm and the design's 0 give the scale; the ground profile follows it.
-    (left, zero), (right, _) = points("design")[[0, -1]]
-    scale = (zero - points("stock")[0, 1]) / 0.2
-    piece, drawn = found["pieces"][0], points("ground")
-    at = (drawn[:, 0] - left) / (right - left) * 60.0
-    expected = np.interp(at, piece["s"], piece["height"])
-    pixel = 1.0 / scale  # lines are simplified by less than a quarter of one
-    np.testing.assert_allclose((zero - drawn[:, 1]) / scale, expected, atol=0.25 * pixel)
-    assert (drawn[[0, -1], 0] == (left, right)).all()
-    limits = (zero - points("tolerance")[:, 1]) / scale
-    np.testing.assert_allclose((limits.min(), limits.max()), found["tolerance"], atol=0.1 * pixel)
+    scale = (heights("design")[0] - heights("stock")[0]) / 0.2
+    ground = (heights("design")[0] - heights("ground")) / scale
+    np.testing.assert_allclose(ground, found["pieces"][0]["height"], atol=0.01 / scale + 1e-3)
     texts = [text.text for text in root.iter(f"{SVG}text")]
     for word in ("arc length, mm", "design", "stock", "ground", "tolerance", "95 % uncertainty"):
         assert word in texts, texts
@@ -137,16 +128,24 @@ def test_the_svg_shows_the_curves_where_they_are(result, tmp_path):
 def test_the_shape_is_true_but_for_enlarged_heights(result):
     found = section.section(result, (0, 20, 0), (0, 1, 0))
     drawn = section_plot.plot(found, "shape", 10.0)
-    (design,), ground = drawn.chart.one("design").lines, drawn.ground[0]
+    layers = {layer["key"]: layer for layer in drawn["layers"]}
+    design, ground = layers["design"]["lines"][0], drawn["ground"][0]
     np.testing.assert_allclose(np.ptp(design, axis=0), [60.0, 0.0], atol=1e-9)
     np.testing.assert_allclose(ground[:, 1], 10.0 * found["pieces"][0]["height"], atol=1e-6)
-    assert drawn.chart.equal and "×10" in drawn.chart.x.label
-    assert section_plot.plot(found, "shape").exaggeration == 20.0  # 0.12 * 60 / 0.2 is 36
+    assert drawn["equal"] and "×10" in drawn["x_label"]
+    assert section_plot.plot(found, "shape")["exaggeration"] == 20.0  # 0.12 * 60 / 0.2 is 36
     tree.fromstring(section_plot.svg(found, "shape"))
     with pytest.raises(InputError, match="exaggeration"):
         section_plot.plot(found, "shape", 0.0)
     with pytest.raises(InputError, match="no mode"):
         section_plot.plot(found, "round")
+
+
+@pytest.mark.parametrize("low, high", [(0.0, 1.0), (-0.05, 0.2), (1e-6, 3e-6), (0.0, 12345.6)])
+def test_ticks_are_round_and_inside(low, high):
+    values, decimals = section_plot.ticks(low, high)
+    assert 3 <= len(values) <= 9 and values[0] >= low - 1e-12 and values[-1] <= high + 1e-9
+    assert all(round(value, decimals) == pytest.approx(value, abs=1e-12) for value in values)
 
 
 def beltgrind(*arguments):

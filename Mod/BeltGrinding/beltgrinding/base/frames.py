@@ -1,14 +1,16 @@
-"""Rigid transforms as 4 x 4 numpy arrays, named a_from_b; mm. Needs nothing but numpy."""
+"""Rigid transforms as 4 x 4 numpy arrays, named a_from_b; mm."""
 
 import math
 
 import numpy as np
 
+from ..engine import InputError
+
 QUATERNION_TOLERANCE = 1e-3  # off unit length by more is a mistake, not rounding
 
 
 def from_quaternion(position, quaternion):
-    """4 x 4 from a position (3,) in mm and a quaternion w, x, y, z. Raises ValueError."""
+    """4 x 4 from a position (3,) in mm and a quaternion w, x, y, z. Raises InputError."""
     position = np.asarray(position, dtype=float).reshape(1, 3)
     return from_quaternions(position, np.asarray(quaternion, dtype=float).reshape(1, 4))[0]
 
@@ -16,7 +18,7 @@ def from_quaternion(position, quaternion):
 def from_quaternions(positions, quaternions):
     """(n, 4, 4) from positions (n, 3) in mm and quaternions (n, 4) w, x, y, z.
 
-    Raises ValueError naming the first pose (from 1) that is not finite or not of unit length.
+    Raises InputError naming the first pose (from 1) that is not finite or not of unit length.
     """
     lengths = np.linalg.norm(quaternions, axis=1)
     finite = np.isfinite(positions).all(axis=1) & np.isfinite(quaternions).all(axis=1)
@@ -24,13 +26,18 @@ def from_quaternions(positions, quaternions):
     wrong = np.flatnonzero(~(finite & unit))
     if len(wrong):
         i = int(wrong[0])
-        which = f"pose {i + 1}: " if len(lengths) > 1 else ""
         if not finite[i]:
-            raise ValueError(f"{which}the pose is not finite; give real numbers")
-        raise ValueError(
-            f"{which}the quaternion has length {lengths[i]:.4g} instead of 1; "
-            "give a unit quaternion w, x, y, z"
-        )
+            error = InputError("frames.not_finite", "the pose is not finite; give real numbers")
+        else:
+            error = InputError(
+                "frames.quaternion",
+                "the quaternion has length {length:.4g} instead of 1; "
+                "give a unit quaternion w, x, y, z",
+                length=lengths[i],
+            )
+        if len(lengths) > 1:
+            error = error.within("frames.at_pose", "pose {pose}: ", pose=i + 1)
+        raise error
     w, x, y, z = (quaternions / lengths[:, None]).T
     frames = np.zeros((len(lengths), 4, 4))
     frames[:, 0, :3] = np.stack(
@@ -106,12 +113,12 @@ def to_abc(frame):
 
 
 def from_data(data):
-    """4 x 4 from a job file's frame; missing (None) is the identity. Raises ValueError."""
+    """4 x 4 from a job file's frame; missing (None) is the identity. Raises InputError."""
     if not data:
         return np.eye(4)
     position = data.get("position_mm", [0, 0, 0])
     if "quaternion_wxyz" in data and "abc_deg" in data:
-        raise ValueError("give quaternion_wxyz or abc_deg, not both")
+        raise InputError("frames.quaternion_and_abc", "give quaternion_wxyz or abc_deg, not both")
     if "abc_deg" in data:
         return from_abc(position, data["abc_deg"])
     return from_quaternion(position, data.get("quaternion_wxyz", [1, 0, 0, 0]))

@@ -14,6 +14,7 @@ from .resources import resources
 POINTS = {"en": ".", "de": ","}
 MINUS = "\N{MINUS SIGN}"
 BODIES = ("body", "other")  # arguments that are bodies of the cell
+PARTS = ("context", "remarks")  # of what is told, before and after it
 
 
 @lru_cache(maxsize=None)
@@ -36,7 +37,9 @@ class _Formatter(string.Formatter):
 
     def format_field(self, value, format_spec):
         text = format(value, format_spec)
-        return text if isinstance(value, str) else decimal(text, self.language)
+        if isinstance(value, str) or self.language == "en":
+            return text
+        return decimal(text, self.language)
 
 
 def word(code, text, language):
@@ -55,15 +58,17 @@ def body(name, language):
 
 def _argument(name, value, language):
     """A value as it is told: a reason may be a fact itself."""
-    if hasattr(value, "code"):
+    if hasattr(value, "code") or isinstance(value, dict):
         return sentence(value, language)
     return body(value, language) if name in BODIES else value
 
 
 def _filled(code, text, arguments, language):
     form = _forms(language).get(code)
+    if not code:
+        return text
     if form is None:
-        return text.format(**arguments) if code else text
+        form, language = text, "en"
     named = {name: _argument(name, value, language) for name, value in arguments.items()}
     return _Formatter(language).vformat(form, (), named)
 
@@ -72,11 +77,38 @@ def sentence(told, language):
     """What a fact, an error or a fact of an event (a dict) says. ``language``: "en" or "de". Of an
     error of another kind, what it says itself."""
     if isinstance(told, dict):
-        return _filled(told["code"], told["text"], told["arguments"], language)
+        parts = [*told.get("context", ()), told, *told.get("remarks", ())]
+        return "".join(_filled(p["code"], p["text"], p["arguments"], language) for p in parts)
     if language == "en" or not hasattr(told, "code"):
         return str(told)
-    parts = [*getattr(told, "context", ()), (told.code, told.text, told.arguments)]
+    parts = [
+        *getattr(told, "context", ()),
+        (told.code, told.text, told.arguments),
+        *getattr(told, "remarks", ()),
+    ]
     return "".join(_filled(*part, language) for part in parts)
+
+
+def fact_data(told):
+    """A fact, or a sentence that is none, as JSON keeps it for ``sentence``: code, text, arguments, and
+    where there are any context and remarks."""
+    if not hasattr(told, "code"):
+        return {"code": "", "text": told, "arguments": {}}
+    return {
+        **_part(told.code, told.text, told.arguments),
+        **{k: [_part(*one) for one in getattr(told, k)] for k in PARTS if getattr(told, k)},
+    }
+
+
+def _part(code, text, arguments):
+    kept = {k: fact_data(v) if hasattr(v, "code") else v for k, v in arguments.items()}
+    return {"code": code, "text": text, "arguments": kept}
+
+
+def warnings(summary, language):
+    """The sentences of a run's warnings, from its summary."""
+    told = summary.get("warning_facts") or summary.get("warnings", [])
+    return [sentence(one, language) for one in told]
 
 
 def kind_text(kind):

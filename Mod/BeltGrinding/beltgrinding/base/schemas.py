@@ -1,12 +1,13 @@
 """JSON files checked by the schemas in Resources/schema, which hold every default."""
 
 import copy
-import difflib
 import json
 import math
 
 from ..engine import InputError
+from .files import cannot_be_read, in_file
 from .resources import resources
+from .schema_errors import explained
 
 
 def schema(name):
@@ -20,24 +21,33 @@ def read_json(path):
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise cannot_be_read(path, error) from None
     try:
         return json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
     except json.JSONDecodeError as error:
-        raise InputError(f"{path}: line {error.lineno}: no JSON: {error.msg}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(
+            "base.no_json",
+            "{file}: line {line}: no JSON: {reason}",
+            file=path,
+            line=error.lineno,
+            reason=error.msg,
+        ) from None
+    except InputError as error:
+        raise in_file(error, path) from None
+    except RecursionError as error:
+        raise in_file(InputError("base.json_too_deep", "{reason}", reason=error), path) from None
+    except ValueError as error:  # such as an integer of more digits than Python takes
+        raise in_file(InputError("base.json_refused", "{reason}", reason=error), path) from None
 
 
 def _refuse_constant(name):
-    raise ValueError(f"{name} is no number that a job can use")
+    raise InputError("base.json_number", "{name} is no number that a job can use", name=name)
 
 
 def _finite(text):
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"{text} is too large a number")
+        raise InputError("base.json_too_large", "{text} is too large a number", text=text[:40])
     return value
 
 
@@ -45,11 +55,13 @@ def checked(data, rules, what):
     """A copy of ``data`` with the schema's defaults filled in. Raises InputError naming the key that
     is unknown, missing or wrong; ``what`` stands for the whole.
     """
-    for _, sentence in problems(data, rules, what):
-        raise InputError(sentence)
+    for _, error in problems(data, rules, what):
+        raise error
     data = filled(data, rules)
     if not all(math.isfinite(value) for value in _numbers(data)):
-        raise InputError(f"the {what} holds a number that is not finite")
+        raise InputError(
+            "base.not_finite", "the {what} holds a number that is not finite", what=what
+        )
     return data
 
 
@@ -63,32 +75,14 @@ def filled(data, rules):
 
 
 def problems(data, rules, what):
-    """(path of keys and indices, sentence naming the key) of everything that breaks the schema, what
+    """(path of keys and indices, InputError naming the key) of everything that breaks the schema, what
     is nearest to the root first; ``what`` stands for the whole.
     """
     import jsonschema
 
     errors = jsonschema.Draft7Validator(rules).iter_errors(data)
     errors = sorted(errors, key=lambda e: (len(e.absolute_path), str(e.absolute_path)))
-    return [(list(error.absolute_path), _explain(error, what)) for error in errors]
-
-
-def _explain(error, what):
-    """One sentence for a jsonschema error, naming the key."""
-    where = ".".join(str(part) for part in error.absolute_path) or what
-    if error.validator == "additionalProperties":
-        known = list(error.schema["properties"])
-        unknown = next(key for key in error.instance if key not in known)
-        near = difflib.get_close_matches(unknown, known, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
-        return f"{where}: unknown key '{unknown}'; {hint}"
-    if error.validator == "required":
-        missing = next(key for key in error.validator_value if key not in error.instance)
-        return f"{where}: the key '{missing}' is missing"
-    if error.validator == "oneOf":
-        keys = " or ".join(f"'{rule['required'][0]}'" for rule in error.validator_value)
-        return f"{where}: give exactly one of {keys}"
-    return f"{where}: {error.message[:200]}"
+    return [(list(error.absolute_path), explained(error, what)) for error in errors]
 
 
 def _fill(value, rule):

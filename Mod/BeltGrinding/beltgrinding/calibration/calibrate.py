@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
-from ..engine import InputError
+from ..base.files import cannot_be_written, write_whole
+from ..engine import InputError, core
 from . import report as calibration_report
 from .law import law_of, predict, worn
 from .model import DEFAULTS, INDEX, Model, correlations
@@ -21,18 +21,19 @@ from .table import Table, from_columns, read
 __all__ = ["fit", "fit_law", "predict", "calibrate_from_scan", "read", "write"]
 
 # What each parameter is the effect of, for messages.
-EFFECT = {
-    "ln_coefficient": "the coefficient",
-    "pressure_exponent": "force",
-    "speed_exponent": "belt speed",
-    "feed_exponent": "feed",
-    "time_exponent": "grind time",
-    "area_exponent": "contact area",
-    "ln_wear_scale": "belt wear",
-    "wear_rest": "the rest of the cut of a worn belt",
-    "pressure_threshold": "the pressure threshold",
-    "ln_saturation": "the saturation pressure",
+EFFECT = {  # of the parameters: code and English form
+    "ln_coefficient": ("calibration.the_coefficient", "the coefficient"),
+    "pressure_exponent": ("calibration.force", "force"),
+    "speed_exponent": ("calibration.belt_speed", "belt speed"),
+    "feed_exponent": ("calibration.feed", "feed"),
+    "time_exponent": ("calibration.grind_time", "grind time"),
+    "area_exponent": ("calibration.contact_area", "contact area"),
+    "ln_wear_scale": ("calibration.belt_wear", "belt wear"),
+    "wear_rest": ("calibration.the_rest", "the rest of the cut of a worn belt"),
+    "pressure_threshold": ("calibration.the_threshold", "the pressure threshold"),
+    "ln_saturation": ("calibration.the_saturation", "the saturation pressure"),
 }
+PRESSURE = ("pressure_exponent", "area_exponent")  # force and area
 LEAST_SPREAD = 0.03  # standard deviation of ln(x) from which x varies at all
 LEAST_GRINDS = 4
 MOST_ERROR = 1.0  # standard error from which an exponent (or ln of a scale) is not determined
@@ -63,9 +64,16 @@ def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0):
     return law_of(model, found, free, wear_unit_J)
 
 
+def _effect(name):
+    return core.Fact(*EFFECT[name])
+
+
 def _check_unit(wear_unit_J):
     if not (math.isfinite(wear_unit_J) and wear_unit_J > 0):
-        raise InputError("the work of one unit of wear must be a positive number of joules")
+        raise InputError(
+            "calibration.wear_unit",
+            "the work of one unit of wear must be a positive number of joules",
+        )
 
 
 def _fitted(data, wheel_diameter_mm):
@@ -77,19 +85,33 @@ def _fitted(data, wheel_diameter_mm):
         table = read(data, wheel_diameter_mm)
     if len(table.measured) < LEAST_GRINDS:
         raise InputError(
-            f"{table.path}: {len(table.measured)} grinds are too few; give at least {LEAST_GRINDS}"
+            "calibration.too_few_rows",
+            "{file}: {count} grinds are too few; give at least {least}",
+            file=table.path,
+            count=len(table.measured),
+            least=LEAST_GRINDS,
         )
     model, warnings = Model(table), []
     free = ["ln_coefficient", *_varied(table, warnings)]
     while len(free) >= len(table.measured) - 1:
-        warnings.append(f"too few grinds to tell the effect of {EFFECT[free[-1]]}; it is fixed")
+        warnings.append(
+            core.Fact(
+                "calibration.too_few_for",
+                "too few grinds to tell the effect of {effect}; it is fixed",
+                effect=_effect(free[-1]),
+            )
+        )
         free.pop()
     _name_inputs(table, warnings)
     free, found = _determined(model, free, warnings)
     free, found = _extended(model, free, found)
     _name_pairs(found, free, warnings)
     if not found["converged"]:
-        warnings.append("the fit has not come to rest: the figures are rough")
+        warnings.append(
+            core.Fact(
+                "calibration.not_at_rest", "the fit has not come to rest: the figures are rough"
+            )
+        )
     return model, found, free, warnings
 
 
@@ -102,12 +124,12 @@ def _name_inputs(table, warnings):
     """Warns of inputs that move together in the data."""
     moving = table.feed > 0
     inputs = {
-        "force": table.force,
-        "belt speed": table.speed,
-        "feed": np.where(moving, table.feed, math.nan),
-        "grind time": np.where(moving, math.nan, table.time),
-        "contact area": table.area,
-        "belt wear": np.where(table.wear > 0, table.wear, math.nan),
+        "pressure_exponent": table.force,
+        "speed_exponent": table.speed,
+        "feed_exponent": np.where(moving, table.feed, math.nan),
+        "time_exponent": np.where(moving, math.nan, table.time),
+        "area_exponent": table.area,
+        "ln_wear_scale": np.where(table.wear > 0, table.wear, math.nan),
     }
     names = [name for name, values in inputs.items() if _spread(values) > LEAST_SPREAD]
     for j, two in enumerate(names):
@@ -117,15 +139,24 @@ def _name_inputs(table, warnings):
             if both.sum() < LEAST_GRINDS or np.ptp(a) == 0 or np.ptp(b) == 0:
                 continue
             correlation = float(np.corrcoef(a, b)[0, 1])
-            if abs(correlation) > MOST_CORRELATION and (one, two) == ("force", "contact area"):
+            if abs(correlation) > MOST_CORRELATION and (one, two) == PRESSURE:
                 warnings.append(  # as they do under any wheel
-                    "force and contact area move together in the data: that the mean pressure says "
-                    "all of the area is an assumption"
+                    core.Fact(
+                        "calibration.force_and_area",
+                        "force and contact area move together in the data: that the mean pressure says "
+                        "all of the area is an assumption",
+                    )
                 )
             elif abs(correlation) > MOST_CORRELATION:
                 warnings.append(
-                    f"{one} and {two} move together in the data (correlation {correlation:+.2f}), "
-                    "which hardly separate their effects; vary them separately"
+                    core.Fact(
+                        "calibration.together",
+                        "{one} and {other} move together in the data (correlation {correlation:+.2f}), "
+                        "which hardly separate their effects; vary them separately",
+                        one=_effect(one),
+                        other=_effect(two),
+                        correlation=correlation,
+                    )
                 )
 
 
@@ -144,8 +175,13 @@ def _varied(table, warnings):
     for name in ("pressure_exponent", "speed_exponent"):
         if name not in names:
             warnings.append(
-                f"the data do not vary {EFFECT[name]}: the {name.replace('_', ' ')} stays "
-                f"{DEFAULTS[name]:g}, an assumption"
+                core.Fact(
+                    "calibration.not_varied",
+                    "the data do not vary {effect}: the {parameter} stays {value:g}, an assumption",
+                    effect=_effect(name),
+                    parameter=name.replace("_", " "),
+                    value=DEFAULTS[name],
+                )
             )
     return names
 
@@ -186,13 +222,29 @@ def _undetermined(model, found, free, warnings):
         if others[other] > MOST_CORRELATION and not at_bound:
             return _inseparable(free[min(j, other)], free[max(j, other)], warnings)
         if name == "ln_wear_scale":
-            warnings.append("the data show no wear of the belt that could be told; it is left out")
+            warnings.append(
+                core.Fact(
+                    "calibration.no_wear",
+                    "the data show no wear of the belt that could be told; it is left out",
+                )
+            )
         else:
             default = DEFAULTS[name]
-            reason = "is at its bound" if at_bound else f"is uncertain by {1.96 * errors[j]:.1f}"
+            reason = core.Fact("calibration.at_bound", "is at its bound")
+            if not at_bound:
+                reason = core.Fact(
+                    "calibration.uncertain", "is uncertain by {by:.1f}", by=1.96 * errors[j]
+                )
             warnings.append(
-                f"the data leave the effect of {EFFECT[name]} undetermined (it {reason}): "
-                f"the {name.replace('_', ' ')} is fixed at {default:g}"
+                core.Fact(
+                    "calibration.undetermined",
+                    "the data leave the effect of {effect} undetermined (it {reason}): the "
+                    "{parameter} is fixed at {value:g}",
+                    effect=_effect(name),
+                    reason=reason,
+                    parameter=name.replace("_", " "),
+                    value=default,
+                )
             )
         return name
     return None
@@ -207,9 +259,15 @@ def _two(free, sizes):
 def _inseparable(one, two, warnings):
     fixed = two if two != "ln_coefficient" else one
     warnings.append(
-        f"{EFFECT[one]} and {EFFECT[two]} move together in the data, which cannot separate their "
-        f"effects: {EFFECT[fixed]} keeps its default and the other carries both; vary them "
-        "separately"
+        core.Fact(
+            "calibration.inseparable",
+            "{one} and {other} move together in the data, which cannot separate their "
+            "effects: {fixed} keeps its default and the other carries both; vary them "
+            "separately",
+            one=_effect(one),
+            other=_effect(two),
+            fixed=_effect(fixed),
+        )
     )
     return fixed
 
@@ -221,8 +279,14 @@ def _name_pairs(found, free, warnings):
         for i in range(1, j):
             if abs(correlation[i, j]) > MOST_CORRELATION:
                 warnings.append(
-                    f"the data hardly separate the effects of {EFFECT[free[i]]} and "
-                    f"{EFFECT[free[j]]} (correlation {correlation[i, j]:+.2f})"
+                    core.Fact(
+                        "calibration.hardly_separate",
+                        "the data hardly separate the effects of {one} and {other} (correlation "
+                        "{correlation:+.2f})",
+                        one=_effect(free[i]),
+                        other=_effect(free[j]),
+                        correlation=correlation[i, j],
+                    )
                 )
 
 
@@ -307,24 +371,42 @@ def _cautions(model, found, wear_unit):
     table, notes = model.table, list(model.table.notes)
     exponent = found["parameters"][INDEX["time_exponent"]]
     if exponent != 1.0:
-        notes.append(
-            f"removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds of "
-            f"about {model.references['time']:g} s; short ones remove less, long ones more"
-            if exponent > 1
-            else f"removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds "
-            f"of about {model.references['time']:g} s"
-        )
+        given = {"exponent": exponent, "seconds": model.references["time"]}
+        if exponent > 1:
+            note = core.Fact(
+                "calibration.faster_with_time",
+                "removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds of "
+                "about {seconds:g} s; short ones remove less, long ones more",
+                **given,
+            )
+        else:
+            note = core.Fact(
+                "calibration.slower_with_time",
+                "removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds of "
+                "about {seconds:g} s",
+                **given,
+            )
+        notes.append(note)
     delta = found["parameters"][INDEX["area_exponent"]]
     if delta != 0.0:
         notes.append(
-            f"the mean pressure does not say all of the contact area: removal has a further factor "
-            f"area^{delta:+.2f}, which the law cannot carry; it holds at about "
-            f"{model.references['area']:g} mm²"
+            core.Fact(
+                "calibration.area_exponent",
+                "the mean pressure does not say all of the contact area: removal has a further "
+                "factor area^{exponent:+.2f}, which the law cannot carry; it holds at about "
+                "{area:g} mm²",
+                exponent=delta,
+                area=model.references["area"],
+            )
         )
     if table.wear_kind == "number" and wear_unit == 1.0 and worn(found):
         notes.append(
-            "the wear number has no unit of its own: the law's wear scale is in that number, where "
-            "a job counts work in J; give the joules of one unit (--wear-unit) before use in a job"
+            core.Fact(
+                "calibration.wear_number",
+                "the wear number has no unit of its own: the law's wear scale is in that number, "
+                "where a job counts work in J; give the joules of one unit (--wear-unit) before "
+                "use in a job",
+            )
         )
     return notes
 
@@ -334,7 +416,7 @@ def write(data, path):
     try:
         write_whole(Path(path), (json.dumps(_plain(data), indent=2) + "\n").encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
 
 
 def _plain(value):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError
 from .model import DEFAULTS, INDEX, NAMES, Model
 from .table import Table, from_columns, read, with_areas
@@ -158,7 +158,7 @@ def write_predictions(found, path):
     try:
         write_whole(Path(path), ("\n".join(lines) + "\n").encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
 
 
 def _with_wear(rows, law, fitted, unit):
@@ -171,8 +171,11 @@ def _with_wear(rows, law, fitted, unit):
     counted = "volume" if law["wear"].get("variable") == "volume" else "work"
     if rows.wear_kind != (kind or counted):
         raise InputError(
-            f"{rows.path}: the law counts the belt's wear as {kind or counted}, the table as "
-            f"{rows.wear_kind}"
+            "calibration.other_wear",
+            "{file}: the law counts the belt's wear as {law}, the table as {table}",
+            file=rows.path,
+            law=kind or counted,
+            table=rows.wear_kind,
         )
     return rows._replace(wear=rows.wear * unit)
 
@@ -183,7 +186,10 @@ def _of_law(law, fitted):
     curves = [key for key in CURVES if law.get(key)]
     wear = law.get("wear", {})
     if (local and curves) or wear.get("model", "none") not in ("none", "exponential"):
-        raise InputError("law: curves and other wear than 'exponential' are not predicted here")
+        raise InputError(
+            "calibration.not_predicted",
+            "law: curves and other wear than 'exponential' are not predicted here",
+        )
     x = dict(DEFAULTS)
     x["ln_coefficient"] = math.log(law["coefficient_mm2_per_N"])
     for name in ("pressure_exponent", "speed_exponent", "feed_exponent"):

@@ -41,15 +41,23 @@ def calibrate_from_scan(
         for values in (measured_deviation, simulated_deviation, removed)
     )
     if not measured.size == simulated.size == removed.size:
-        raise InputError("scan: measured, simulated and removed are of different samples")
+        raise InputError(
+            "calibration.scan_lengths",
+            "scan: measured, simulated and removed are of different samples",
+        )
     if not (math.isfinite(coefficient) and coefficient > 0):
-        raise InputError("scan: the simulation's coefficient must be positive")
+        raise InputError(
+            "calibration.scan_coefficient", "scan: the simulation's coefficient must be positive"
+        )
     good = np.isfinite(measured) & np.isfinite(simulated) & np.isfinite(removed)
     ground = good & (removed > LEAST_DEPTH * np.max(removed, where=good, initial=0.0))
     if ground.sum() < LEAST_SAMPLES:
         raise InputError(
-            f"scan: {int(ground.sum())} samples are both ground and scanned; at least "
-            f"{LEAST_SAMPLES} are needed. Do scan, design and job lie in the same place?"
+            "calibration.scan_too_few",
+            "scan: {count} samples are both ground and scanned; at least {least} are needed. "
+            "Do scan, design and job lie in the same place?",
+            count=int(ground.sum()),
+            least=LEAST_SAMPLES,
         )
     used = good if offset else ground
     blocks = _blocks(points, used, block_mm)
@@ -66,8 +74,9 @@ def calibrate_from_scan(
     scale = float(found[0])
     if scale <= 0:
         raise InputError(
-            "scan: where the simulation grinds, the scan shows no removal; look at its place and "
-            "at the stock"
+            "calibration.scan_without_removal",
+            "scan: where the simulation grinds, the scan shows no removal; look at its place "
+            "and at the stock",
         )
     error = math.sqrt(covariance[0, 0]) / scale
     shift = float(found[1]) if offset else 0.0
@@ -98,8 +107,9 @@ def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
     if scan is None:
         if not len(field.measured):
             raise InputError(
-                "the result has no measured heights: give a scan that lies where the design does, or "
-                "align one first by 'beltgrind scan'"
+                "calibration.no_measured_heights",
+                "the result has no measured heights: give a scan that lies where the design "
+                "does, or align one first by 'beltgrind scan'",
             )
         measured = np.array(field.measured, dtype=float)
     else:
@@ -138,7 +148,10 @@ def _blocks(points, used, size):
         return np.arange(count) // max(1, math.isqrt(count))
     places = np.asarray(points, dtype=float)
     if places.shape != (used.size, 3) or not size > 0:
-        raise InputError("scan: points must be (n, 3) mm, and the blocks' size positive")
+        raise InputError(
+            "calibration.scan_points",
+            "scan: points must be (n, 3) mm, and the blocks' size positive",
+        )
     cells = np.floor(np.nan_to_num(places[used]) / size)
     return np.unique(cells, axis=0, return_inverse=True)[1].ravel()
 

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact import single_contact as contacts
-from ..engine import InputError
+from ..base.files import cannot_be_read
+from ..engine import InputError, core
 
 NOMINAL_DIAMETER = 200.0  # mm, of a drive wheel whose diameter is not known
 NOMINAL_PRESSURE = 0.1  # MPa, mean of the grinds whose contact area nobody knows
@@ -110,11 +111,14 @@ def _split(path):
     """(names, rows of texts, their line numbers)."""
     try:
         if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path}: this is too large for a table of measured grinds")
+            raise InputError(
+                "calibration.table_too_large",
+                "{file}: this is too large for a table of measured grinds",
+                file=path,
+            )
         content = path.read_bytes()
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise cannot_be_read(path, error) from None
     encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     text = content.decode(encoding, errors="replace").replace("\0", "\ufffd")
     numbered = [
@@ -131,8 +135,11 @@ def _split(path):
                 header = names
             elif not line.startswith("#"):
                 raise InputError(
-                    f"{path}: line {number}: this is no header; name the columns in the first "
-                    "line, such as force_N, belt_speed_m_s, time_s, area_mm2, removed_volume_mm3"
+                    "calibration.no_header",
+                    "{file}: line {line}: this is no header; name the columns in the first line, "
+                    "such as force_N, belt_speed_m_s, time_s, area_mm2, removed_volume_mm3",
+                    file=path,
+                    line=number,
                 )
             continue
         if line.startswith("#"):
@@ -140,22 +147,40 @@ def _split(path):
         try:
             cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
         except (csv.Error, StopIteration) as error:
-            raise InputError(f"{path}: line {number}: {error}") from None
+            raise InputError(
+                "calibration.no_row",
+                "{file}: line {line}: {reason}",
+                file=path,
+                line=number,
+                reason=error,
+            ) from None
         while len(cells) > len(header) and not cells[-1]:
             cells.pop()
         if len(cells) != len(header):
             hint = ""
             if separator == "," and len(cells) > len(header):
-                hint = "; with a decimal comma, separate the columns by ';'"
+                hint = core.Fact(
+                    "calibration.decimal_comma",
+                    "; with a decimal comma, separate the columns by ';'",
+                )
             raise InputError(
-                f"{path}: line {number}: {len(cells)} columns where the header has "
-                f"{len(header)}{hint}"
+                "calibration.columns",
+                "{file}: line {line}: {count} columns where the header has {expected}{hint}",
+                file=path,
+                line=number,
+                count=len(cells),
+                expected=len(header),
+                hint=hint,
             )
         rows.append(cells)
         lines.append(number)
     if header is None or not rows:
-        what = "a header" if header is None else "a row of measured grinds"
-        raise InputError(f"{path}: there is not even {what} in it")
+        what = core.Fact("calibration.a_header", "a header")
+        if header is not None:
+            what = core.Fact("calibration.a_row", "a row of measured grinds")
+        raise InputError(
+            "calibration.empty", "{file}: there is not even {what} in it", file=path, what=what
+        )
     return header, rows, lines
 
 
@@ -176,20 +201,42 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
         canonical = known[0] if known else None
         if canonical is None:
             near = difflib.get_close_matches(name.lower(), [c.lower() for c in COLUMNS], 1)
-            hint = f" (did you mean '{near[0]}'?)" if near else ""
-            notes.append(f"the column '{name[:40]}' is not known and left out{hint}")
+            hint = ""
+            if near:
+                hint = core.Fact("calibration.near", " (did you mean '{name}'?)", name=near[0])
+            notes.append(
+                core.Fact(
+                    "calibration.unknown_column",
+                    "the column '{column}' is not known and left out{hint}",
+                    column=name[:40],
+                    hint=hint,
+                )
+            )
         elif canonical in raw:
-            raise InputError(f"{path}: '{given[canonical]}' and '{name}' are the same column")
+            raise InputError(
+                "calibration.same_column",
+                "{file}: '{first}' and '{second}' are the same column",
+                file=path,
+                first=given[canonical],
+                second=name,
+            )
         else:
             raw[canonical], given[canonical], factor[canonical] = list(values), name, known[1]
     count = len(next(iter(raw.values()), ()))
     if count == 0:
-        raise InputError(f"{path}: there is no grind in it")
+        raise InputError("calibration.no_grind", "{file}: there is no grind in it", file=path)
     for name, values in raw.items():
         if len(values) != count:
-            raise InputError(f"{path}: '{given[name]}' has {len(values)} values, others {count}")
+            raise InputError(
+                "calibration.column_length",
+                "{file}: '{column}' has {count} values, others {expected}",
+                file=path,
+                column=given[name],
+                count=len(values),
+                expected=count,
+            )
     lines = np.arange(1, count + 1) if lines is None else np.asarray(lines)
-    places = [f"{path}: line {line}" for line in lines]
+    places = [{"file": path, "line": line} for line in lines]
     if not measured:
         for name in ("removed_volume_mm3", "depth_mm"):
             raw[name] = [1.0 if _unknown(cell) else cell for cell in raw.get(name, [])] or None
@@ -199,15 +246,27 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
         * factor[name]
         for name, cells in raw.items()
     }
-    _require(c, path, ("force_N",), "the normal force")
+    _require(c, path, ("force_N",), core.Fact("calibration.the_force", "the normal force"))
     speed = _speed(c, path, wheel_diameter_mm, notes)
     time, feed, spread, figure = _exposure(c, path, lines, measured)
     area = _area(c, notes)
     kinds = [name for name in WEAR if name in c]
     if len(kinds) > 1:
-        notes.append(f"the belt's wear is taken from '{kinds[0]}', not from {', '.join(kinds[1:])}")
+        notes.append(
+            core.Fact(
+                "calibration.wear_column",
+                "the belt's wear is taken from '{column}', not from {others}",
+                column=kinds[0],
+                others=", ".join(kinds[1:]),
+            )
+        )
     if measured and "removed_volume_mm3" in c and "depth_mm" in c:
-        notes.append("the removal is taken from 'removed_volume_mm3', not from 'depth_mm'")
+        notes.append(
+            core.Fact(
+                "calibration.removal_column",
+                "the removal is taken from 'removed_volume_mm3', not from 'depth_mm'",
+            )
+        )
     table = Table(
         path=path,
         lines=lines,
@@ -234,7 +293,12 @@ def _number(cell, place, shown, name):
     if _unknown(cell):
         if name in MAY_BE_UNKNOWN:
             return math.nan
-        raise InputError(f"{place}: column '{shown}' is empty; fill it in, or take the line out")
+        raise InputError(
+            "calibration.empty_cell",
+            "{file}: line {line}: column '{column}' is empty; fill it in, or take the line out",
+            **place,
+            column=shown,
+        )
     text = str(cell).strip()
     if isinstance(cell, str) and "," in text:
         # A decimal comma; with points as well, the last of the two divides the decimals.
@@ -244,42 +308,85 @@ def _number(cell, place, shown, name):
         value = float(text)
     except ValueError:
         raise InputError(
-            f"{place}: column '{shown}': '{text[:40]}' is no number; write it without a unit"
+            "calibration.no_number",
+            "{file}: line {line}: column '{column}': '{text}' is no number; write it without a unit",
+            **place,
+            column=shown,
+            text=text[:40],
         ) from None
     if not math.isfinite(value) or value < 0 or (value == 0 and name not in MAY_BE_ZERO):
-        least = "zero or positive" if name in MAY_BE_ZERO else "positive"
-        raise InputError(f"{place}: column '{shown}' is {text[:40]}; it must be {least}")
+        given = {**place, "column": shown, "text": text[:40]}
+        if name in MAY_BE_ZERO:
+            raise InputError(
+                "calibration.cell_negative",
+                "{file}: line {line}: column '{column}' is {text}; it must be zero or positive",
+                **given,
+            )
+        raise InputError(
+            "calibration.cell_not_positive",
+            "{file}: line {line}: column '{column}' is {text}; it must be positive",
+            **given,
+        )
     if not 1e-12 < max(value, 1e-11) < 1e15:
-        raise InputError(f"{place}: column '{shown}' is {text[:40]}; look at its unit")
+        raise InputError(
+            "calibration.improbable",
+            "{file}: line {line}: column '{column}' is {text}; look at its unit",
+            **place,
+            column=shown,
+            text=text[:40],
+        )
     return value
 
 
 def _require(c, path, names, what):
     if not any(name in c for name in names):
-        raise InputError(f"{path}: {what} is missing; add a column {' or '.join(names)}")
+        raise InputError(
+            "calibration.no_column",
+            "{file}: {what} is missing; add a column {columns}",
+            file=path,
+            what=what,
+            columns=" or ".join(names),
+        )
 
 
 def _speed(c, path, diameter, notes):
     """Belt speed, m/s."""
-    _require(c, path, ("belt_speed_m_s", "rpm"), "the belt's speed")
+    _require(
+        c, path, ("belt_speed_m_s", "rpm"), core.Fact("calibration.the_speed", "the belt's speed")
+    )
     if "belt_speed_m_s" in c:
         return c["belt_speed_m_s"]
     if diameter is None:
         diameter = NOMINAL_DIAMETER
         notes.append(
-            f"only the rotation speed is known: the coefficient and the reference speed refer to a "
-            f"nominal drive wheel of {diameter:g} mm diameter; give --wheel-diameter if you know it"
+            core.Fact(
+                "calibration.nominal_wheel",
+                "only the rotation speed is known: the coefficient and the reference speed refer "
+                "to a nominal drive wheel of {diameter:g} mm diameter; give --wheel-diameter if "
+                "you know it",
+                diameter=diameter,
+            )
         )
     elif not (math.isfinite(diameter) and diameter > 0):
-        raise InputError("the drive wheel's diameter must be positive")
+        raise InputError("calibration.drive_wheel", "the drive wheel's diameter must be positive")
     return math.pi * diameter / 1000.0 * c["rpm"] / 60.0
 
 
 def _exposure(c, path, lines, needed):
     """(time s, feed mm/s or 0, spread mm2, measured figure)."""
-    _require(c, path, ("time_s", "feed_mm_s"), "the time of grinding, or the feed of the pass,")
+    _require(
+        c,
+        path,
+        ("time_s", "feed_mm_s"),
+        core.Fact("calibration.the_time", "the time of grinding, or the feed of the pass,"),
+    )
     if needed:
-        _require(c, path, ("removed_volume_mm3", "depth_mm"), "the measured removal")
+        _require(
+            c,
+            path,
+            ("removed_volume_mm3", "depth_mm"),
+            core.Fact("calibration.the_removal", "the measured removal"),
+        )
     count = len(c["force_N"])
     unknown = np.full(count, math.nan)
     feed = np.nan_to_num(c.get("feed_mm_s", np.zeros(count)))
@@ -294,16 +401,40 @@ def _exposure(c, path, lines, needed):
     if not volume:
         spread = np.where(moving, width, math.nan)
         time = np.where(moving, 1.0 / np.maximum(feed, 1e-12), time)  # per mm of the pass
-        _complete(width, moving, path, lines, "contact_width_mm, over which a pass removes it,")
-    _complete(time, ~moving, path, lines, "time_s of a grind without feed")
-    _complete(time, moving, path, lines, "length_mm, on which the volume of a pass depends,")
+        _complete(
+            width,
+            moving,
+            path,
+            lines,
+            core.Fact("calibration.the_width", "contact_width_mm, over which a pass removes it,"),
+        )
+    _complete(
+        time,
+        ~moving,
+        path,
+        lines,
+        core.Fact("calibration.time_without_feed", "time_s of a grind without feed"),
+    )
+    _complete(
+        time,
+        moving,
+        path,
+        lines,
+        core.Fact("calibration.the_length", "length_mm, on which the volume of a pass depends,"),
+    )
     return time * c.get("passes", np.ones(count)), feed, spread, figure
 
 
 def _complete(values, where, path, lines, what):
     bad = np.flatnonzero(where & np.isnan(values))
     if len(bad):
-        raise InputError(f"{path}: line {lines[bad[0]]}: {what} is missing; add it")
+        raise InputError(
+            "calibration.cell_missing",
+            "{file}: line {line}: {what} is missing; add it",
+            file=path,
+            line=lines[bad[0]],
+            what=what,
+        )
 
 
 def _area(c, notes):
@@ -320,10 +451,22 @@ def _area(c, notes):
                     solved[key] = _solve(key)
                 area[i] = solved[key]
         if solved:
-            notes.append(f"{len(solved)} contact areas are computed from the wheel and the part")
+            notes.append(
+                core.Fact(
+                    "calibration.areas_computed",
+                    "{count} contact areas are computed from the wheel and the part",
+                    count=len(solved),
+                )
+            )
     elif any(name in c for name in WHEEL):
         missing = [name for name in WHEEL if name not in c]
-        notes.append(f"the wheel gives no contact area without {', '.join(missing)}")
+        notes.append(
+            core.Fact(
+                "calibration.wheel_lacks",
+                "the wheel gives no contact area without {columns}",
+                columns=", ".join(missing),
+            )
+        )
     return area
 
 
@@ -333,14 +476,24 @@ def with_areas(table):
     if unknown.all():
         nominal = float(np.exp(np.log(table.force).mean())) / NOMINAL_PRESSURE
         table.notes.append(
-            f"no contact area is known: {nominal:.3g} mm² is taken for all, so that the "
-            "coefficient holds for that area only; add area_mm2, or the wheel's and part's geometry"
+            core.Fact(
+                "calibration.nominal_area",
+                "no contact area is known: {area:.3g} mm² is taken for all, so that the "
+                "coefficient holds for that area only; add area_mm2, or the wheel's and part's "
+                "geometry",
+                area=nominal,
+            )
         )
         return table._replace(area=np.full(len(unknown), nominal))
     if unknown.any():
         table.notes.append(
-            f"{int(unknown.sum())} of {len(unknown)} contact areas are unknown; each is taken as "
-            "one of the known ones, by its probability (expectation maximisation)"
+            core.Fact(
+                "calibration.areas_unknown",
+                "{unknown} of {count} contact areas are unknown; each is taken as one of the "
+                "known ones, by its probability (expectation maximisation)",
+                unknown=int(unknown.sum()),
+                count=len(unknown),
+            )
         )
     return table
 

@@ -27,21 +27,32 @@ def check(job, shape, paths, warnings, context=None):
     if not job["cell"]["check_collisions"]:
         return []
     if not shape.valid:  # OpenCASCADE's mesher may never end on its faults
-        warnings.append("collisions are not checked: the part is not a valid shape; repair it")
+        warnings.append(
+            core.Fact(
+                "cell.collisions_not_checked",
+                "collisions are not checked: the part is not a valid shape; repair it",
+            )
+        )
         return []
     context = context or core.RunContext()
     found = bodies(job, shape, warnings, context)
     for body in found:
         if not np.isfinite(body["mesh"].vertices).all():
-            raise InputError(f"cell: the body '{body['name']}' is too large; check its sizes")
+            raise InputError(
+                "cell.body_too_large",
+                "cell: the body '{body}' is too large; check its sizes",
+                body=body["name"],
+            )
     clearance = float(job["cell"]["clearance_mm"])
     results = []
     for i, path in enumerate(paths):
         part = context.part(i / len(paths), (i + 1) / len(paths))
         if not path.duration() < LONGEST:
             raise InputError(
-                f"{program_name(job, i)}: the program takes {path.duration():.3g} s, too long to be "
-                "checked for collisions; check its poses and feeds"
+                "cell.program_too_long",
+                "{program}: the program takes {seconds:.3g} s, too long to be checked for collisions; check its poses and feeds",
+                program=program_name(job, i),
+                seconds=path.duration(),
             )
         results.append(core.check_collisions(path, found, clearance, context=part))
     return results
@@ -71,12 +82,15 @@ def read_body(body, name, warnings, context=None):
 
     try:
         placement = frames.from_data(body.get("placement"))
-    except ValueError as error:
-        raise InputError(f"{name}: placement: {error}") from None
+    except InputError as error:
+        raise error.within("cell.placement", "{body}: placement: ", body=name) from None
     if "file" in body and Path(body["file"]).suffix.lower() in MESH_SUFFIXES:
         return core.read_mesh(body["file"], body["unit_mm"], placement)
     shape = read_shape(body, name, context)
-    warnings += [f"{name}: {text}" for text in shape.warnings()]
+    warnings += [
+        core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=text)
+        for text in shape.warnings()
+    ]
     mesh = _triangulate(shape, context)
     points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
     return core.TriangleMesh(points.astype(np.float32), mesh.triangles)

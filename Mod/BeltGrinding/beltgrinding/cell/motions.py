@@ -10,6 +10,7 @@ import io
 
 import numpy as np
 
+from ..base.files import cannot_be_read
 from ..engine import InputError
 
 FILE = "motions.csv"
@@ -51,10 +52,16 @@ def read(path):
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     except ValueError as error:
-        raise InputError(f"{path}: no table of motions: {error}") from None
+        raise InputError(
+            "cell.no_motions", "{file}: no table of motions: {reason}", file=path, reason=error
+        ) from None
     if not np.isfinite(rows).all():
-        raise InputError(f"{path}: no table of motions: a number is not finite")
+        raise InputError(
+            "cell.motions_not_finite",
+            "{file}: no table of motions: a number is not finite",
+            file=path,
+        )
     numbers = {name: rows[:, i].astype(int) for i, name in enumerate(COLUMNS[:3])}
     return {**numbers, "point": rows[:, 3:]}

@@ -29,7 +29,11 @@ def reach(path, robot, max_travel_mm=1.0, max_angle_deg=1.0, context=None):
     """
     robot = checked({"preset": robot} if isinstance(robot, str) else robot)
     if not given(robot):
-        raise InputError("robot: give a preset or a model; without one its reach is not known")
+        raise InputError(
+            "cell.no_robot",
+            "{key}: give a preset or a model; without one its reach is not known",
+            key="robot",
+        )
     options = {
         "base_from_robot": robot_frame(robot, "base_from_robot"),
         "flange_from_tcp": robot_frame(robot, "flange_from_tcp"),

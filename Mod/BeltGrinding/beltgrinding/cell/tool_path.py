@@ -22,4 +22,4 @@ def tool_path(job, index, warnings, count=None):
             **arrays, holding=job["cell"]["holding"], **cell, time_law=time_law(job["simulation"])
         )
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise error.within("job.in_program", "{program}: ", program=where) from None

@@ -1,6 +1,7 @@
 """The command line: ``python3 -m beltgrinding run job.json -o out/``.
 
-Exit status: 0 success, 2 wrong input (one line on standard error), 130 interrupted.
+Exit status: 0 success, 2 wrong input (one line on standard error), 130 interrupted. How scripts read the
+errors: docs/job-file.md.
 """
 
 import argparse
@@ -8,17 +9,52 @@ import json
 import sys
 
 from . import calibrate, grind, inspect, lists, measure, press, program, report
+from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
 TOPICS = (grind, press, program, calibrate, inspect, measure, report, lists)
 
 
+JSON_ERRORS = "--json-errors"
+
+
+class _Parser(argparse.ArgumentParser):
+    """Takes ``--json-errors`` before and after the command; its own errors are JSON then, too."""
+
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        self.add_argument(
+            JSON_ERRORS,
+            action="store_true",
+            default=argparse.SUPPRESS,
+            help="an error as one line of JSON: its code, message, culprit and arguments",
+        )
+        self.as_json = False
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.as_json = JSON_ERRORS in (sys.argv[1:] if args is None else args)
+        return super().parse_known_args(args, namespace)
+
+    def error(self, message):
+        if not self.as_json:
+            super().error(message)
+        data = {"code": "cli.usage", "message": f"{self.prog}: {message}", "culprit": {}}
+        data.update(arguments={"reason": message}, context=[], remarks=[])
+        self.exit(2, json.dumps({"error": data}) + "\n")
+
+
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="beltgrind", description="Simulates robotic belt grinding without FreeCAD."
     )
     parser.add_argument("--version", action="store_true", help="print versions and exit")
+    parser.add_argument(
+        "--language",
+        choices=LANGUAGES,
+        dest="message_language",
+        help="of errors and warnings (default: that of the locale, else en)",
+    )
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
     for topic in TOPICS:
         topic.add(commands)
@@ -29,6 +65,8 @@ def main(argv=None):
     """Runs the command line; returns the exit status."""
     parser = _parser()
     arguments = parser.parse_args(argv)
+    messages = Messages(arguments.message_language, getattr(arguments, "json_errors", False))
+    arguments.messages = messages
     try:
         from ..engine import Cancelled, InputError, core
     except ImportError as error:
@@ -43,12 +81,14 @@ def main(argv=None):
         else:
             arguments.do(arguments)
     except InputError as error:
-        print("beltgrind: " + " ".join(str(error).split()), file=sys.stderr)
+        messages.print_error(error)
         return 2
     except (KeyboardInterrupt, Cancelled):
-        print("beltgrind: interrupted; nothing was written", file=sys.stderr)
+        messages.print_error(InputError("cli.interrupted", "interrupted; nothing was written"))
         return 130
     except MemoryError:
-        print("beltgrind: out of memory; enlarge sampling.spacing_mm", file=sys.stderr)
+        messages.print_error(
+            InputError("cli.out_of_memory", "out of memory; enlarge sampling.spacing_mm")
+        )
         return 2
     return 0

@@ -1,7 +1,6 @@
 """Fitting the removal law to what was measured, and predicting by it."""
 
 import json
-import sys
 from pathlib import Path
 
 
@@ -52,8 +51,7 @@ def _calibrate(arguments):
     if arguments.report:
         calibration.write(report, arguments.report)
     calibration.write(result["law"], arguments.output)
-    for warning in report["warnings"]:
-        print(f"warning: {warning}", file=sys.stderr)
+    arguments.messages.print_warnings(report["warnings"])
     print(calibration_report.text(report))
 
 
@@ -77,6 +75,5 @@ def _predict(arguments):
     found = calibration_law.compare(law, arguments.table, arguments.wheel_diameter)
     if arguments.output:
         calibration_law.write_predictions(found, arguments.output)
-    for note in found["notes"]:
-        print(f"warning: {note}", file=sys.stderr)
+    arguments.messages.print_warnings(found["notes"])
     print(json.dumps(found["figures"]))

@@ -1,6 +1,5 @@
 """Grinding a job."""
 
-import sys
 from pathlib import Path
 
 from . import background
@@ -28,21 +27,20 @@ def _run(arguments):
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
-        _report(result, arguments.output)
+        _report(result, arguments)
 
 
-def _report(result, output):
+def _report(result, arguments):
     from ..inspection import verdict
 
     summary = result.summary
-    for warning in summary["warnings"]:
-        print(f"warning: {warning}", file=sys.stderr)
+    arguments.messages.print_warnings(summary["warnings"])
     deviation = summary["deviation_mm"]
     print(
         f"{summary['samples']} samples, {summary['steps']} steps, "
         f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
         f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "
         f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "
-        f"results in {output}"
+        f"results in {arguments.output}"
     )
     print(verdict.text(result.verdict))

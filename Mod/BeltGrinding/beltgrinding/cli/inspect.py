@@ -38,7 +38,7 @@ def add(commands):
 
 
 def _verdict(arguments):
-    from ..engine import InputError
+    from ..base.files import cannot_be_written
     from ..inspection import verdict
     from ..job import load as job
     from ..simulation.result import Result
@@ -53,7 +53,7 @@ def _verdict(arguments):
     try:
         result.write_verdict(path)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
     print(verdict.text(result.verdict))
 
 
@@ -66,13 +66,17 @@ def _section(arguments):
     by_line = (arguments.start, arguments.end)
     for path in arguments.output:
         if Path(path).suffix.lower() not in (".csv", ".svg"):
-            raise InputError(f"{path}: a section is written as .csv or .svg")
+            raise InputError(
+                "cli.section_suffix", "{file}: a section is written as .csv or .svg", file=path
+            )
     if all(by_plane) and not any(by_line):
         found = section.section(Result.read(arguments.result), *by_plane)
     elif all(by_line) and not any(by_plane):
         found = section.between(Result.read(arguments.result), *by_line)
     else:
-        raise InputError("section: give --point and --normal, or --from and --to")
+        raise InputError(
+            "cli.section_of_what", "section: give --point and --normal, or --from and --to"
+        )
     for path in arguments.output:
         if Path(path).suffix.lower() == ".svg":
             section.write_svg(found, path, arguments.mode, arguments.exaggeration)

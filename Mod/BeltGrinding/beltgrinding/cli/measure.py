@@ -1,7 +1,6 @@
 """A result for other measuring programs, and what these measured: ``beltgrind mesh`` and ``scan``."""
 
 import json
-import sys
 
 from . import background
 
@@ -52,8 +51,7 @@ def _mesh(arguments):
         ),
         quiet=True,
     )
-    for warning in found.pop("warnings"):
-        print(f"warning: {warning}", file=sys.stderr)
+    arguments.messages.print_warnings(found.pop("warnings"))
     print(json.dumps(found))
 
 
@@ -82,6 +80,5 @@ def _scan(arguments):
         quiet=True,
     )
     scan.write(result, figures, arguments.result)
-    for warning in figures["warnings"]:
-        print(f"warning: {warning}", file=sys.stderr)
+    arguments.messages.print_warnings(figures["warnings"])
     print(json.dumps(figures))

@@ -59,7 +59,9 @@ def _surrogate(arguments):
     from ..job import surrogate_file
 
     if (arguments.contact is None) == (arguments.train_on is None):
-        raise InputError("give either a contact.json or --train-on with a database")
+        raise InputError(
+            "cli.contact_or_database", "give either a contact.json or --train-on with a database"
+        )
 
     def tell(done, count):
         print(f"\r{done} of {count} contacts", end="", file=sys.stderr, flush=True)

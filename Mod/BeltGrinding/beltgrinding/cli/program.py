@@ -1,7 +1,6 @@
 """Robot programs: read, changed, converted, laid out, reached."""
 
 import json
-import sys
 from pathlib import Path
 
 from . import background
@@ -38,7 +37,7 @@ def add(commands):
 
 
 def _program(arguments):
-    from ..base.files import write_whole
+    from ..base.files import cannot_be_written, write_whole
     from ..engine import InputError
     from ..programs import table
     from ..programs.patch.patch import patch
@@ -50,9 +49,16 @@ def _program(arguments):
     if action not in counts:
         action, files = "read", arguments.program
     if len(files) != counts.get(action, 1):
-        raise InputError(f"program {action}: {len(files)} files; see beltgrind program --help")
+        raise InputError(
+            "cli.program_files",
+            "program {action}: {count} files; see beltgrind program --help",
+            action=action,
+            count=len(files),
+        )
     if action != "read" and not arguments.output:
-        raise InputError(f"program {action}: say by -o what file to write")
+        raise InputError(
+            "cli.program_output", "program {action}: say by -o what file to write", action=action
+        )
     try:
         if action == "write":
             changed = patch(*files, arguments.output)
@@ -64,23 +70,28 @@ def _program(arguments):
         elif arguments.output:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
-        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(arguments.output, error) from None
     print(json.dumps(table.summary(program), indent=2))
 
 
 def _raster(arguments):
     from ..base import schemas
+    from ..base.files import cannot_be_written
     from ..engine import InputError
     from ..programs.writers.writer import write_program
     from ..raster import raster_path as raster
 
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
     if not isinstance(settings, dict):
-        raise InputError(f"{arguments.settings}: the settings are no object of keys")
+        raise InputError(
+            "cli.settings_no_object",
+            "{file}: the settings are no object of keys",
+            file=arguments.settings,
+        )
     for one in arguments.set:
         key, equals, value = one.partition("=")
         if not equals:
-            raise InputError(f"--set {one}: write KEY=VALUE")
+            raise InputError("cli.set_without_value", "--set {given}: write KEY=VALUE", given=one)
         try:
             settings[key] = json.loads(value)
         except ValueError:
@@ -90,14 +101,13 @@ def _raster(arguments):
     try:
         write_program(arguments.output, None, raster.program(found))
     except OSError as error:
-        raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
-    for warning in found["warnings"]:
-        print(f"warning: {warning}", file=sys.stderr)
+        raise cannot_be_written(arguments.output, error) from None
+    arguments.messages.print_warnings(found["warnings"])
     print(json.dumps(raster.summary(found)))
 
 
 def _reach(arguments):
-    from ..base.files import write_whole
+    from ..base.files import cannot_be_written, write_whole
     from ..cell import events as event_lists, reach, tool_path as tool_paths
     from ..engine import InputError
     from ..job import load as jobs
@@ -105,7 +115,12 @@ def _reach(arguments):
 
     given = jobs.load(arguments.job)
     if not robots.given(given["robot"]):
-        raise InputError(f"{arguments.job}: the job names no robot; give it the key 'robot'")
+        raise InputError(
+            "cli.no_robot",
+            "{file}: the job names no robot; give it the key '{key}'",
+            file=arguments.job,
+            key="robot",
+        )
     warnings = []
     paths = [tool_paths.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
     found = reach.job_reach(given, paths)
@@ -114,9 +129,8 @@ def _reach(arguments):
         try:
             write_whole(Path(arguments.output), text.encode())
         except OSError as error:
-            raise InputError(f"{arguments.output}: cannot be written: {error.strerror}") from None
-    for warning in warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+            raise cannot_be_written(arguments.output, error) from None
+    arguments.messages.print_warnings(warnings)
     begins = [sum(path.duration() for path in paths[:i]) for i in range(len(paths))]
     events = event_lists.merge([(i, begins[i], one["events"]) for i, one in enumerate(found)])
     print(json.dumps({**reach.summary(given["robot"], found), "events": events}, indent=2))

@@ -1,6 +1,5 @@
 """Telling others of a result: the report; and how sure its settings make it."""
 
-import sys
 
 from . import background
 
@@ -42,8 +41,7 @@ def _converge(arguments):
     result = background.run(lambda context: convergence.converge(given, context), arguments.quiet)
     result.write(arguments.output)
     if not arguments.quiet:
-        for note in result.convergence["notes"]:
-            print(f"warning: {note}", file=sys.stderr)
+        arguments.messages.print_warnings(result.convergence["notes"])
         print(" ".join(convergence_section.sentences(result.convergence, language.Language())))
 
 

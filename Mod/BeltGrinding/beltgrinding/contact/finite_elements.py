@@ -31,7 +31,10 @@ def solve(contact, rim, keep=None):
     """
     program = shutil.which("ccx")
     if program is None:
-        raise InputError("CalculiX (ccx) is not installed; Debian's package is calculix-ccx")
+        raise InputError(
+            "contact.no_calculix",
+            "CalculiX (ccx) is not installed; Debian's package is calculix-ccx",
+        )
     with tempfile.TemporaryDirectory(prefix="beltgrinding-") as scratch:
         folder = Path(keep or scratch)
         folder.mkdir(parents=True, exist_ok=True)
@@ -48,12 +51,20 @@ def solve(contact, rim, keep=None):
                 timeout=TIME_LIMIT,
             )
         except subprocess.TimeoutExpired:
-            raise InputError(f"CalculiX took more than {TIME_LIMIT} s; use coarser cells") from None
+            raise InputError(
+                "contact.calculix_too_slow",
+                "CalculiX took more than {limit} s; use coarser cells",
+                limit=TIME_LIMIT,
+            ) from None
         seconds = time.perf_counter() - start
         forces = _read_forces(folder / "contact.dat", mesh)
         if forces is None:
             tail = " ".join(done.stdout.split()[-30:])
-            raise InputError(f"CalculiX did not solve the contact: {tail}")
+            raise InputError(
+                "contact.calculix_failed",
+                "CalculiX did not solve the contact: {reason}",
+                reason=tail,
+            )
     corners = forces / mesh.areas
     return {
         "force": float(forces.sum()),

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import schemas
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, either, in_file, write_whole
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
 from ..job import engine_input
@@ -22,7 +22,7 @@ def load(path):
     try:
         return validate(schemas.read_json(path), path.resolve().parent)
     except InputError as error:
-        raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
+        raise in_file(error, path) from None
 
 
 def validate(contact, folder="."):
@@ -31,19 +31,39 @@ def validate(contact, folder="."):
     """
     contact = schemas.checked(contact, schemas.schema("contact"), "contact")
     if ("force_N" in contact) == ("approach_mm" in contact):
-        raise InputError("contact: give exactly one of 'force_N' or 'approach_mm'")
+        raise InputError(
+            "base.exactly_one",
+            "{key}: give exactly one of {choices}",
+            key="contact",
+            choices=either("force_N", "approach_mm"),
+        )
     wheel, workpiece = contact["wheel"], contact["workpiece"]
     if "shore_a" in wheel and "youngs_modulus_MPa" in wheel:
-        raise InputError("wheel: give 'youngs_modulus_MPa' or 'shore_a', not both")
+        raise InputError(
+            "contact.modulus_and_hardness",
+            "{key}: give 'youngs_modulus_MPa' or 'shore_a', not both",
+            key="wheel",
+        )
     modulus(wheel)  # refuses a hardness for which there is no formula
     if workpiece["shape"] in ("cylinder", "sphere") and not workpiece.get("radius_mm"):
-        raise InputError(f"workpiece: a {workpiece['shape']} needs a 'radius_mm' other than 0")
+        raise InputError(
+            "contact.no_radius",
+            "{key}: a {shape} needs a 'radius_mm' other than 0",
+            key="workpiece",
+            shape=workpiece["shape"],
+        )
     if workpiece["shape"] == "strip" and "width_mm" not in workpiece:
-        raise InputError("workpiece: a strip needs a 'width_mm'")
+        raise InputError(
+            "contact.no_strip_width", "{key}: a strip needs a 'width_mm'", key="workpiece"
+        )
     if contact["surrogate_file"]:
         contact["surrogate_file"] = str(Path(folder, contact["surrogate_file"]).resolve())
     elif contact["model"] == "surrogate":
-        raise InputError("contact: a surrogate needs the key 'surrogate_file'")
+        raise InputError(
+            "job.no_surrogate_file",
+            "{key}: a surrogate needs the key 'surrogate_file'",
+            key="contact",
+        )
     return contact
 
 
@@ -93,11 +113,21 @@ def at_pose(job, pose, program=1, context=None):
     Raises InputError, Cancelled.
     """
     if not 1 <= program <= len(job["programs"]):
-        raise InputError(f"there is no program {program}; the job has {len(job['programs'])}")
+        raise InputError(
+            "contact.no_such_program",
+            "there is no program {program}; the job has {count}",
+            program=program,
+            count=len(job["programs"]),
+        )
     warnings = []
     path = tool_paths.tool_path(job, program - 1, warnings)
     if not 1 <= pose <= len(path):
-        raise InputError(f"there is no pose {pose}; the program has {len(path)}")
+        raise InputError(
+            "contact.no_such_pose",
+            "there is no pose {pose}; the program has {count}",
+            pose=pose,
+            count=len(path),
+        )
     context = context or core.RunContext()
     field = make_field(job, read_design(job["design"], context), warnings, context)
     apply_stock(field, job["stock"], warnings, context)
@@ -121,7 +151,9 @@ def rim_of(wheel_radius_mm, elasticity):
     compliance. Raises InputError for a rim of several rubbers.
     """
     if elasticity.get("layers"):
-        raise InputError("the finite-element reference knows rims of one rubber only")
+        raise InputError(
+            "contact.reference_layers", "the finite-element reference knows rims of one rubber only"
+        )
     return {
         "radius": float(wheel_radius_mm),
         "thickness": float(elasticity["rim_thickness_mm"]),
@@ -173,4 +205,4 @@ def write_csv(result, path, reference=None):
     try:
         write_whole(Path(path), "\n".join(lines).encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None

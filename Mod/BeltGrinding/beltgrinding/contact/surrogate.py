@@ -22,7 +22,10 @@ GAMMA = 0.9  # over the number of features
 def wheel_of(contact):
     """The wheel of a validated contact, as a surrogate's file names it."""
     if contact["wheel"]["profile_mm"]:
-        raise InputError("a surrogate knows no profiled wheels; leave 'profile_mm' out")
+        raise InputError(
+            "contact.surrogate_profile",
+            "a surrogate knows no profiled wheels; leave 'profile_mm' out",
+        )
     wheel = {**contact["wheel"], "youngs_modulus_MPa": contacts.modulus(contact["wheel"])}
     return {key: float(wheel[key]) for key in WHEEL}
 
@@ -92,9 +95,15 @@ def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None
     ``tell(done, count)`` hears of progress. Returns a database (see docs/contact.md).
     """
     if "force_N" not in contact:
-        raise InputError("contact: a database of contacts needs 'force_N'")
+        raise InputError(
+            "contact.database_force", "{key}: a database of contacts needs 'force_N'", key="contact"
+        )
     if count < LEAST_CONTACTS:
-        raise InputError(f"a database needs at least {LEAST_CONTACTS} contacts")
+        raise InputError(
+            "contact.database_too_small",
+            "a database needs at least {least} contacts",
+            least=LEAST_CONTACTS,
+        )
     wheel, ds = wheel_of(contact), float(contact["spacing_mm"])
     shape, elasticity = _core_wheel(wheel), {**_core_compliance(wheel), "model": "wheel_rim"}
     random, rows, start = np.random.default_rng(seed), [], time.perf_counter()
@@ -103,8 +112,9 @@ def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None
         tried += 1
         if tried > 10 * count:
             raise InputError(
-                "nine of ten random contacts reach beyond the grid or do not converge: "
-                "lower 'force_N'"
+                "contact.database_out_of_reach",
+                "nine of ten random contacts reach beyond the grid or do not converge: lower "
+                "'force_N'",
             )
         gap, coverage = random_gap(random, wheel, ds)
         force = contact["force_N"] * np.exp(random.uniform(np.log(0.2), np.log(2.0)))
@@ -138,7 +148,7 @@ def _finite_elements(reference, solved, rim):
     try:
         return reference.solve(solved, rim)
     except InputError as error:
-        if "did not solve" in str(error):  # rather another contact than none
+        if error.code == "contact.calculix_failed":  # rather another contact than none
             return None
         raise
 

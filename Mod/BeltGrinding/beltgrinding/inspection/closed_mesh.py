@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from ..job import workpiece
 from ..job.tolerances import colour_scale
@@ -43,7 +43,12 @@ def file_bytes(mesh, suffix, scale=None):
     if suffix == ".ply":
         return mesh.ply(scale)
     if suffix != ".3mf":
-        raise InputError(f"a mesh is written as {', '.join(SUFFIXES)}, not as '{suffix}'")
+        raise InputError(
+            "inspection.mesh_suffix",
+            "a mesh is written as {suffixes}, not as '{suffix}'",
+            suffixes=", ".join(SUFFIXES),
+            suffix=suffix,
+        )
     return mesh.three_mf(scale)
 
 
@@ -54,14 +59,19 @@ def write(mesh, path, scale=None):
     try:
         write_whole(path, data)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
 
 
 def export(result, path, ground=True, deflection_mm=DEFLECTION, context=None):
     """``ground_mesh`` into a file; returns its ``summary``."""
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"{path}: a mesh is written as {', '.join(SUFFIXES)}")
+        raise InputError(
+            "inspection.mesh_file_suffix",
+            "{file}: a mesh is written as {suffixes}",
+            file=path,
+            suffixes=", ".join(SUFFIXES),
+        )
     mesh = ground_mesh(result, ground, deflection_mm, context)
     write(mesh, path, colour_scale(result.job))
     return summary(mesh)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from . import section_plot
 
@@ -74,7 +74,12 @@ def _vector(values, name):
     except (TypeError, ValueError):
         vector = []
     if len(vector) != 3 or not all(math.isfinite(value) for value in vector):
-        raise InputError(f"section: {name} '{values}': write three numbers x,y,z")
+        raise InputError(
+            "inspection.section_vector",
+            "section: {name} '{given}': write three numbers x,y,z",
+            name=name,
+            given=values,
+        )
     return vector
 
 
@@ -148,4 +153,4 @@ def _write(path, text):
     try:
         write_whole(Path(path), text.encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None

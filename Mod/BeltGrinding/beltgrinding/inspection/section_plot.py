@@ -1,16 +1,14 @@
-"""What a section looks like on paper: a chart of curves and bands, and an SVG of it.
+"""What a section looks like on paper: curves and bands in millimetres, and an SVG of them.
 
 Two modes: ``unrolled`` plots heights over the arc length, the design being the zero line; ``shape``
 shows the true outline in the plane, the heights enlarged by a factor (``exaggeration``).
 """
 
 import math
-from typing import NamedTuple
+from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..charts import svg as drawing
-from ..charts.model import BLUE, INK, ORANGE, PAPER, Axis, Band, Chart, Line, Panel, Sheet, Text
 from ..engine import InputError
 
 UNROLLED, SHAPE = "unrolled", "shape"
@@ -20,11 +18,11 @@ SURE = 1.96  # standard deviations: 95 % of a normal distribution
 LOOKS = {
     "tolerance": ("tolerance", "#c3d3c3", 0.0, ()),
     "uncertainty": ("95 % uncertainty", "#a9c4e4", 0.0, ()),
-    "design": ("design", INK, 1.1, (5, 3)),
-    "stock": ("stock", ORANGE, 1.4, (2, 2)),
-    "ground": ("ground", BLUE, 2.0, ()),
+    "design": ("design", "#40454d", 1.1, (5, 3)),
+    "stock": ("stock", "#d1701f", 1.4, (2, 2)),
+    "ground": ("ground", "#1f5a96", 2.0, ()),
 }
-WIDTH, HEIGHT, TALLEST = 960, 440, 900  # points of the SVG
+WIDTH, HEIGHT, TALLEST = 960, 440, 900  # pixels of the SVG
 LEFT, RIGHT, TOP, BOTTOM = 74, 18, 58, 50  # its margins
 
 
@@ -58,25 +56,27 @@ def auto_exaggeration(section):
     return max(step * power for step in (1, 2, 5) if step * power <= max(wanted, 1.0))
 
 
-class Plot(NamedTuple):
-    """A section's chart in mm, its ``mode`` and ``exaggeration``; ``ground``: one (n, 2) array a piece,
-    NaN where not known. The chart's series have the keys of ``LOOKS``.
-    """
-
-    mode: str
-    exaggeration: float
-    ground: list
-    chart: Chart
-
-
 def plot(section, mode=UNROLLED, exaggeration=None):
-    """The ``Plot`` of a section. Raises InputError for an unknown mode or a factor that is none."""
+    """The plot of a section as plain data, mm.
+
+    Returns a dict: ``mode``, ``exaggeration``, ``equal`` (whether both axes have one scale),
+    ``x_label``, ``y_label``, ``bounds`` (x0, y0, x1, y1), ``layers``: in drawing order dicts of
+    ``key`` and ``label``, ``colour``, ``width``, ``dash`` and ``lines`` or, of a band,
+    ``polygons``: lists of (n, 2) arrays; ``ground``: one (n, 2) array a piece, NaN where not known.
+    Raises InputError for an unknown mode or a factor that is none.
+    """
     if mode not in (UNROLLED, SHAPE):
-        raise InputError(f"section: no mode '{mode}'; choose {UNROLLED} or {SHAPE}")
+        raise InputError(
+            "inspection.section_mode",
+            "section: no mode '{mode}'; choose {first} or {second}",
+            mode=mode,
+            first=UNROLLED,
+            second=SHAPE,
+        )
     if exaggeration is None:
         exaggeration = auto_exaggeration(section) if mode == SHAPE else 1.0
     if not (math.isfinite(exaggeration) and exaggeration > 0):
-        raise InputError("section: the exaggeration is a factor above 0")
+        raise InputError("inspection.exaggeration", "section: the exaggeration is a factor above 0")
     axes = axes_of(section)
 
     def place(piece, height):
@@ -100,22 +100,25 @@ def plot(section, mode=UNROLLED, exaggeration=None):
             known = ~np.isnan(low[:, 0] + low[:, 1])
             for a, b in _spans(known):
                 lines["uncertainty"].append(_between(low[a:b], high[a:b]))
-    series = []
+    layers = []
     for key, (label, colour, width, dash) in LOOKS.items():
-        if lines[key] and width:
-            series.append(Line(lines[key], colour, width, dash, key, label))
-        elif lines[key]:
-            series.append(Band(lines[key], colour, 0.7, key, label))
+        if lines[key]:
+            layer = {"key": key, "label": label, "colour": colour, "width": width, "dash": dash}
+            layers.append({**layer, "lines" if width else "polygons": lines[key]})
     every = np.vstack([line for group in lines.values() for line in group])
-    (x0, y0), (x1, y1) = every.min(axis=0).tolist(), every.max(axis=0).tolist()
+    (x0, y0), (x1, y1) = every.min(axis=0), every.max(axis=0)
     margin = 0.06 * max(y1 - y0, 1e-3)
     by = "" if exaggeration == 1.0 else f" (heights ×{exaggeration:g})"
-    x_label, y_label = "arc length, mm", "height above the design, mm"
-    if mode == SHAPE:
-        x_label, y_label = f"in the plane, mm{by}", "mm"
-    x = Axis(x0, x1, x_label, count=9, gap=33)
-    y = Axis(y0 - margin, y1 + margin, y_label, count=7, gap=LEFT - 16)
-    return Plot(mode, exaggeration, ground, Chart(x, y, series, equal=mode == SHAPE))
+    return {
+        "mode": mode,
+        "exaggeration": exaggeration,
+        "equal": mode == SHAPE,
+        "x_label": "arc length, mm" if mode == UNROLLED else f"in the plane, mm{by}",
+        "y_label": "height above the design, mm" if mode == UNROLLED else "mm",
+        "bounds": (float(x0), float(y0 - margin), float(x1), float(y1 + margin)),
+        "layers": layers,
+        "ground": ground,
+    }
 
 
 def _between(low, high):
@@ -133,6 +136,16 @@ def _runs(line):
     return [line[a:b] for a, b in _spans(~np.isnan(line).any(axis=1))]
 
 
+def ticks(low, high, count=8):
+    """Round values from ``low`` to ``high``, about ``count``, and the decimals that they need."""
+    span = max(high - low, 1e-12)
+    power = 10.0 ** math.floor(math.log10(span / count))
+    step = next(k * power for k in (1, 2, 5, 10) if k * power >= 0.999 * span / count)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    decimals = max(0, -math.floor(math.log10(step) + 1e-9))
+    return [k * step for k in range(first, last + 1)], decimals
+
+
 def title(section):
     """The section's plane in words."""
 
@@ -142,17 +155,84 @@ def title(section):
     return f"Section at ({three(section['point'])}) mm, normal ({three(section['normal'])})"
 
 
-def sheet(section, mode=UNROLLED, exaggeration=None):
-    """The plot on a sheet of its own, with a title and a legend."""
-    chart = plot(section, mode, exaggeration).chart
-    width, height = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
-    if chart.equal:  # as high as the outline needs it
-        height = min(max(height, chart.y.span * width / max(chart.x.span, 1e-9)), TALLEST)
-    panel = Panel(chart, LEFT, TOP, width, height, legend=True)
-    texts = [Text(LEFT, 20, title(section), size=14)]
-    return Sheet("section", WIDTH, round(TOP + height + BOTTOM), [panel], texts, paper=PAPER)
-
-
 def svg(section, mode=UNROLLED, exaggeration=None):
-    """The plot as the text of an SVG file."""
-    return drawing.svg(sheet(section, mode, exaggeration), label=title(section))
+    """The plot as the text of an SVG file, with axes in millimetres and a legend."""
+    drawn = plot(section, mode, exaggeration)
+    x0, y0, x1, y1 = drawn["bounds"]
+    width, height = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
+    scale_x, scale_y = width / max(x1 - x0, 1e-9), height / max(y1 - y0, 1e-9)
+    if drawn["equal"]:
+        height = min(max(height, (y1 - y0) * scale_x), TALLEST)
+        scale_x = scale_y = min(scale_x, height / max(y1 - y0, 1e-9))
+        x0 -= 0.5 * (width / scale_x - (x1 - x0))
+        y0 -= 0.5 * (height / scale_y - (y1 - y0))
+        x1, y1 = x0 + width / scale_x, y0 + height / scale_y
+
+    def at(points):
+        x = LEFT + (points[:, 0] - x0) * scale_x
+        y = TOP + height - (points[:, 1] - y0) * scale_y
+        return " ".join(f"{a:.2f},{b:.2f}" for a, b in zip(x, y))
+
+    whole = TOP + height + BOTTOM
+    out = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{whole:.0f}" '
+        f'viewBox="0 0 {WIDTH} {whole:.0f}" font-family="sans-serif" font-size="12">',
+        f'<rect width="{WIDTH}" height="{whole:.0f}" fill="white"/>',
+        f'<text x="{LEFT}" y="20" font-size="14">{escape(title(section))}</text>',
+    ]
+    for value, label in _labels(x0, x1, 9):
+        x = LEFT + (value - x0) * scale_x
+        out.append(_line(x, TOP, x, TOP + height))
+        out.append(_text(x, TOP + height + 17, label, "middle"))
+    for value, label in _labels(y0, y1, 7):
+        y = TOP + height - (value - y0) * scale_y
+        out.append(_line(LEFT, y, LEFT + width, y))
+        out.append(_text(LEFT - 6, y + 4, label, "end"))
+    for layer in drawn["layers"]:
+        for polygon in layer.get("polygons", ()):
+            out.append(
+                f'<polygon class="{layer["key"]}" points="{at(polygon)}" '
+                f'fill="{layer["colour"]}" fill-opacity="0.7"/>'
+            )
+        for line in layer.get("lines", ()):
+            out.append(
+                f'<polyline class="{layer["key"]}" points="{at(line)}" fill="none" {_pen(layer)} '
+                'stroke-linejoin="round"/>'
+            )
+    out.append(
+        f'<rect x="{LEFT}" y="{TOP}" width="{width}" height="{height:.1f}" fill="none" '
+        'stroke="#6b7078"/>'
+    )
+    out.append(_text(LEFT + width / 2, whole - 12, drawn["x_label"], "middle"))
+    middle = TOP + height / 2
+    out.append(
+        f'<text transform="translate(18 {middle:.1f}) rotate(-90)" text-anchor="middle">'
+        f'{escape(drawn["y_label"])}</text>'
+    )
+    x = LEFT
+    for layer in drawn["layers"]:
+        if "polygons" in layer:
+            out.append(f'<rect x="{x}" y="34" width="26" height="11" fill="{layer["colour"]}"/>')
+        else:
+            out.append(f'<path d="M{x} 40h26" fill="none" {_pen(layer)}/>')
+        out.append(_text(x + 32, 44, layer["label"], "start"))
+        x += 54 + 7 * len(layer["label"])
+    return "\n".join([*out, "</svg>", ""])
+
+
+def _labels(low, high, count):
+    values, decimals = ticks(low, high, count)
+    return [(value, f"{value + 0.0:.{decimals}f}") for value in values]
+
+
+def _line(x0, y0, x1, y1):
+    return f'<path d="M{x0:.2f} {y0:.2f}L{x1:.2f} {y1:.2f}" stroke="#e3e5e8"/>'
+
+
+def _text(x, y, text, anchor):
+    return f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
+
+
+def _pen(layer):
+    dash = f' stroke-dasharray="{" ".join(map(str, layer["dash"]))}"' if layer["dash"] else ""
+    return f'stroke="{layer["colour"]}" stroke-width="{layer["width"]}"{dash}'

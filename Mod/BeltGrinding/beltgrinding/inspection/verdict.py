@@ -153,7 +153,9 @@ def _read_motions(job, notes):
     try:
         paths = [tool_paths.tool_path(job, i, problems) for i in range(len(job["programs"]))]
     except InputError as error:
-        notes.append(f"the motions are not known: {error}")
+        notes.append(
+            core.Fact("inspection.no_motions", "the motions are not known: {reason}", reason=error)
+        )
         return None, None
     counted = len(problems) + sum(program.get("unresolved", 0) for program in job["programs"])
     return ways.of_paths(paths), counted
@@ -260,13 +262,20 @@ def _programs(job, motions):
 
 
 def _empty(zone, spacing):
-    text = f"zone '{zone['name']}' holds no sample"
-    if "edge_radius_mm" in zone:
-        text += (
-            f": its faces have no convex edge with a radius below {zone['edge_radius_mm']:g} mm that "
-            f"samples {spacing:g} mm apart could tell"
+    if "edge_radius_mm" not in zone:
+        return core.Fact(
+            "inspection.empty_zone",
+            "zone '{name}' holds no sample, or later zones override all of it",
+            name=zone["name"],
         )
-    return text + ", or later zones override all of it"
+    return core.Fact(
+        "inspection.empty_edge_zone",
+        "zone '{name}' holds no sample: its faces have no convex edge with a radius below "
+        "{radius:g} mm that samples {spacing:g} mm apart could tell, or later zones override all of it",
+        name=zone["name"],
+        radius=zone["edge_radius_mm"],
+        spacing=spacing,
+    )
 
 
 def _waviness(field, motions, context):
@@ -321,7 +330,13 @@ def _other_faces(job, field, shape, notes, context):
         if others:
             return core.triangulate(shape, DEFLECTION, context, faces=others)
     except InputError as error:
-        notes.append(f"thickness: only between ground faces, since the design fails: {error}")
+        notes.append(
+            core.Fact(
+                "inspection.thickness_of_ground",
+                "thickness: only between ground faces, since the design fails: {reason}",
+                reason=error,
+            )
+        )
     return core.TriangleMesh(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.uint32))
 
 

@@ -1,5 +1,6 @@
 """The bodies of a job's cell, ``cell.bodies`` of job.schema.json, and the names that every cell has."""
 
+from ..base.files import either
 from ..engine import InputError
 
 RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
@@ -10,7 +11,17 @@ def validate(bodies):
     names = list(RESERVED)
     for i, body in enumerate(bodies):
         if ("file" in body) == ("brep" in body):
-            raise InputError(f"cell.bodies.{i}: give exactly one of 'file' or 'brep'")
+            raise InputError(
+                "base.exactly_one",
+                "{key}: give exactly one of {choices}",
+                key=f"cell.bodies.{i}",
+                choices=either("file", "brep"),
+            )
         if body["name"] in names:
-            raise InputError(f"cell.bodies.{i}: the name '{body['name']}' is taken; give another")
+            raise InputError(
+                "job.body_name_taken",
+                "{key}: the name '{name}' is taken; give another",
+                key=f"cell.bodies.{i}",
+                name=body["name"],
+            )
         names.append(body["name"])

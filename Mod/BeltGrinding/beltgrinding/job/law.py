@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import schemas
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, in_file, write_whole
 from ..engine import InputError, core
 
 # Keys of a job's law, the engine's names, and the engine's unit of the job's 1.
@@ -78,7 +78,7 @@ def read_belt(path):
     try:
         return schemas.checked(schemas.read_json(Path(path)), rule, "belt")
     except InputError as error:
-        raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
+        raise in_file(error, path) from None
 
 
 def write_belt(path, belt):
@@ -87,7 +87,7 @@ def write_belt(path, belt):
     try:
         write_whole(Path(path), (json.dumps(state, indent=2) + "\n").encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
 
 
 def shifted_laws(law):
@@ -116,8 +116,12 @@ def _steps(calibration):
     covariance = np.array(calibration.get("covariance", []), dtype=float)
     if covariance.size != len(names) ** 2:
         raise InputError(
-            f"law.calibration: the covariance has {covariance.size} numbers; {len(names)} "
-            f"parameters need {len(names) ** 2}"
+            "job.covariance_size",
+            "{key}: the covariance has {count} numbers; {parameters} parameters need {needed}",
+            key="law.calibration",
+            count=covariance.size,
+            parameters=len(names),
+            needed=len(names) ** 2,
         )
     steps = [{COEFFICIENT: float(calibration.get("scatter", 0.0))}]
     # Of wear and other parameters the engine is told nothing: the rest's own covariance.
@@ -126,7 +130,11 @@ def _steps(calibration):
         covariance = covariance.reshape(len(names), len(names))[np.ix_(known, known)]
         variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
         if variances.min() < -1e-9 * max(1.0, variances.max()):
-            raise InputError("law.calibration: the covariance is not positive definite")
+            raise InputError(
+                "job.covariance_not_definite",
+                "{key}: the covariance is not positive definite",
+                key="law.calibration",
+            )
         for variance, axis in zip(variances, axes.T):
             by = math.sqrt(max(variance, 0.0)) * axis
             steps.append({names[i]: float(value) for i, value in zip(known, by)})

@@ -6,6 +6,7 @@ The format is Resources/schema/job.schema.json; every default stands there and n
 from pathlib import Path
 
 from ..base import schemas
+from ..base.files import in_file
 from ..engine import InputError
 from ..presets import robot as robots
 from . import bodies as job_bodies
@@ -24,7 +25,7 @@ def load(path):
     try:
         return validate(job, path.resolve().parent)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise in_file(error, path) from None
 
 
 def validate(job, folder="."):
@@ -40,16 +41,30 @@ def validate(job, folder="."):
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = str(Path(folder, compliance["surrogate_file"]).resolve())
     elif compliance["model"] == "surrogate":
-        raise InputError("belt_machine.compliance: a surrogate needs the key 'surrogate_file'")
+        raise InputError(
+            "job.no_surrogate_file",
+            "{key}: a surrogate needs the key 'surrogate_file'",
+            key="belt_machine.compliance",
+        )
     stock = job["stock"]
     if stock["kind"] == "mesh" and "file" not in stock:
-        raise InputError("stock: a mesh stock needs the key 'file'")
+        raise InputError(
+            "job.no_mesh_file", "{key}: a mesh stock needs the key 'file'", key="stock"
+        )
     if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
-        raise InputError("stock: a solid stock needs exactly one of 'file' or 'brep'")
+        raise InputError(
+            "job.no_solid",
+            "{key}: a solid stock needs exactly one of 'file' or 'brep'",
+            key="stock",
+        )
     job_bodies.validate(job["cell"]["bodies"])
     robots.validate(job["robot"])
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
-        raise InputError("inspection.tolerance_mm: the lower limit lies above the upper one")
+        raise InputError(
+            "job.limits_swapped",
+            "{key}: the lower limit lies above the upper one",
+            key="inspection.tolerance_mm",
+        )
     check_zones(job["inspection"]["zones"], job["design"]["faces"])
     return job

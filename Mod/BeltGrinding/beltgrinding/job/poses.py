@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..base import frames
-from ..engine import InputError
+from ..engine import InputError, core
 
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
 
@@ -46,8 +46,8 @@ def listed_poses(poses, where):
     ).reshape(-1, 7)
     try:
         matrices = frames.from_quaternions(values[:, :3], values[:, 3:])
-    except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
+    except InputError as error:
+        raise error.within("job.in_program", "{program}: ", program=where) from None
     return {
         "frames": matrices,
         "feeds": np.array([p.get("feed_mm_s", DEFAULT_FEED) for p in poses], dtype=float),
@@ -74,9 +74,15 @@ def program_arrays(program, where, warnings, pose_of=None):
     warnings += problems
     count = len(arrays["frames"])
     if count < 2:
+        first = (
+            core.Fact("job.first_problem", " ({problem})", problem=problems[0]) if problems else ""
+        )
         raise InputError(
-            f"{where}: the program has {count} Cartesian targets; two at least make a path"
-            + (f" ({problems[0]})" if problems else "")
+            "job.too_few_targets",
+            "{program}: the program has {count} Cartesian targets; two at least make a path{problem}",
+            program=where,
+            count=count,
+            problem=first,
         )
     if "force_N" in program:
         arrays["forces"] = np.full(count, float(program["force_N"]))

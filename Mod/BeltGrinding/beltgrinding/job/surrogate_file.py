@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_read, cannot_be_written, write_whole
 from ..engine import InputError
 
 LEAST_CONTACTS = 20
@@ -33,13 +33,22 @@ def arguments(path, wheel):
     """
     surrogate, digest = load(path)
     if wheel["profile_mm"]:
-        raise InputError(f"{path}: a surrogate knows no profiled wheels; choose another model")
+        raise InputError(
+            "job.surrogate_profile",
+            "{file}: a surrogate knows no profiled wheels; choose another model",
+            file=path,
+        )
     for key in WHEEL:
         trained, asked = surrogate["wheel"][key], float(wheel[key])
         if not np.isclose(trained, asked, rtol=1e-6, atol=1e-9):
             raise InputError(
-                f"{path}: this surrogate was trained for a wheel with {key} = {trained:g}, not "
-                f"{asked:g}; train another one (beltgrind surrogate)"
+                "job.surrogate_of_other_wheel",
+                "{file}: this surrogate was trained for a wheel with {key} = {trained:g}, not "
+                "{asked:g}; train another one (beltgrind surrogate)",
+                file=path,
+                key=key,
+                trained=trained,
+                asked=asked,
             )
     error = surrogate["report"].get("held_out_L1_mean", float("nan"))
     name = (
@@ -71,7 +80,9 @@ def load(path):
     _check_wheel(path, about)
     for key in ("rho", "gamma", "scale", "cell"):
         if arrays[key].ndim != 0:
-            raise InputError(f"{path}: '{key}' is no single number")
+            raise InputError(
+                "job.archive_no_number", "{file}: '{key}' is no single number", file=path, key=key
+            )
         arrays[key] = float(arrays[key])
     report = about.get("report")
     surrogate = {
@@ -98,11 +109,27 @@ def load_database(path):
             arrays[key].ndim != dimensions
             or arrays[key].shape != shape[: 3 if dimensions == 3 else dimensions]
         ):
-            raise InputError(f"{path}: '{key}' has the shape {arrays[key].shape}")
+            raise InputError(
+                "job.archive_shape",
+                "{file}: '{key}' has the shape {shape}",
+                file=path,
+                key=key,
+                shape=arrays[key].shape,
+            )
         if key != "gap" and not np.isfinite(arrays[key]).all():
-            raise InputError(f"{path}: '{key}' holds a value that is not finite")
+            raise InputError(
+                "job.archive_not_finite",
+                "{file}: '{key}' holds a value that is not finite",
+                file=path,
+                key=key,
+            )
     if len(arrays["force"]) < LEAST_CONTACTS:
-        raise InputError(f"{path}: a database needs at least {LEAST_CONTACTS} contacts")
+        raise InputError(
+            "job.database_too_small",
+            "{file}: a database needs at least {least} contacts",
+            file=path,
+            least=LEAST_CONTACTS,
+        )
     return {
         **arrays,
         "wheel": about["wheel"],
@@ -116,7 +143,12 @@ def _check_wheel(path, about):
     if not isinstance(wheel, dict) or not all(
         isinstance(wheel.get(key), (int, float)) for key in WHEEL
     ):
-        raise InputError(f"{path}: 'about' does not say the wheel: {', '.join(WHEEL)}")
+        raise InputError(
+            "job.archive_no_wheel",
+            "{file}: 'about' does not say the wheel: {keys}",
+            file=path,
+            keys=", ".join(WHEEL),
+        )
 
 
 def _write(path, arrays, about):
@@ -125,7 +157,7 @@ def _write(path, arrays, about):
     try:
         write_whole(Path(path), buffer.getvalue())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
 
 
 def _read(path, names):
@@ -136,13 +168,23 @@ def _read(path, names):
             arrays = {name: np.array(archive[name]) for name in names}
             about = json.loads(str(archive["about"]))
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise cannot_be_read(path, error) from None
     except KeyError as error:
-        raise InputError(f"{path}: {error.args[0]}") from None
+        raise InputError(
+            "job.archive_lacks", "{file}: {reason}", file=path, reason=error.args[0]
+        ) from None
     except (ValueError, zipfile.BadZipFile, EOFError, AttributeError, NotImplementedError):
-        raise InputError(f"{path}: this is no archive of a surrogate or of its database") from None
+        raise InputError(
+            "job.no_archive",
+            "{file}: this is no archive of a surrogate or of its database",
+            file=path,
+        ) from None
     if not all(array.dtype.kind in "fiu" for array in arrays.values()) or not isinstance(
         about, dict
     ):
-        raise InputError(f"{path}: this is no archive of a surrogate or of its database")
+        raise InputError(
+            "job.no_archive",
+            "{file}: this is no archive of a surrogate or of its database",
+            file=path,
+        )
     return content, {name: array.astype(float) for name, array in arrays.items()}, about

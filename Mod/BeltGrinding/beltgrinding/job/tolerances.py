@@ -18,19 +18,41 @@ def check_zones(zones, faces):
     """
     ground, names = set(faces), set()
     for i, zone in enumerate(zones):
-        where = f"inspection.zones[{i}] '{zone['name']}'"
+        where = f"inspection.zones[{i}]"
         if zone["name"] in names:
-            raise InputError(f"{where}: another zone has this name already; give it another")
+            raise InputError(
+                "job.zone_name_taken",
+                "{key} '{name}': another zone has this name already; give it another",
+                key=where,
+                name=zone["name"],
+            )
         names.add(zone["name"])
         for key in ("tolerance_mm", "thickness_mm"):
             lower, upper = zone.get(key, (0.0, 0.0))
             if lower > upper:
-                raise InputError(f"{where}.{key}: the lower limit lies above the upper one")
+                raise InputError(
+                    "job.zone_limits_swapped",
+                    "{key} '{name}'.{limits}: the lower limit lies above the upper one",
+                    key=where,
+                    name=zone["name"],
+                    limits=key,
+                )
         if "tolerance_mm" not in zone and "thickness_mm" not in zone:
-            raise InputError(f"{where}: give it the key 'tolerance_mm', 'thickness_mm' or both")
+            raise InputError(
+                "job.zone_without_limits",
+                "{key} '{name}': give it the key 'tolerance_mm', 'thickness_mm' or both",
+                key=where,
+                name=zone["name"],
+            )
         for face in zone.get("faces", []):
             if ground and face not in ground:
-                raise InputError(f"{where}.faces: face {face} is not ground; see design.faces")
+                raise InputError(
+                    "job.zone_face_not_ground",
+                    "{key} '{name}'.faces: face {face} is not ground; see design.faces",
+                    key=where,
+                    name=zone["name"],
+                    face=face,
+                )
 
 
 def colour_scale(job):

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..base import frames
+from ..base.files import at_key
 from ..engine import InputError, core
 
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
@@ -35,7 +36,11 @@ def make_field(job, shape, warnings, context):
     for face in faces:
         if face > shape.face_count:
             raise InputError(
-                f"design.faces: there is no face {face}; the shape has {shape.face_count}"
+                "job.no_such_face",
+                "{key}: there is no face {face}; the shape has {count}",
+                key="design.faces",
+                face=face,
+                count=shape.face_count,
             )
     field, report = core.sample_faces(
         shape,
@@ -59,7 +64,10 @@ def apply_stock(field, stock, warnings, context):
             mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement)
         else:
             shape = read_design(stock, context)
-            warnings += [f"stock: {text}" for text in shape.warnings()]
+            warnings += [
+                core.Fact("job.of_stock", "stock: {warning}", warning=text)
+                for text in shape.warnings()
+            ]
             mesh = core.triangulate(shape, stock["deflection_mm"], context)
         report = core.apply_mesh(
             field, mesh, stock["search_above_mm"], stock["search_below_mm"], context
@@ -71,5 +79,5 @@ def frame_of(data, where):
     """(4, 4), mm: the transform that a job gives under the key ``where``. Raises InputError."""
     try:
         return frames.from_data(data)
-    except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
+    except InputError as error:
+        raise at_key(error, where) from None

@@ -45,9 +45,17 @@ class Belt(Proxy):
         """Adds what the belt did in a simulation. Raises InputError for one that was counted."""
         run = f"{simulation.Fingerprint} {simulation.WallTime}"
         if not simulation.BeltUse:
-            raise InputError(f"{simulation.Label} has no result yet; simulate first")
+            raise InputError(
+                "objects.no_result",
+                "{object} has no result yet; simulate first",
+                object=simulation.Label,
+            )
         if run in obj.Counted:
-            raise InputError(f"{obj.Label}: the use of this result has been counted already")
+            raise InputError(
+                "objects.counted",
+                "{object}: the use of this result has been counted already",
+                object=obj.Label,
+            )
         use = json.loads(simulation.BeltUse)
         state = {key: value + use["during"][key] for key, value in self.state(obj).items()}
         from_job(obj, KEYS, {"belt_machine": {"belt": state}})

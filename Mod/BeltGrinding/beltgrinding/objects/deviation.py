@@ -125,7 +125,11 @@ class Deviation(Proxy):
             return
         field = simulation.Proxy.field(simulation)
         if field is None:
-            raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+            raise InputError(
+                "objects.no_field",
+                "{object}: its height field is missing; simulate again",
+                object=simulation.Label,
+            )
         show(obj, field, scale, before[0] != result)
         obj.Shown = json.dumps([result, shown])
 

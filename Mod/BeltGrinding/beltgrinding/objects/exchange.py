@@ -6,8 +6,7 @@ from pathlib import Path
 import FreeCAD
 import Part
 
-from ..base.files import write_whole
-from ..engine import InputError
+from ..base.files import cannot_be_written, write_whole
 from ..examples import blade
 from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
@@ -29,7 +28,7 @@ def export_job(job, path):
                 holder["file"] = _relative(holder["file"], path.resolve().parent)
         write_whole(path, (json.dumps(data) + "\n").encode())
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(path, error) from None
     return path
 
 

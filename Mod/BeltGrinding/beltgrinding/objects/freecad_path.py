@@ -34,7 +34,11 @@ def program_of(obj):
         return _trajectory(obj)
     if hasattr(obj, "Path"):
         return _Commands(obj).program
-    raise InputError(f"{obj.Label} holds no path; choose a CAM path or a robot's trajectory")
+    raise InputError(
+        "objects.no_path",
+        "{object} holds no path; choose a CAM path or a robot's trajectory",
+        object=obj.Label,
+    )
 
 
 def _trajectory(obj):

@@ -20,7 +20,9 @@ def placed_shape(obj):
     """A copy of a document object's shape in the document's coordinates. Raises InputError."""
     shape = getattr(obj, "Shape", None)
     if shape is None or shape.isNull():
-        raise InputError(f"{obj.Label} has no shape; choose a part with faces")
+        raise InputError(
+            "objects.no_shape", "{object} has no shape; choose a part with faces", object=obj.Label
+        )
     shape = shape.copy()
     shape.Placement = obj.getGlobalPlacement()
     return shape

@@ -68,12 +68,24 @@ def make(obj):
 
     simulation, job = obj.Simulation, obj.getParentGroup()
     if simulation is None or job is None:
-        raise InputError(f"{obj.Label}: belongs to no simulation; make a new one")
+        raise InputError(
+            "objects.no_simulation",
+            "{object}: belongs to no simulation; make a new one",
+            object=obj.Label,
+        )
     if simulation.OutOfDate or job_inputs.fingerprint(job) != simulation.Fingerprint:
-        raise InputError(f"{simulation.Label} is out of date; simulate again")
+        raise InputError(
+            "objects.out_of_date",
+            "{object} is out of date; simulate again",
+            object=simulation.Label,
+        )
     field = simulation.Proxy.field(simulation)
     if field is None:
-        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+        raise InputError(
+            "objects.no_field",
+            "{object}: its height field is missing; simulate again",
+            object=simulation.Label,
+        )
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.to_data(job, folder)
         shape, flip = workpiece.read_design(data["design"]), data["design"]["flip_normals"]

@@ -60,9 +60,15 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
     simulation = simulated(job)
     field = sections.field_of(simulation)
     if field is None:
-        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+        raise InputError(
+            "objects.no_field",
+            "{object}: its height field is missing; simulate again",
+            object=simulation.Label,
+        )
     if (point is None) != (normal is None) or (start is None) != (end is None):
-        raise InputError("a section needs a point and a normal, or a start and an end")
+        raise InputError(
+            "objects.section_of_what", "a section needs a point and a normal, or a start and an end"
+        )
     found = job.Document.addObject("App::FeaturePython", "Section")
     with removed_on_error(found):
         sections.Section(found)
@@ -77,7 +83,7 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
         job.addObject(found)
         found.Proxy.update(found)
         if found.Problem:
-            raise InputError(found.Problem)
+            found.Proxy.cut(found)  # raises it
     job.Document.recompute()
     return found
 

@@ -69,7 +69,9 @@ def required(job, proxy, what):
     """The job's child of a proxy class. Raises InputError."""
     found = child(job, proxy)
     if found is None:
-        raise InputError(f"{job.Label} has no {what}; add one")
+        raise InputError(
+            "objects.lacks", "{object} has no {what}; add one", object=job.Label, what=what
+        )
     return found
 
 
@@ -108,13 +110,19 @@ def shape_of(links, label):
     them; ``label`` stands for its owner. Raises InputError.
     """
     if not links:
-        raise InputError(f"{label}: no faces are chosen; select faces and add them to the job")
+        raise InputError(
+            "objects.no_faces_chosen",
+            "{object}: no faces are chosen; select faces and add them to the job",
+            object=label,
+        )
     shapes, numbers, offset = [], [], 0
     for obj, subs in _by_object(links):
         shape = placed_shape(obj)
         count = len(shape.Faces)
         if count == 0:
-            raise InputError(f"{label}: {obj.Label} has no faces")
+            raise InputError(
+                "objects.no_faces", "{object}: {part} has no faces", object=label, part=obj.Label
+            )
         for number in _face_numbers(label, obj, subs, count):
             if number + offset not in numbers:
                 numbers.append(number + offset)
@@ -161,10 +169,22 @@ def _face_numbers(label, obj, subs, count):
     numbers = []
     for name in names:
         if not (name.startswith("Face") and name[4:].isdigit()):
-            raise InputError(f"{label}: {obj.Label}.{name or '(all)'} is no face; choose faces")
+            raise InputError(
+                "objects.no_face",
+                "{object}: {part}.{name} is no face; choose faces",
+                object=label,
+                part=obj.Label,
+                name=name or "(all)",
+            )
         if not 1 <= int(name[4:]) <= count:
             raise InputError(
-                f"{label}: {obj.Label} has no {name}; it has {count} faces. Choose them again"
+                "objects.no_such_face",
+                "{object}: {part} has no {name}; it has {count} faces. Choose them again",
+                object=label,
+                part=obj.Label,
+                name=name,
+                count=count,
+                face=int(name[4:]),
             )
         numbers.append(int(name[4:]))
     return numbers

@@ -30,7 +30,9 @@ def without_geometry(job):
 def _paths(job):
     paths = children(job, RobotPath)
     if not paths:
-        raise InputError(f"{job.Label} has no robot program; import one")
+        raise InputError(
+            "objects.no_program", "{object} has no robot program; import one", object=job.Label
+        )
     return paths
 
 
@@ -85,7 +87,12 @@ def to_data(job, folder):
         program["poses"] = list_poses(path.Proxy.arrays(path))
         program["unresolved"] = len(path.Problems)
         if len(program["poses"]) < 2:
-            raise InputError(f"{path.Label}: {len(program['poses'])} poses; two make a path")
+            raise InputError(
+                "objects.too_few_poses",
+                "{object}: {count} poses; two make a path",
+                object=path.Label,
+                count=len(program["poses"]),
+            )
     return data
 
 

@@ -49,5 +49,10 @@ class BeltGrindingJob(Proxy):
             verdict.Proxy.update(verdict)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:
-            raise InputError(f"{obj.Label}: ToleranceLower lies above ToleranceUpper")
+            raise InputError(
+                "objects.limits_swapped",
+                "{object}: ToleranceLower lies above ToleranceUpper",
+                object=obj.Label,
+                key="ToleranceLower",
+            )
         tolerances.check_zones(zones(obj), design(obj)[1])

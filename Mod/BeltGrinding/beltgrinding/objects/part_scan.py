@@ -24,11 +24,17 @@ OUTPUTS = (
 def prepare(simulation, job):
     """What ``scan.compare`` takes for a result, from the document. Raises InputError."""
     if simulation.OutOfDate or job_inputs.fingerprint(job) != simulation.Fingerprint:
-        raise InputError(f"{simulation.Label} is out of date; simulate again")
+        raise InputError(
+            "objects.out_of_date",
+            "{object} is out of date; simulate again",
+            object=simulation.Label,
+        )
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.to_data(job, folder)
     if "brep" not in data["design"]:
-        raise InputError(f"{job.Label}: its design has no shape")
+        raise InputError(
+            "objects.design_without_shape", "{object}: its design has no shape", object=job.Label
+        )
     return SimpleNamespace(field=simulation.Proxy.field(simulation), job=data)
 
 

@@ -1,12 +1,12 @@
 """Properties that mirror keys of a job: name, unit type, default and text come from the schema."""
 
 import copy
-import difflib
 import json
 from functools import lru_cache
 from typing import NamedTuple
 
 from ..base import schemas
+from ..base.schema_errors import hint
 from ..engine import InputError
 from ..job.load import schema
 from .proxy import type_of
@@ -125,12 +125,27 @@ def check_limits(obj, keys):
         value = getattr(obj, key.name)
         number = getattr(value, "Value", value)
         if low is not None and (number < low or open_low and number == low):
+            given = {"object": obj.Label, "key": key.name, "value": value, "limit": low}
+            if open_low:
+                raise InputError(
+                    "objects.not_above",
+                    "{object}: {key} is {value}; it must be greater than {limit:g}",
+                    **given,
+                )
             raise InputError(
-                f"{obj.Label}: {key.name} is {value}; it must be "
-                f"{'greater than' if open_low else 'at least'} {low:g}"
+                "objects.below",
+                "{object}: {key} is {value}; it must be at least {limit:g}",
+                **given,
             )
         if high is not None and number > high:
-            raise InputError(f"{obj.Label}: {key.name} is {value}; it must be at most {high:g}")
+            raise InputError(
+                "objects.above",
+                "{object}: {key} is {value}; it must be at most {limit:g}",
+                object=obj.Label,
+                key=key.name,
+                value=value,
+                limit=high,
+            )
 
 
 def get_value(obj, key):
@@ -195,11 +210,22 @@ def set_by_name(obj, values):
     own = [name for name in obj.PropertiesList if name not in ("Proxy", "ExpressionEngine")]
     for name, value in values.items():
         if name not in own:
-            near = difflib.get_close_matches(name, own, 1)
-            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(sorted(own))}"
-            raise InputError(f"{obj.Label} has no property {name}; {hint}")
+            raise InputError(
+                "objects.no_property",
+                "{object} has no property {key}; {hint}",
+                object=obj.Label,
+                key=name,
+                hint=hint(name, sorted(own), quote=""),
+            )
         try:
             setattr(obj, name, value)
         except Exception as error:  # FreeCAD raises TypeError, ValueError and its own
             reason = str(error) or type(error).__name__
-            raise InputError(f"{obj.Label}.{name} does not take {value!r}: {reason}") from None
+            raise InputError(
+                "objects.value_refused",
+                "{object}.{key} does not take {value}: {reason}",
+                object=obj.Label,
+                key=name,
+                value=repr(value),
+                reason=reason,
+            ) from None

@@ -95,7 +95,11 @@ def generate(obj):
 def _inputs(obj):
     """(job with the shape for its B-rep, settings, hash of both)."""
     if type_of(obj.Machine) != BeltMachine.TYPE:
-        raise InputError(f"{obj.Label} has no belt machine; add one to the job")
+        raise InputError(
+            "objects.no_machine",
+            "{object} has no belt machine; add one to the job",
+            object=obj.Label,
+        )
     group, data = obj.getParentGroup(), {"schema": 1}
     if type_of(group) == job_object.BeltGrindingJob.TYPE:
         to_job(group, job_data.KEYS, data)

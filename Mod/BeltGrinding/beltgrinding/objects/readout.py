@@ -23,7 +23,11 @@ class Reader:
         if self.field is None or shown != self.shown:
             self.field = None if simulation is None else simulation.Proxy.field(simulation)
             if self.field is None:
-                raise InputError(f"{self.obj.Label}: its result is missing; simulate again")
+                raise InputError(
+                    "objects.result_missing",
+                    "{object}: its result is missing; simulate again",
+                    object=self.obj.Label,
+                )
             self.shown = shown
             heights = self.field.height[:, None]
             self.tops = self.field.points + heights * self.field.normals

@@ -2,6 +2,7 @@
 
 import json
 
+from ..base import messages
 from ..reporting import charts
 from ..simulation.convergence_record import assessed
 from .properties import Output, add_outputs
@@ -46,6 +47,13 @@ def store(obj, result):
     bins = result.bins if result.steps is None else charts.binned(result.steps)
     obj.SeriesData = json.dumps(bins) if bins else ""
     _store_convergence(obj, result.convergence)
+
+
+def warnings(obj, language):
+    """The sentences of the run's warnings."""
+    if obj.SummaryData:
+        return messages.warnings(json.loads(obj.SummaryData), language)
+    return list(obj.Warnings)  # of a version before 0.2
 
 
 def _store_convergence(obj, convergence):

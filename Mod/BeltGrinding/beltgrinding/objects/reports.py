@@ -33,7 +33,11 @@ def result_to_report(job, folder):
     simulation = simulated(job)
     field = simulation.Proxy.field(simulation)
     if field is None or not simulation.SummaryData:
-        raise InputError(f"{simulation.Label}: it holds too little for a report; simulate again")
+        raise InputError(
+            "objects.too_little_for_report",
+            "{object}: it holds too little for a report; simulate again",
+            object=simulation.Label,
+        )
     data, notes = job_inputs.to_data(job, folder), []
     if simulation.OutOfDate:
         notes.append(

@@ -91,7 +91,11 @@ class RobotPath(Proxy):
                 "zones": np.array(obj.Zones or [-1.0] * count, dtype=float),
             }
         if any(len(a) != len(self._arrays["frames"]) for a in self._arrays.values()):
-            raise InputError(f"{obj.Label}: its lists differ in length; import the program again")
+            raise InputError(
+                "objects.lists_differ",
+                "{object}: its lists differ in length; import the program again",
+                object=obj.Label,
+            )
         return self._arrays
 
     def digest(self, obj):
@@ -160,8 +164,16 @@ def read_arrays(path):
     arrays = program.path_arrays(DEFAULT_FEED)
     count = len(arrays["frames"])
     if count < 2:
-        why = f" ({program.problems[0]})" if program.problems else ""
-        raise InputError(f"{path}: {count} Cartesian targets; two at least make a path{why}")
+        why = ""
+        if program.problems:
+            why = core.Fact("job.first_problem", " ({problem})", problem=program.problems[0])
+        raise InputError(
+            "objects.too_few_targets",
+            "{file}: {count} Cartesian targets; two at least make a path{why}",
+            file=path,
+            count=count,
+            why=why,
+        )
     return program, arrays
 
 
@@ -176,7 +188,13 @@ def follow(obj):
     arrays = program.path_arrays(DEFAULT_FEED)
     count = len(arrays["frames"])
     if count < 2:
-        raise InputError(f"{obj.Label}: {source.Label} has {count} poses; two at least make a path")
+        raise InputError(
+            "objects.source_too_short",
+            "{object}: {source} has {count} poses; two at least make a path",
+            object=obj.Label,
+            source=source.Label,
+            count=count,
+        )
     if not hasattr(source, "Trajectory") and obj.Machine is not None:
         cell = obj.Machine.Proxy.cell(obj.Machine)
         arrays["frames"] = frames.base_from_tcp(arrays["frames"], **cell)

@@ -77,10 +77,18 @@ class Section(Proxy):
         """The section as plain data (``beltgrinding.section``). Raises InputError."""
         simulation, job = obj.Simulation, obj.getParentGroup()
         if simulation is None or job is None:
-            raise InputError(f"{obj.Label}: belongs to no simulation; make a new one")
+            raise InputError(
+                "objects.no_simulation",
+                "{object}: belongs to no simulation; make a new one",
+                object=obj.Label,
+            )
         field = field_of(simulation)
         if field is None:
-            raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+            raise InputError(
+                "objects.no_field",
+                "{object}: its height field is missing; simulate again",
+                object=simulation.Label,
+            )
         tolerance = (job.ToleranceLower.Value, job.ToleranceUpper.Value)
         if obj.Cut == LINE:
             return sections.of_field_between(field, tolerance, obj.Start, obj.End)

@@ -30,7 +30,9 @@ def make_job(design, faces=(), **properties):
         for obj, subs in links
     ]
     if not links:
-        raise InputError("a job needs a part; give an object with a shape, or select faces")
+        raise InputError(
+            "objects.no_part", "a job needs a part; give an object with a shape, or select faces"
+        )
     job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
     with removed_on_error(job):
         job.Label = "Belt grinding"

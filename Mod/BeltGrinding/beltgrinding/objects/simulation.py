@@ -186,5 +186,7 @@ def simulated(job):
     """The job's Simulation, which has a result. Raises InputError."""
     found = child(job, Simulation)
     if found is None or not found.Fingerprint:
-        raise InputError(f"{job.Label} has no result yet; simulate first")
+        raise InputError(
+            "objects.no_result", "{object} has no result yet; simulate first", object=job.Label
+        )
     return found

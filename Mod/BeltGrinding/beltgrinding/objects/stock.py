@@ -100,16 +100,30 @@ def _file_digest(path, size, time):
 
 def _require_solid(obj):
     if obj.Source is None:
-        raise InputError(f"{obj.Label}: choose the solid that is the stock")
+        raise InputError(
+            "objects.no_solid", "{object}: choose the solid that is the stock", object=obj.Label
+        )
     if not hasattr(obj.Source, "Shape"):
-        raise InputError(f"{obj.Label}: {obj.Source.Label} is no solid; set Kind to mesh")
+        raise InputError(
+            "objects.source_no_solid",
+            "{object}: {source} is no solid; set Kind to mesh",
+            object=obj.Label,
+            source=obj.Source.Label,
+        )
 
 
 def _require_mesh(obj):
     if obj.Source is None and not obj.File:
-        raise InputError(f"{obj.Label}: choose the mesh: an object or a file")
+        raise InputError(
+            "objects.no_mesh", "{object}: choose the mesh: an object or a file", object=obj.Label
+        )
     if obj.Source is not None and not hasattr(obj.Source, "Mesh"):
-        raise InputError(f"{obj.Label}: {obj.Source.Label} is no mesh; set Kind to solid")
+        raise InputError(
+            "objects.source_no_mesh",
+            "{object}: {source} is no mesh; set Kind to solid",
+            object=obj.Label,
+            source=obj.Source.Label,
+        )
 
 
 def _shape(obj):

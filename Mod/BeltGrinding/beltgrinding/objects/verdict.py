@@ -114,7 +114,11 @@ def judge(job, simulation, inspection):
     """The verdict on a Simulation by other tolerances. Raises InputError."""
     field = field_of(simulation)
     if field is None:
-        raise InputError(f"{simulation.Label}: its height field is missing; simulate again")
+        raise InputError(
+            "objects.no_field",
+            "{object}: its height field is missing; simulate again",
+            object=simulation.Label,
+        )
     data = {
         "design": {},
         "programs": [{"name": name} for name in simulation.Programs],

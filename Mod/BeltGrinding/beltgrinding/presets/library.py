@@ -3,14 +3,14 @@ its source (Resources/presets, and the user's own files; presets.schema.json).
 """
 
 import copy
-import difflib
 import json
 import os
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from ..base import schemas
+from ..base import schema_errors, schemas
+from ..base.files import at_key, in_file
 from ..base.resources import resources
 from ..engine import InputError
 from . import robot_model
@@ -92,13 +92,18 @@ def library():
 def _read(path, rules, found):
     data = schemas.read_json(path)
     if "formulas" in data and path.parent == user_folder():
-        raise InputError(f"{path}: formulas: a formula is a part of the program, not a preset")
+        raise InputError(
+            "presets.formula",
+            "{file}: {key}: a formula is a part of the program, not a preset",
+            key="formulas",
+            file=path,
+        )
     bad = set()  # (kind, index)
-    for where, sentence in schemas.problems(data, rules, "the file"):
+    for where, problem in schemas.problems(data, rules, "the file"):
         if len(where) < 2 or where[0] not in KINDS:
-            raise InputError(f"{path}: {sentence}")
+            raise in_file(problem, path)
         if tuple(where[:2]) not in bad:
-            found.problems.append(InputError(f"{path}: {sentence}"))
+            found.problems.append(in_file(problem, path))
         bad.add(tuple(where[:2]))
     for kind in KINDS:
         records = getattr(found, kind)
@@ -107,10 +112,16 @@ def _read(path, rules, found):
                 continue
             try:
                 if any(record["id"] == other["id"] for other in records):
-                    raise InputError(f"id: there is a preset '{record['id']}' already")
+                    raise InputError(
+                        "presets.id_taken",
+                        "{key}: there is a preset '{name}' already",
+                        key="id",
+                        name=record["id"],
+                    )
                 records.append(_with_sources(record, data["sources"]))
             except InputError as error:
-                found.problems.append(InputError(f"{path}: {kind}.{index}.{error}"))
+                error = error.within("presets.entry", "{entry}.", entry=f"{kind}.{index}")
+                found.problems.append(in_file(error, path))
 
 
 def _with_sources(record, sources):
@@ -118,21 +129,37 @@ def _with_sources(record, sources):
     record = copy.deepcopy(record)
     if "model" in record:
         if record["source"] not in sources:
-            raise InputError(f"source: '{record['source']}' is not among the file's sources")
+            raise InputError(
+                "presets.no_source",
+                "{key}: '{name}' is not among the file's sources",
+                key="source",
+                name=record["source"],
+            )
         record["source"] = sources[record["source"]]
         record["model"] = robot_model.checked_model(record["model"])
         return record
     for key, number in numbers(record).items():
         if number["source"] not in sources:
-            raise InputError(f"{key}.source: '{number['source']}' is not among the file's sources")
+            raise InputError(
+                "presets.no_source",
+                "{key}: '{name}' is not among the file's sources",
+                key=f"{key}.source",
+                name=number["source"],
+            )
         number["source"] = sources[number["source"]]
         if "range" in number and number["range"][0] > number["range"][1]:
-            raise InputError(f"{key}.range: {number['range'][0]} is above {number['range'][1]}")
+            raise InputError(
+                "presets.range_swapped",
+                "{key}: {low} is above {high}",
+                key=f"{key}.range",
+                low=number["range"][0],
+                high=number["range"][1],
+            )
     if "shore_a" in record and "youngs_modulus" not in record:
         try:
             modulus(middle(record["shore_a"]))
         except InputError as error:
-            raise InputError(f"shore_a: {error}") from None
+            raise at_key(error, "shore_a") from None
     return record
 
 
@@ -221,10 +248,15 @@ def find(kind, name):
     known = {preset["id"]: preset for preset in getattr(found, kind)}
     if name in known:
         return known[name]
-    near = difflib.get_close_matches(name, known, 1)
-    hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
     broken = "".join(f" ({problem})" for problem in found.problems)
-    raise InputError(f"presets: no '{name}' among the {kind}; {hint}{broken}")
+    raise InputError(
+        "presets.no_such",
+        "presets: no '{name}' among the {kind}; {hint}{broken}",
+        name=name,
+        kind=kind,
+        hint=schema_errors.hint(name, known),
+        broken=broken,
+    )
 
 
 def number_text(number):
@@ -289,4 +321,7 @@ def print_list(kind=None, as_json=False):
     else:
         print("\n\n".join(table(one, presets) for one, presets in chosen.items()))
     if found.problems:
-        raise InputError("; ".join(str(problem) for problem in found.problems))
+        error, *others = found.problems
+        for other in others:
+            error = error.followed_by("presets.another", "; {problem}", problem=other)
+        raise error

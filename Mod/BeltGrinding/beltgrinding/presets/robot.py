@@ -6,6 +6,7 @@ Joint angles are in degrees; frames are 4 x 4 in mm.
 import numpy as np
 
 from ..base import frames, schemas
+from ..base.files import at_key
 from ..engine import InputError
 from . import library
 from .robot_model import JOINTS, arm, robot_rules, validate_model
@@ -22,10 +23,17 @@ def validate(robot):
     """Raises InputError for what the schema cannot say of a robot with all its defaults."""
     model = robot["model"]
     if robot["preset"] and model["joints"]:
-        raise InputError("robot: give a preset or a model with joints, not both")
+        raise InputError(
+            "presets.preset_and_model",
+            "{key}: give a preset or a model with joints, not both",
+            key="robot",
+        )
     if len(robot["start_joints_deg"]) not in (0, JOINTS):
         raise InputError(
-            f"robot.start_joints_deg: {len(robot['start_joints_deg'])} angles; give six, or none"
+            "presets.start_joints",
+            "{key}: {count} angles; give six, or none",
+            key="robot.start_joints_deg",
+            count=len(robot["start_joints_deg"]),
         )
     if robot["preset"]:
         load_preset(robot["preset"])
@@ -58,8 +66,8 @@ def robot_frame(robot, key):
     """(4, 4), mm: the transform under a key of a job's robot. Raises InputError."""
     try:
         return frames.from_data(robot.get(key))
-    except ValueError as error:
-        raise InputError(f"robot.{key}: {error}") from None
+    except InputError as error:
+        raise at_key(error, f"robot.{key}") from None
 
 
 def pose_function(robot):

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ..base import frames, schemas
+from ..base.files import at_key
 from ..engine import InputError, core
 
 JOINTS = 6
@@ -26,7 +27,7 @@ def checked_model(model):
     model = schemas.checked({"model": model}, robot_rules(), "robot")["model"]
     validate_model(model)
     if not model["joints"]:
-        raise InputError("model.joints: a robot has six joints")
+        raise InputError("presets.six_joints", "{key}: a robot has six joints", key="model.joints")
     return model
 
 
@@ -35,8 +36,8 @@ def validate_model(model):
     if model["joints"]:
         try:
             arm(model)
-        except (InputError, ValueError) as error:
-            raise InputError(f"robot.model: {error}") from None
+        except InputError as error:
+            raise at_key(error, "robot.model") from None
 
 
 def arm(model):
@@ -48,8 +49,13 @@ def arm(model):
         strange = [key for key in other if joint[key] != rules[key]["default"]]
         if strange:
             raise InputError(
-                f"joint {number}: '{strange[0]}' has no meaning in the convention "
-                f"{model['convention']}; it takes {', '.join(own)}"
+                "presets.joint_key",
+                "joint {joint}: '{key}' has no meaning in the convention {convention}; it takes "
+                "{keys}",
+                joint=number,
+                key=strange[0],
+                convention=model["convention"],
+                keys=", ".join(own),
             )
         row = {
             "lower": math.radians(joint["lower_deg"]),

@@ -59,8 +59,13 @@ def modulus(shore_a, formula=DEFAULT):
     one = formulas()[formula]
     if not one["least"] <= shore_a <= one["greatest"]:
         raise InputError(
-            f"{shore_a:g} Shore A: the formula of {one['name']} holds from {one['least']:g} to "
-            f"{one['greatest']:g} Shore A; give Young's modulus itself"
+            "presets.hardness_out_of_range",
+            "{shore_a:g} Shore A: the formula of {formula} holds from {least:g} to "
+            "{greatest:g} Shore A; give Young's modulus itself",
+            shore_a=shore_a,
+            formula=one["name"],
+            least=one["least"],
+            greatest=one["greatest"],
         )
     return EQUATIONS[formula](float(shore_a))
 

@@ -7,6 +7,7 @@ from typing import List, Optional
 
 import numpy as np
 
+from ..base.files import reason_of
 from ..base.frames import to_quaternions
 from ..engine import Fact, InputError
 
@@ -34,8 +35,8 @@ def cannot_be_read(path, error):
     return ProgramError(
         "files.cannot_be_read",
         "{file}: cannot be read: {reason}",
-        file=str(path),
-        reason=error.strerror,
+        file=path,
+        reason=reason_of(error),
     )
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import schemas
+from ..base.files import in_file
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs
 from ..job.workpiece import read_design
@@ -46,7 +47,7 @@ def load_job(path):
     try:
         return jobs.validate(data, path.resolve().parent)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise in_file(error, path) from None
 
 
 def raster(job, settings, context=None):
@@ -81,7 +82,8 @@ def raster(job, settings, context=None):
     result = passes.assemble(found, settings, cell)
     if not result["passes"]:
         raise InputError(
-            "no pass is left on the faces; lower min_length_mm, or give another direction"
+            "raster.no_pass",
+            "no pass is left on the faces; lower min_length_mm, or give another direction",
         )
     result["fit"] = _fit(job, settings, surfaces, result, warnings, context)
     result.update(
@@ -94,7 +96,11 @@ def _checked_faces(numbers, shape):
     for number in numbers:
         if number > shape.face_count:
             raise InputError(
-                f"raster.faces: there is no face {number}; the shape has {shape.face_count}"
+                "job.no_such_face",
+                "{key}: there is no face {face}; the shape has {count}",
+                key="raster.faces",
+                face=number,
+                count=shape.face_count,
             )
     return sorted({number - 1 for number in numbers})
 
@@ -124,7 +130,9 @@ def _surfaces(job, shape, faces, spacing, settings, warnings, context):
     warnings += report["warnings"]
     points, normals, triangles = field.points, field.normals.astype(float), field.triangles
     if len(triangles) == 0:
-        raise InputError("the faces are too small for the sampling; lower sampling_mm")
+        raise InputError(
+            "raster.faces_too_small", "the faces are too small for the sampling; lower sampling_mm"
+        )
     if settings["along"] == "direction":
         scalars = points @ _across(settings["direction"], points, normals, field.areas)
         whole = {"points": points, "normals": normals, "triangles": triangles}
@@ -136,7 +144,14 @@ def _surfaces(job, shape, faces, spacing, settings, warnings, context):
     for k, face in enumerate(faces):
         mine = triangles[owner == face]
         if len(mine) == 0:
-            warnings.append(f"Face{face + 1} is too small for samples of {spacing:.3g} mm: no pass")
+            warnings.append(
+                core.Fact(
+                    "raster.face_too_small",
+                    "Face{face} is too small for samples of {spacing:.3g} mm: no pass",
+                    face=face + 1,
+                    spacing=spacing,
+                )
+            )
             continue
         used, local = np.unique(mine, return_inverse=True)
         local = local.reshape(-1, 3)
@@ -152,7 +167,11 @@ def _across(direction, points, normals, areas):
     along = np.asarray(direction, dtype=float)
     length = np.linalg.norm(along)
     if length == 0:
-        raise InputError("raster.direction: give a direction that is not 0, 0, 0")
+        raise InputError(
+            "raster.no_direction",
+            "{key}: give a direction that is not 0, 0, 0",
+            key="raster.direction",
+        )
     along = along / length
     weights = areas[:, None].astype(float)
     mean = (normals * weights).sum(axis=0) / weights.sum()
@@ -160,7 +179,9 @@ def _across(direction, points, normals, areas):
     if np.linalg.norm(mean) > PARALLEL:
         if np.linalg.norm(across) < PARALLEL * np.linalg.norm(mean):
             raise InputError(
-                "raster.direction: the faces look in this very direction; give one along them"
+                "raster.direction_along_normal",
+                "{key}: the faces look in this very direction; give one along them",
+                key="raster.direction",
             )
     else:  # a closed surface looks everywhere: planes across its longer side
         middle = points - (points * weights).sum(axis=0) / weights.sum()
@@ -210,7 +231,9 @@ def contact_width(job, settings, surfaces, warnings):
     wheel, compliance, _, options = engine_input.engine_arguments(job)
     if compliance["model"] == "geometric":
         raise InputError(
-            "raster.step_over_mm: a rigid tool has no contact width; give a step-over in mm"
+            "raster.rigid_step_over",
+            "{key}: a rigid tool has no contact width; give a step-over in mm",
+            key="raster.step_over_mm",
         )
     across, areas = zip(*(_curvature(s)[1:] for s in surfaces))
     curvature = _median(np.concatenate(across), np.concatenate(areas))
@@ -226,8 +249,13 @@ def contact_width(job, settings, surfaces, warnings):
         if workpiece["shape"] == "plane":  # it is not the surface's curvature
             raise
         warnings.append(
-            f"the contact's width is that on a plane: on a cylinder of {1.0 / curvature:.4g} mm "
-            f"radius it cannot be found ({error})"
+            core.Fact(
+                "raster.width_on_a_plane",
+                "the contact's width is that on a plane: on a cylinder of {radius:.4g} mm radius "
+                "it cannot be found ({reason})",
+                radius=1.0 / curvature,
+                reason=error,
+            )
         )
         found = core.single_contact(wheel, {"shape": "plane"}, *arguments)
     x, y = np.meshgrid(found["x"], found["y"])
@@ -265,8 +293,13 @@ def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
             share = 100.0 * found["uncovered_area"] / found["area"]
             where = f"{surface['name']}: " if surface["name"] else ""
             warnings.append(
-                f"{where}{share:.0f} % of the area lies along the cuts and may stay without a "
-                "pass; lay passes in another direction there"
+                core.Fact(
+                    "raster.uncovered",
+                    "{where}{share:.0f} % of the area lies along the cuts and may stay without a "
+                    "pass; lay passes in another direction there",
+                    where=where,
+                    share=share,
+                )
             )
         mine = {}
         for line in found["lines"]:
@@ -286,9 +319,15 @@ def _fit(job, settings, surfaces, result, warnings, context):
     if len(tight):
         worst = int(np.argmax(fit))
         warnings.append(
-            f"the wheel does not fit the faces at {len(tight)} poses: at worst its undeformed rim "
-            f"reaches {fit[worst]:.2f} mm into them at pose {worst + 1}; take a smaller or narrower "
-            "wheel, or another direction"
+            core.Fact(
+                "raster.wheel_does_not_fit",
+                "the wheel does not fit the faces at {count} poses: at worst its undeformed rim "
+                "reaches {depth:.2f} mm into them at pose {pose}; take a smaller or narrower "
+                "wheel, or another direction",
+                count=len(tight),
+                depth=fit[worst],
+                pose=worst + 1,
+            )
         )
     return fit
 

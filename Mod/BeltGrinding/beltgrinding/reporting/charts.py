@@ -1,18 +1,13 @@
-"""Charts of a report: the deviation's histogram by area, time series, the colours' legend."""
+"""Charts of a report, as SVG: the deviation's histogram by area, time series, the colours' legend."""
 
 import numpy as np
 
-from ..charts import svg
-
-from ..charts.model import (
-    BASE, END, FRAME, MIDDLE, NONE, ROOT, START,
-    Axis, Band, Bars, Chart, Line, Mark, Panel, Sheet, Text, Tick,
-)  # fmt: skip
 from ..engine import core
-from .markup import Markup
+from ..inspection.section_plot import ticks
+from .markup import element
 
-WIDTH = 720  # points; the page scales the drawing
-LEFT, RIGHT = 52, 12  # margins
+WIDTH = 720  # user units; the page scales the drawing
+INK, GRID, FRAME = "#40454d", "#e3e5e8", "#9aa0a8"
 BINS = 80
 SERIES_BINS = 360
 SERIES = (  # name among a result's steps, text, unit, colour
@@ -20,10 +15,6 @@ SERIES = (  # name among a result's steps, text, unit, colour
     ("peak_pressure", "Peak pressure", "MPa", "#7a3d9a"),
     ("removal_rate", "Removal rate", "mm³/s", "#d1701f"),
 )
-GOOD, BAND = "#8fae8f", "#d3e1d3"  # bars in tolerance, and what lies behind them
-MISSED = "#707070"
-SHARES = (0.1, 1.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0)  # %, where the histogram has lines
-BESIDE = 70  # points that a limit's label takes
 
 
 def rgb(packed):
@@ -31,8 +22,22 @@ def rgb(packed):
     return f"#{int(packed) >> 8:06x}"
 
 
-def _drawn(sheet, class_, label):
-    return Markup(svg.svg(sheet, class_, label, standalone=False))
+def _svg(width, height, *children, **attributes):
+    return element(
+        "svg",
+        *children,
+        xmlns="http://www.w3.org/2000/svg",
+        viewBox=f"0 0 {width} {height}",
+        font_family="sans-serif",
+        font_size=12,
+        fill=INK,
+        role="img",
+        **attributes,
+    )
+
+
+def _text(x, y, text, anchor="start", **attributes):
+    return element("text", text, x=float(x), y=float(y), text_anchor=anchor, **attributes)
 
 
 def histogram(field, scale, words):
@@ -52,74 +57,115 @@ def histogram(field, scale, words):
     inside = np.clip(height, edges[0], np.nextafter(edges[-1], -np.inf))
     shares = 100.0 * np.histogram(inside, edges, weights=area)[0] / area.sum()
     colours = core.colour_scale(lower, upper, limit, middles.tolist())
-    colours = [GOOD if lower <= m <= upper else rgb(c) for m, c in zip(middles, colours)]
-    top, above, tall = max(float(shares.max()), 1e-9), 26, 170
-    wide = WIDTH - LEFT - RIGHT
-    seen = np.where(shares > 0.0, np.maximum(shares, top * (0.8 / tall) ** 2), 0.0)  # 0.8 points
-    x = Axis(
-        float(edges[0]),
-        float(edges[-1]),
-        words("deviation from the design, mm"),
-        count=9,
-        gap=32,
-        number=lambda value, decimals: words.number(value, decimals, True),
-        grid=False,
-    )
-    lines = [Tick(v, words.number(v, int(v < 1))) for v in SHARES if v < 1.05 * top]
     # The root of the share: a peak in the band must not hide a thin tail outside of it.
-    y = Axis(0.0, top, words("% of the area"), ROOT, ticks=tuple(lines), gap=40)
-    marks = []
+    top = max(float(shares.max()), 1e-9)
+    left, right, above, below, tall = 52, 12, 26, 44, 170
+    wide = WIDTH - left - right
+
+    def x(value):
+        return left + wide * (value - edges[0]) / (edges[-1] - edges[0])
+
+    def y(share):
+        return above + tall * (1.0 - np.sqrt(share / top))
+
+    drawn = [
+        element(
+            "rect", x=x(lower), y=above, width=x(upper) - x(lower), height=tall, fill="#e9f0e9"
+        ),
+    ]
+    for value in (v for v in (0.1, 1.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0) if v < 1.05 * top):
+        drawn.append(element("path", d=f"M{left} {y(value):.1f}h{wide}", stroke=GRID))
+        drawn.append(_text(left - 6, y(value) + 4, words.number(value, int(value < 1)), "end"))
+    values, decimals = ticks(edges[0], edges[-1], 9)
+    for value in values:
+        drawn.append(
+            _text(x(value), above + tall + 16, words.number(value, decimals, True), "middle")
+        )
+    for share, middle, a, b, colour in zip(shares, middles, edges, edges[1:], colours):
+        if share > 0.0:
+            bar = max(above + tall - y(share), 0.8)
+            good = lower <= middle <= upper
+            drawn.append(
+                element(
+                    "rect",
+                    x=x(a) + 0.3,
+                    y=float(above + tall - bar),
+                    width=x(b) - x(a) - 0.6,
+                    height=float(bar),
+                    fill="#8fae8f" if good else rgb(colour),
+                )
+            )
+    room = 70  # of a limit's label, which stands outside of the band where there is room
     for value, outside in ((lower, -1), (upper, 1)):
-        end = x.low if outside < 0 else x.high
-        room = (end - value) * outside * wide / x.span > BESIDE
-        anchor = START if (outside if room else -outside) > 0 else END
+        end = left if outside < 0 else WIDTH - right
+        side = outside if (end - x(value)) * outside > room else -outside
+        anchor, shift = ("start", 5) if side > 0 else ("end", -5)
+        drawn.append(
+            element(
+                "path", d=f"M{x(value):.1f} {above - 8}v{tall + 8}", stroke=INK, stroke_width=1.4
+            )
+        )
         label = f"{words.number(value, 3, True)} mm"
-        marks.append(Mark(value, label, anchor, above=8.0, width=1.4))
-    band = Band([np.array([[lower, 0.0], [upper, 0.0], [upper, top], [lower, top]])], BAND, 0.5)
-    chart = Chart(x, y, [band, Bars(edges, seen, colours, 0.07)], marks, frame=BASE)
-    sheet = Sheet("histogram", WIDTH, above + tall + 44, [Panel(chart, LEFT, above, wide, tall)])
+        drawn.append(_text(x(value) + shift, above - 10, label, anchor))
+    drawn.append(element("path", d=f"M{left} {above + tall}h{wide}", stroke=FRAME))
+    drawn.append(
+        _text(left + wide / 2, above + tall + 36, words("deviation from the design, mm"), "middle")
+    )
+    middle = above + tall / 2
+    drawn.append(
+        element(
+            "text",
+            words("% of the area"),
+            transform=f"translate(12 {middle:.0f}) rotate(-90)",
+            text_anchor="middle",
+        )
+    )
     label = words("Share of the ground area by deviation; the band is the tolerance")
-    return _drawn(sheet, "chart", label)
+    return _svg(WIDTH, above + tall + below, drawn, class_="chart", aria_label=label)
 
 
 def legend(scale, words):
     """The colours of the deviation, with their limits in mm, and of missed rays."""
     lower, upper, limit = scale
     left, top, bar, wide = 30, 10, 20, 530
-    edges = np.linspace(-limit, limit, 282)
     values = np.linspace(-limit, limit, 281)
-    colours = [rgb(c) for c in core.colour_scale(lower, upper, limit, values.tolist())]
-    step = wide / (2.0 * limit)  # points per mm
-    close = (upper - lower) * step < 64  # the limits' labels would run into each other
-    before = {-limit: "≤ ", limit: "≥ "}
-    ticks = []
-    for value in (-limit, lower, upper, limit):
-        text = before.get(value, "") + words.number(value, 3, True)
-        anchor = MIDDLE
-        if close and value in (lower, upper):
-            anchor = END if value == lower else START
-        ticks.append(Tick(value, text + (" mm" if value == limit else ""), anchor))
-    none = Axis(0.0, 1.0, ticks=(), grid=False)
-    scale = Chart(
-        Axis(-limit, limit, ticks=tuple(ticks), grid=False),
-        none,
-        [Bars(edges, np.ones(len(colours)), colours)],
-        [Mark(tick.value, below=5.0) for tick in ticks],
-    )
-    swatch = Chart(none, none, [Bars([0.0, 1.0], [1.0], [MISSED])], frame=NONE)
-    panels = [
-        Panel(scale, left, top, wide, bar),
-        Panel(swatch, left + wide + 68, top, bar, bar),
+    colours = core.colour_scale(lower, upper, limit, values.tolist())
+
+    def x(value):
+        return left + wide * (value + limit) / (2.0 * limit)
+
+    step = wide / len(values)
+    drawn = [
+        element("rect", x=left + k * step, y=top, width=step + 0.4, height=bar, fill=rgb(colour))
+        for k, colour in enumerate(colours)
     ]
-    texts = [Text(left + wide + 94, top + 15, words("no stock"))]
-    for value, text in (
-        (0.5 * (lower - limit), words("cut too deep")),
-        (0.5 * (upper + limit), words("too much left")),
-        (0.5 * (lower + upper), words("good")),
+    drawn.append(element("rect", x=left, y=top, width=wide, height=bar, fill="none", stroke=FRAME))
+    places = {-limit: "≤ ", limit: "≥ "}
+    for value in (-limit, lower, upper, limit):
+        drawn.append(element("path", d=f"M{x(value):.1f} {top}v{bar + 5}", stroke=INK))
+    close = x(upper) - x(lower) < 64  # the limits' labels would run into each other
+    for value in (-limit, lower, upper, limit):
+        anchor = "middle"
+        if close and value in (lower, upper):
+            anchor = "end" if value == lower else "start"
+        text = places.get(value, "") + words.number(value, 3, True)
+        text += " mm" if value == limit else ""
+        drawn.append(_text(x(value), top + bar + 19, text, anchor))
+    for at, text in (
+        (0.5 * (x(-limit) + x(lower)), words("cut too deep")),
+        (0.5 * (x(upper) + x(limit)), words("too much left")),
     ):
-        texts.append(Text(left + (value + limit) * step, top + bar + 37, text, MIDDLE, bold=True))
-    sheet = Sheet("legend", WIDTH, top + bar + 44, panels, texts)
-    return _drawn(sheet, "legend", words("Colours of the deviation"))
+        drawn.append(_text(at, top + bar + 37, text, "middle", font_weight="bold"))
+    drawn.append(
+        _text(
+            0.5 * (x(lower) + x(upper)), top + bar + 37, words("good"), "middle", font_weight="bold"
+        )
+    )
+    missed = rgb(0x707070FF)
+    drawn.append(element("rect", x=left + wide + 68, y=top, width=bar, height=bar, fill=missed))
+    drawn.append(_text(left + wide + 94, top + 15, words("no stock")))
+    label = words("Colours of the deviation")
+    return _svg(WIDTH, top + bar + 44, drawn, class_="legend", aria_label=label)
 
 
 def binned(steps, count=SERIES_BINS):
@@ -149,23 +195,92 @@ def series(bins, words):
     time = np.array(bins["time"])
     step = time[1] - time[0] if len(time) > 1 else 2.0 * time[0]
     end = float(time[-1] + 0.5 * step)
-    tall, gap, top = 64, 26, 20
-    wide, panels = WIDTH - LEFT - RIGHT, []
+    left, right, tall, gap = 52, 12, 64, 26
+    wide, drawn, top = WIDTH - left - right, [], 20
     for name, text, unit, colour in SERIES:
         values = np.array(bins[name])
-        most = float(values.max()) if values.any() else 1.0
-        line = np.column_stack([time, values])
-        under = np.vstack([[time[0], 0.0], line, [time[-1], 0.0]])
-        last = name == SERIES[-1][0]
-        chart = Chart(
-            Axis(0.0, end, words("time, s") if last else "", count=9, number=words.number,
-              labelled=last, grid=False, gap=29),
-            Axis(0.0, 1.05 * most, count=2, number=words.number),
-            [Band([under], colour, 0.2), Line([line], colour)],
-            title=f"{words(text)}, {unit}",
-            frame=BASE,
+        most = max(float(values.max()), 1e-12)
+        drawn.append(_text(left, top - 6, f"{words(text)}, {unit}", font_weight="bold"))
+        for value, decimals in ((v, ticks(0.0, most, 2)[1]) for v in ticks(0.0, most, 2)[0]):
+            y = top + tall * (1.0 - value / (1.05 * most))
+            drawn.append(element("path", d=f"M{left} {y:.1f}h{wide}", stroke=GRID))
+            drawn.append(_text(left - 6, y + 4, words.number(value, decimals), "end"))
+        x = left + wide * time / end
+        y = top + tall * (1.0 - values / (1.05 * most))
+        line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y))
+        base = top + tall
+        drawn.append(
+            element("polygon", points=f"{x[0]:.1f},{base} {line} {x[-1]:.1f},{base}", fill=colour,
+              fill_opacity=0.2)
         )  # fmt: skip
-        panels.append(Panel(chart, LEFT, top, wide, tall))
+        drawn.append(element("polyline", points=line, fill="none", stroke=colour, stroke_width=1.2))
+        drawn.append(element("path", d=f"M{left} {base}h{wide}", stroke=FRAME))
         top += tall + gap
-    sheet = Sheet("series", WIDTH, top - gap + 40, panels)
-    return _drawn(sheet, "chart", words("Force, pressure and removal rate over time"))
+    base = top - gap
+    for value, decimals in ((v, ticks(0.0, end, 9)[1]) for v in ticks(0.0, end, 9)[0]):
+        x = left + wide * value / end
+        drawn.append(element("path", d=f"M{x:.1f} {base}v4", stroke=FRAME))
+        drawn.append(_text(x, base + 16, words.number(value, decimals), "middle"))
+    drawn.append(_text(left + wide / 2, base + 33, words("time, s"), "middle"))
+    label = words("Force, pressure and removal rate over time")
+    return _svg(WIDTH, base + 40, drawn, class_="chart", aria_label=label)
+
+
+def marked(view, uri, marks, alt):
+    """A picture with numbered marks. ``marks``: (number, column, row) in pixels; ``view``: its
+    ``picture.View``; ``uri``: its data.
+    """
+    rows, columns = view.depth.shape
+    size = columns / 45.0
+    drawn = [element("image", href=uri, x=0, y=0, width=columns, height=rows)]
+    labels = _placed(marks, columns, rows, size)
+    for (_, x, y), (at, up) in zip(marks, labels):  # lines below all rings and labels
+        pen = {"fill": "none", "stroke_linecap": "round"}
+        line = f"M{x:.1f} {y:.1f}L{at:.1f} {up:.1f}"
+        drawn.append(element("path", d=line, stroke="white", stroke_width=size / 4, **pen))
+        drawn.append(element("path", d=line, stroke=INK, stroke_width=size / 10, **pen))
+    for number, x, y in marks:
+        drawn.append(element("circle", cx=x, cy=y, r=size / 4.2, fill=INK, stroke="white"))
+    for (number, *_), (at, up) in zip(marks, labels):
+        drawn.append(
+            element("circle", cx=at, cy=up, r=0.85 * size, fill=INK, stroke="white", stroke_width=2)
+        )
+        drawn.append(
+            element(
+                "text",
+                number,
+                x=at,
+                y=up + 0.37 * size,
+                text_anchor="middle",
+                fill="white",
+                font_size=1.1 * size,
+                font_weight="bold",
+            )
+        )
+    return _svg(columns, rows, drawn, class_="picture", aria_label=alt)
+
+
+def ringed(view, uri, x, y, alt):
+    """A picture with a ring around the place (column, row)."""
+    rows, columns = view.depth.shape
+    size = columns / 20.0
+    rings = [
+        element("circle", cx=x, cy=y, r=size, fill="none", stroke=colour, stroke_width=size / thin)
+        for colour, thin in (("white", 3.2), (INK, 8.0))
+    ]
+    image = element("image", href=uri, x=0, y=0, width=columns, height=rows)
+    return _svg(columns, rows, image, rings, class_="picture", aria_label=alt)
+
+
+def _placed(marks, columns, rows, size):
+    """Where the numbers stand: at the nearer border, one below the other, in their marks' order."""
+    placed = {}
+    for border, side in ((1.4 * size, False), (columns - 1.4 * size, True)):
+        own = sorted((m for m in marks if (m[1] > 0.5 * columns) == side), key=lambda m: m[2])
+        step, low = 2.1 * size, 1.4 * size
+        for k, (number, _, y) in enumerate(own):
+            room = rows - 1.4 * size - step * (len(own) - 1 - k)  # for those that follow
+            low = min(max(low, y), room)
+            placed[number] = (border, low)
+            low += step
+    return [placed[number] for number, *_ in marks]

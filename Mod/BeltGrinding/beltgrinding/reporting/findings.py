@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.messages import body, event_message, kind_text
+from ..base.messages import body, event_message, kind_text, sentence, warnings
 from ..engine import core
 from ..job.poses import program_name
 from . import charts, facts, verdict_section
@@ -86,7 +86,7 @@ def head(content, words, scale):
         element(
             "div", element("strong", text), element("p", " ".join(said)), class_=f"verdict {state}"
         ),
-        [element("p", note, class_="note") for note in content.notes],
+        [element("p", sentence(note, words.code), class_="note") for note in content.notes],
         element(
             "div",
             [
@@ -344,17 +344,16 @@ def trust(content, words):
         )
     ]
     heads = [(words("Count"), "number"), (words("Doubtful"), ""), (words("What it means"), "")]
-    warnings = list(result.summary.get("warnings", []))
-    warnings += content.verdict["notes"] if content.verdict is not None else []
+    told = warnings(result.summary, words.code)
+    if content.verdict is not None:
+        told += [sentence(note, words.code) for note in content.verdict["notes"]]
     return section(
         words("How sure is that?"),
         element(
             "p", words("Everything that weakens the result is counted here, also where it is zero.")
         ),
         table(heads, rows, "list doubts"),
-        element("ul", [element("li", text) for text in warnings], class_="warnings")
-        if warnings
-        else None,
+        element("ul", [element("li", text) for text in told], class_="warnings") if told else None,
         _uncertainty(result.summary, words),
         _convergence(content.convergence, words),
     )

@@ -24,7 +24,12 @@ class Language:
 
     def __init__(self, code="en"):
         if code not in LANGUAGES:
-            raise InputError(f"report: no language '{code}'; choose {' or '.join(LANGUAGES)}")
+            raise InputError(
+                "reporting.no_language",
+                "report: no language '{language}'; choose {choices}",
+                language=code,
+                choices=" or ".join(LANGUAGES),
+            )
         self.code = code
         self.texts = {} if code == "en" else _texts(code)
 

@@ -1,7 +1,7 @@
 """A report's page, put together from its sections."""
 
 from ..base.resources import resources
-from . import charts, facts, findings, marked_pictures, reproduction
+from . import charts, facts, findings, reproduction
 from .layout import facts as rows, section
 from .markup import Markup, element
 
@@ -44,7 +44,7 @@ def _pictures(content, words, scale, spots, drawn):
         shots.append(
             element(
                 "figure",
-                marked_pictures.marked(shot.view, shot.uri, shot.marks, name),
+                charts.marked(shot.view, shot.uri, shot.marks, name),
                 element("figcaption", element("b", name)),
                 class_="whole",
             )
@@ -52,7 +52,7 @@ def _pictures(content, words, scale, spots, drawn):
     close = []
     for spot, shot in zip(spots, drawn["close"]):
         name = words("Spot {number}", number=spot["number"])
-        picture = marked_pictures.ringed(shot.view, shot.uri, *shot.marks[0][1:], name)
+        picture = charts.ringed(shot.view, shot.uri, *shot.marks[0][1:], name)
         text = element(
             "figcaption", element("b", name), ": ", findings.spot(spot, content.verdict, words)
         )

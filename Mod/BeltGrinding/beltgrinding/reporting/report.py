@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import workpiece
@@ -38,7 +38,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     """
     folder = None if isinstance(result, Result) else Path(result)
     if output is None and folder is None:
-        raise InputError("report: say by output what file to write")
+        raise InputError("reporting.no_output", "report: say by output what file to write")
     output = Path(output) if output is not None else folder / "report.html"
     words = Language(language)
     printer = _printer() if pdf is not None else None
@@ -50,9 +50,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
         if printer is not None:
             write_whole(Path(pdf), printer(html))
     except OSError as error:
-        raise InputError(
-            f"{error.filename or output}: cannot be written: {error.strerror}"
-        ) from None
+        raise cannot_be_written(error.filename or output, error) from None
     return output
 
 
@@ -66,7 +64,7 @@ def load(result, title=None, notes=(), context=None):
         shape = workpiece.read_design(result.job["design"], context)
     except InputError as error:
         shape = None
-        notes.append(str(error))
+        notes.append(error.fact)
     bins = result.bins if result.bins or result.steps is None else charts.binned(result.steps)
     return Content(
         result,
@@ -87,7 +85,7 @@ def _verdict(result, shape, notes):
     try:
         return verdicts.of_result(result, shape)
     except InputError as error:
-        notes.append(str(error))
+        notes.append(error.fact)
         return None
 
 
@@ -106,7 +104,9 @@ def _printer():
         from weasyprint import HTML
     except (ImportError, OSError) as error:  # OSError: a library of the system that it needs
         raise InputError(
-            f"a PDF needs WeasyPrint ({error}); install Debian's weasyprint, or print the HTML "
-            "report from a browser"
+            "reporting.no_weasyprint",
+            "a PDF needs WeasyPrint ({reason}); install Debian's weasyprint, or print the "
+            "HTML report from a browser",
+            reason=error,
         ) from None
     return lambda html: HTML(string=html, base_url="").write_pdf()

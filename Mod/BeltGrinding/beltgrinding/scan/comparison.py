@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import write_whole
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from ..job import workpiece
 from . import file as scan_file, start as scan_start
@@ -36,8 +36,11 @@ def extension():
         import beltgrinding_scan
     except ImportError as error:
         raise InputError(
-            f"scans are aligned by the module beltgrinding_scan, which cannot be loaded ({error}). It "
-            "is built with the workbench where nanoflann (libnanoflann-dev) is installed"
+            "scan.no_module",
+            "scans are aligned by the module beltgrinding_scan, which cannot be loaded "
+            "({reason}). It is built with the workbench where nanoflann (libnanoflann-dev) "
+            "is installed",
+            reason=error,
         ) from None
     return beltgrinding_scan
 
@@ -63,10 +66,13 @@ def datum(result, faces=None, context=None):
         for face in chosen:
             if not 0 <= face < shape.face_count:
                 raise InputError(
-                    f"scan: there is no datum face {face + 1}; the design has {shape.face_count}"
+                    "scan.no_such_datum_face",
+                    "scan: there is no datum face {face}; the design has {count}",
+                    face=face + 1,
+                    count=shape.face_count,
                 )
         if not chosen:
-            raise InputError("scan: no datum face is named")
+            raise InputError("scan.no_datum_face", "scan: no datum face is named")
     area = sum(shape.face_area(i) for i in chosen)
     spacing = max(result.field.spacing, math.sqrt(area / DATUM_SAMPLES))
     points, normals = [], []
@@ -105,11 +111,19 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
     module = extension()
     for name in fixed:
         if name not in FREEDOMS:
-            raise InputError(f"scan: there is no freedom '{name}'; they are {', '.join(FREEDOMS)}")
+            raise InputError(
+                "scan.no_such_freedom",
+                "scan: there is no freedom '{name}'; they are {freedoms}",
+                name=name,
+                freedoms=", ".join(FREEDOMS),
+            )
     size = float(np.linalg.norm(np.ptp(datum["points"], axis=0)))
     reach = size / 20 if max_distance_mm is None else float(max_distance_mm)
     if not (reach > 0 and math.isfinite(reach) and 0 < share <= 1):
-        raise InputError("scan: the greatest distance must be above 0 mm, the share in (0, 1]")
+        raise InputError(
+            "scan.distance_or_share",
+            "scan: the greatest distance must be above 0 mm, the share in (0, 1]",
+        )
 
     taken, upwards = scan.spread()
 
@@ -131,29 +145,54 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
     across = float(np.linalg.norm(np.ptp(scan.points, axis=0)))
     if across < LEAST_SIZE * size:
         raise InputError(
-            f"scan: it is {across:.3g} mm across, the design {size:.3g} mm; look at its unit"
+            "scan.size",
+            "scan: it is {across:.3g} mm across, the design {size:.3g} mm; look at its unit",
+            across=across,
+            size=size,
         )
     warnings = []
     if isinstance(start, str):
         if start != "principal":
-            raise InputError(f"scan: there is no start '{start}'; give 'principal' or a matrix")
+            raise InputError(
+                "scan.no_such_start",
+                "scan: there is no start '{start}'; give 'principal' or a matrix",
+                start=start,
+            )
         start = scan_start.by_principal_axes(taken, datum, register, size, warnings)
     matrix = np.eye(4) if start is None else scan_start.rigid(start, "scan: the start")
     found = register(matrix, reach)
     motions = [scan_start.motion_words(one) for one in found["undetermined"]]
     radius = float(np.sqrt(((datum["points"] - found["centre"]) ** 2).sum(axis=1).mean()))
     if motions:
+        free = motions[0]
+        for motion in motions[1:]:
+            free = core.Fact("scan.motions", "{one}; {other}", one=free, other=motion)
         warnings.append(
-            "the datum leaves the scan free to move: "
-            + "; ".join(motions)
-            + ". It stays there as it started; add datum faces that look another way"
+            core.Fact(
+                "scan.free_to_move",
+                "the datum leaves the scan free to move: {motions}. It stays there as it started; add "
+                "datum faces that look another way",
+                motions=free,
+            )
         )
     scale = np.array([1, 1, 1, radius, radius, radius])
     if not motions and np.max(np.array(found["sd"]) * scale) > PLAIN_SD:
         worst = int(np.argmax(np.array(found["sd"]) * scale))
-        warnings.append(f"the datum hardly determines {FREEDOMS[worst]}: see sd")
+        warnings.append(
+            core.Fact(
+                "scan.hardly_determined",
+                "the datum hardly determines {freedom}: see sd",
+                freedom=FREEDOMS[worst],
+            )
+        )
     if not found["converged"]:
-        warnings.append(f"the alignment has not settled after {found['iterations']} iterations")
+        warnings.append(
+            core.Fact(
+                "scan.not_settled",
+                "the alignment has not settled after {count} iterations",
+                count=found["iterations"],
+            )
+        )
     return {
         "work_from_scan": np.asarray(found["work_from_scan"]),
         "rms_mm": found["rms"],
@@ -178,7 +217,7 @@ def measure(field, scan, work_from_scan, search_mm=None):
         greatest = max(np.abs(field.height).max(), np.abs(field.stock_height).max())
         search_mm = float(greatest) + SEARCH_MARGIN
     if not (search_mm > 0 and math.isfinite(search_mm)):
-        raise InputError("scan: the search distance must be above 0 mm")
+        raise InputError("scan.search", "scan: the search distance must be above 0 mm")
     moved = scan_start.moved(scan.points, work_from_scan)
     if scan.triangles is None:
         return np.asarray(
@@ -202,7 +241,9 @@ def statistics(field, measured, tolerance):
     """Area-weighted figures of a measurement and of its difference from the prediction, mm."""
     known = np.isfinite(measured) & ((np.asarray(field.flags) & core.MISSED) == 0)
     if not known.any():
-        raise InputError("scan: no sample has both a measured and a predicted height")
+        raise InputError(
+            "scan.nothing_measured", "scan: no sample has both a measured and a predicted height"
+        )
     area = np.asarray(field.areas, dtype=float)
     weight = area[known] / area[known].sum()
     lower, upper = tolerance
@@ -266,7 +307,9 @@ def compare(
         surface = datum(result, datum_faces, context)
         if pairs is not None:
             if start is not None:
-                raise InputError("scan: give pairs of points or a start, not both")
+                raise InputError(
+                    "scan.pairs_and_start", "scan: give pairs of points or a start, not both"
+                )
             start, figures["pairs_rms_mm"] = scan_start.by_pairs(pairs, unit_mm)
         found = align(scan, surface, start, fixed, max_distance_mm, share)
         matrix = found["work_from_scan"]
@@ -291,7 +334,7 @@ def write(result, figures, folder):
     try:
         write_whole(folder / "scan.json", text.encode())
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+        raise cannot_be_written(folder, error) from None
 
 
 def _plain(found):

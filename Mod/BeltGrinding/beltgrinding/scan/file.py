@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.files import cannot_be_read
 from ..engine import InputError, core
 
 TEXT_SUFFIXES = (".xyz", ".asc", ".txt", ".csv", ".pts")
@@ -31,7 +32,7 @@ class Scan:
         twice = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         size = np.linalg.norm(twice, axis=1)
         if not size.sum() > 0:
-            raise InputError("scan: its triangles have no area")
+            raise InputError("scan.no_area", "scan: its triangles have no area")
         random = np.random.default_rng(0)
         chosen = np.sort(random.choice(len(size), count, p=size / size.sum()))
         u, v = random.random((2, count, 1))
@@ -44,19 +45,28 @@ def read(path, unit_mm=1.0):
     """The ``Scan`` in a file; ``unit_mm``: mm of the file's 1. Raises InputError naming the file."""
     path = Path(path)
     if not (isinstance(unit_mm, (int, float)) and unit_mm > 0 and math.isfinite(unit_mm)):
-        raise InputError(f"{path}: the scan's unit must be a positive number of millimetres")
+        raise InputError(
+            "scan.unit",
+            "{file}: the scan's unit must be a positive number of millimetres",
+            file=path,
+        )
     if not path.is_file():
-        raise InputError(f"{path}: there is no such file")
+        raise InputError("scan.no_file", "{file}: there is no such file", file=path)
     if path.suffix.lower() in TEXT_SUFFIXES:
         return Scan(read_text(path) * unit_mm)
     if path.suffix.lower() == ".ply":
         points, triangles = core.read_ply(str(path))
         points = np.asarray(points) * unit_mm
         if not len(points):
-            raise InputError(f"{path}: the scan has no point")
+            raise InputError("scan.no_point", "{file}: the scan has no point", file=path)
         if not np.isfinite(points).all():
             row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-            raise InputError(f"{path}: vertex {row} is not finite")
+            raise InputError(
+                "scan.vertex_not_finite",
+                "{file}: vertex {vertex} is not finite",
+                file=path,
+                vertex=row,
+            )
         return Scan(points, np.asarray(triangles) if len(triangles) else None)
     if path.suffix.lower() == ".obj" and not _has_faces(path):
         return Scan(_obj_points(path) * unit_mm)
@@ -71,10 +81,14 @@ def read_text(path):
     """
     try:
         if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path}: a text of more than 4 GB; thin the scan out, or write PLY")
+            raise InputError(
+                "scan.text_too_large",
+                "{file}: a text of more than 4 GB; thin the scan out, or write PLY",
+                file=path,
+            )
         text = path.read_text(encoding="latin-1")
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise cannot_be_read(path, error) from None
     rows, headings = [], 0
     for number, line in enumerate(text.splitlines(), 1):
         line = line.strip()
@@ -87,15 +101,24 @@ def read_text(path):
             headings += 1
             if rows or headings > 1 or line[0] in "+-.0123456789" and " " in line:
                 raise InputError(
-                    f"{path}: line {number}: '{line[:40]}' does not begin with three numbers; the "
-                    "decimal sign is a point"
+                    "scan.no_coordinates",
+                    "{file}: line {line}: '{text}' does not begin with three numbers; the decimal "
+                    "sign is a point",
+                    file=path,
+                    line=number,
+                    text=line[:40],
                 ) from None
             continue
         if not all(math.isfinite(value) for value in row):
-            raise InputError(f"{path}: line {number}: a coordinate is not finite")
+            raise InputError(
+                "scan.coordinate_not_finite",
+                "{file}: line {line}: a coordinate is not finite",
+                file=path,
+                line=number,
+            )
         rows.append(row)
     if not rows:
-        raise InputError(f"{path}: the scan has no point")
+        raise InputError("scan.no_point", "{file}: the scan has no point", file=path)
     return np.array(rows)
 
 
@@ -130,8 +153,13 @@ def _obj_points(path):
             except ValueError:
                 row = []
             if len(row) != 3 or not all(math.isfinite(value) for value in row):
-                raise InputError(f"{path}: line {number}: a vertex is three finite numbers")
+                raise InputError(
+                    "scan.no_vertex",
+                    "{file}: line {line}: a vertex is three finite numbers",
+                    file=path,
+                    line=number,
+                )
             rows.append(row)
     if not rows:
-        raise InputError(f"{path}: the scan has no point")
+        raise InputError("scan.no_point", "{file}: the scan has no point", file=path)
     return np.array(rows)

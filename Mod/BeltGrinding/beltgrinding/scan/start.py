@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 
-from ..engine import InputError
+from ..base.files import cannot_be_read
+from ..engine import InputError, core
 
 AXES = ("x", "y", "z")
 TRY_POINTS = 3_000  # of the scan, for one of the directions of its principal axes
@@ -22,14 +23,18 @@ def rigid(matrix, name):
     try:
         given = np.asarray(matrix, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(f"{name}: not a matrix of numbers") from None
+        raise InputError("scan.no_matrix", "{name}: not a matrix of numbers", name=name) from None
     if given.shape == (3, 4):
         given = np.vstack([given, [0, 0, 0, 1]])
     if given.shape != (4, 4) or not np.isfinite(given).all():
-        raise InputError(f"{name}: write 4 rows (or 3) of 4 finite numbers")
+        raise InputError(
+            "scan.matrix_rows", "{name}: write 4 rows (or 3) of 4 finite numbers", name=name
+        )
     u, sizes, v = np.linalg.svd(given[:3, :3])
     if np.abs(sizes - 1).max() > 1e-3 or np.linalg.det(given[:3, :3]) < 0 or any(given[3, :3]):
-        raise InputError(f"{name}: its left part is no rotation (to 0.001)")
+        raise InputError(
+            "scan.matrix_rotation", "{name}: its left part is no rotation (to 0.001)", name=name
+        )
     result = np.eye(4)
     result[:3, :3] = u @ v
     result[:3, 3] = given[:3, 3]
@@ -49,16 +54,20 @@ def by_pairs(pairs, unit_mm=1.0):
     try:
         given = np.asarray(pairs, dtype=float)
     except (TypeError, ValueError):
-        raise InputError("scan: the pairs are no numbers") from None
+        raise InputError("scan.pairs_no_numbers", "scan: the pairs are no numbers") from None
     if given.ndim != 3 or given.shape[1:] != (2, 3) or len(given) < 3:
-        raise InputError("scan: three pairs of points at least; six numbers each")
+        raise InputError(
+            "scan.pairs_too_few", "scan: three pairs of points at least; six numbers each"
+        )
     if not np.isfinite(given).all():
-        raise InputError("scan: the pairs are not finite")
+        raise InputError("scan.pairs_not_finite", "scan: the pairs are not finite")
     scan, work = given[:, 0] * unit_mm, given[:, 1]
     centres = scan.mean(axis=0), work.mean(axis=0)
     u, sizes, v = np.linalg.svd((work - centres[1]).T @ (scan - centres[0]))
     if sizes[1] < 1e-9 * max(sizes[0], 1e-300):
-        raise InputError("scan: the pairs lie on one line; a turn about it stays open")
+        raise InputError(
+            "scan.pairs_on_a_line", "scan: the pairs lie on one line; a turn about it stays open"
+        )
     sign = np.diag([1, 1, np.sign(np.linalg.det(u @ v))])
     matrix = np.eye(4)
     matrix[:3, :3] = u @ sign @ v
@@ -100,8 +109,9 @@ def by_principal_axes(points, datum, register, size, warnings):
             tried.append((found["rms"] / max(found["used_share"], 1e-9), found))
     if not tried:
         raise InputError(
-            "scan: by its principal axes the scan lies nowhere on the datum; it may hold much that is "
-            "not the part. Start from pairs of points or a matrix"
+            "scan.principal_axes",
+            "scan: by its principal axes the scan lies nowhere on the datum; it may hold "
+            "much that is not the part. Start from pairs of points or a matrix",
         )
     tried.sort(key=lambda one: one[0])
     best = tried[0][1]
@@ -111,23 +121,32 @@ def by_principal_axes(points, datum, register, size, warnings):
         turn = found["work_from_scan"][:3, :3] @ best["work_from_scan"][:3, :3].T
         if math.acos(np.clip((np.trace(turn) - 1) / 2, -1, 1)) > OTHER_WAY:
             warnings.append(
-                "the scan fits nearly as well turned another way: the part looks symmetric; check "
-                "the side, or start from pairs of points"
+                core.Fact(
+                    "scan.symmetric",
+                    "the scan fits nearly as well turned another way: the part looks symmetric; "
+                    "check the side, or start from pairs of points",
+                )
             )
             break
     return np.asarray(best["work_from_scan"])
 
 
 def motion_words(motion):
-    """A unit motion (6,) in words: "shift along (1.00, 0.00, 0.00)"."""
+    """A unit motion (6,) in words, as a fact: "shift along (1.00, 0.00, 0.00)"."""
     shift, turn = np.asarray(motion[:3]), np.asarray(motion[3:])
     told = []
-    for vector, what in ((shift, "shift along"), (turn, "turn about")):
+    for vector, code, text in (
+        (shift, "scan.shift", "shift along {direction}"),
+        (turn, "scan.turn", "turn about {direction}"),
+    ):
         if np.linalg.norm(vector) > 0.3:
             unit = vector / np.linalg.norm(vector)
             unit = unit * (1 if unit[np.argmax(np.abs(unit))] > 0 else -1)
-            told.append(f"{what} ({', '.join(f'{value + 0:.2f}' for value in unit)})")
-    return " with ".join(told)
+            direction = f"({', '.join(f'{value + 0:.2f}' for value in unit)})"
+            told.append(core.Fact(code, text, direction=direction))
+    if len(told) < 2:
+        return told[0] if told else ""
+    return core.Fact("scan.shift_and_turn", "{shift} with {turn}", shift=told[0], turn=told[1])
 
 
 def face_numbers(text):
@@ -135,7 +154,9 @@ def face_numbers(text):
     try:
         return [int(word) for word in text.split(",") if word.strip()]
     except ValueError:
-        raise InputError(f"scan: datum faces '{text}': write numbers, as 1,2,5") from None
+        raise InputError(
+            "scan.face_numbers", "scan: datum faces '{text}': write numbers, as 1,2,5", text=text
+        ) from None
 
 
 def read_matrix(path):
@@ -154,7 +175,7 @@ def _numbers(path, columns):
         with open(path, encoding="utf-8-sig") as file:
             lines = file.read().splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read: {error}") from None
+        raise cannot_be_read(path, error) from None
     rows = []
     for number, line in enumerate(lines, 1):
         words = line.split("#")[0].replace(",", " ").replace(";", " ").split()
@@ -165,8 +186,14 @@ def _numbers(path, columns):
         except ValueError:
             row = []
         if len(row) != columns or not all(math.isfinite(value) for value in row):
-            raise InputError(f"{path}: line {number}: write {columns} numbers")
+            raise InputError(
+                "scan.row",
+                "{file}: line {line}: write {columns} numbers",
+                file=path,
+                line=number,
+                columns=columns,
+            )
         rows.append(row)
     if not rows:
-        raise InputError(f"{path}: there are no numbers")
+        raise InputError("scan.no_numbers", "{file}: there are no numbers", file=path)
     return rows

@@ -24,6 +24,10 @@ SETTINGS = {  # what is refined: name, keys of the job
     "contact_grid": (("belt_machine", "contact_spacing_mm"),),
 }
 
+FAILED = {  # a note on one that failed
+    "coarse": ("simulation.no_coarse_level", "the coarse level could not be run: {reason}"),
+    "fine": ("simulation.no_fine_level", "the fine level could not be run: {reason}"),
+}
 COST = {"coarse": 0.125, "given": 1.0, "fine": 8.0}  # of a run: samples and steps, by the ratio
 ORDERS = (0.5, 2.0)  # observed orders outside are taken as these: beyond, they are chance
 SAFETY = 1.25  # on three levels (Roache)
@@ -50,7 +54,10 @@ def converge(job, context=None):
         except (InputError, MemoryError) as error:
             if level == "given":
                 raise
-            notes.append(f"the {level} level could not be run: {error or 'out of memory'}")
+            if isinstance(error, MemoryError):
+                error = core.Fact("simulation.out_of_memory", "out of memory")
+            code, text = FAILED[level]
+            notes.append(core.Fact(code, text, reason=error))
             levels[level] = None
         else:
             levels[level] = _level(found, time.perf_counter() - start)
@@ -169,7 +176,14 @@ def _blame(job, given, context, notes):
         try:
             run = _level(runs.run(scaled(job, "coarse", name), part), 0.0)
         except InputError as error:
-            notes.append(f"{name} alone could not be made coarser: {error}")
+            notes.append(
+                core.Fact(
+                    "simulation.not_coarser",
+                    "{setting} alone could not be made coarser: {reason}",
+                    setting=name,
+                    reason=error,
+                )
+            )
             found[name] = None
             continue
         changes = [

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import schemas
-from ..base.files import json_bytes, write_whole
+from ..base.files import cannot_be_read, cannot_be_written, json_bytes, write_whole
 from ..cell import events, motions
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
@@ -87,7 +87,7 @@ class Result:
                 for name in OF_THE_LAST:
                     (folder / name).unlink(missing_ok=True)
         except OSError as error:
-            raise InputError(f"{folder}: cannot be written: {error.strerror}") from None
+            raise cannot_be_written(folder, error) from None
 
     def _write_files(self, folder):
         """All but summary.json."""
@@ -119,23 +119,32 @@ class Result:
         folder = Path(folder)
         if folder.is_dir() and not (folder / FILES[-1]).exists():
             raise InputError(
-                f"{folder}: holds no result: no run has ended there, or one was broken off while it "
-                "wrote; run the job again"
+                "simulation.no_result",
+                "{file}: holds no result: no run has ended there, or one was broken off while it "
+                "wrote; run the job again",
+                file=folder,
             )
         data = {}
         for name in ("summary.json", "events.json"):
             try:
                 data[name] = json.loads((folder / name).read_text(encoding="utf-8"))
             except OSError as error:
-                raise InputError(f"{folder / name}: cannot be read: {error.strerror}") from None
+                raise cannot_be_read(folder / name, error) from None
             except ValueError as error:
-                raise InputError(f"{folder / name}: no JSON: {error}") from None
+                raise InputError(
+                    "simulation.no_json",
+                    "{file}: no JSON: {reason}",
+                    file=folder / name,
+                    reason=error,
+                ) from None
         field, attributes = core.HeightField.from_hdf5(str(folder / "heightfield.h5"))
         try:
             job = schemas.filled(json.loads(attributes), schemas.schema("job"))
         except ValueError:
             raise InputError(
-                f"{folder / 'heightfield.h5'}: holds no job; it is not a run's result"
+                "simulation.no_job",
+                "{file}: holds no job; it is not a run's result",
+                file=folder / "heightfield.h5",
             ) from None
         data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
         found = events.complete(data["events.json"])
@@ -192,9 +201,16 @@ def _read_table(folder):
             names = file.readline().strip().split(",")
             rows = np.loadtxt(file, delimiter=",", ndmin=2)
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: no table of steps: {error}") from None
+        raise InputError(
+            "simulation.no_steps", "{file}: no table of steps: {reason}", file=path, reason=error
+        ) from None
     found = dict(zip(names, rows.T))
     missing = [name for name in STEP_COLUMNS.values() if name not in found]
     if missing:
-        raise InputError(f"{path}: the column {missing[0]} is missing")
+        raise InputError(
+            "simulation.no_column",
+            "{file}: the column {column} is missing",
+            file=path,
+            column=missing[0],
+        )
     return {name: found[column] for name, column in STEP_COLUMNS.items()}

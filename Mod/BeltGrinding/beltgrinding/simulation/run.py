@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 
+from ..base.messages import fact_data
 from ..cell import collision, events as event_lists, motions, reach
 from ..cell.tool_path import tool_path
 from ..engine import InputError, core
@@ -43,8 +44,10 @@ def run(job, context=None, recording=None):
     except InputError as error:
         if not warnings:
             raise
-        notes = "; ".join(warnings[:NOTES])  # they may well be the reason
-        raise InputError(f"{error}. Note: {notes}") from None
+        notes = warnings[0]  # they may well be the reason
+        for warning in warnings[1:NOTES]:
+            notes = core.Fact("simulation.and_note", "{one}; {other}", one=notes, other=warning)
+        raise error.followed_by("simulation.notes", ". Note: {notes}", notes=notes) from None
 
 
 def _run(job, context, warnings, recording):
@@ -78,7 +81,9 @@ def _run(job, context, warnings, recording):
         try:
             result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
         except InputError as error:
-            raise InputError(f"{program_name(job, i)}: {error}") from None
+            raise error.within(
+                "job.in_program", "{program}: ", program=program_name(job, i)
+            ) from None
         lists = [one[i]["events"] for one in (reached, met) if one]
         found.append((i, process_time, sum(lists, result["events"])))
         rows = result["steps"]
@@ -103,6 +108,7 @@ def _run(job, context, warnings, recording):
         process_time_s=process_time,
         wall_time_s=phases.seconds,
         warnings=warnings,
+        warning_facts=[fact_data(warning) for warning in warnings],
         inputs=digests,
         models=models,
         belt={

@@ -1,20 +1,16 @@
 """The plot of a cross-section as a widget: wheel zooms, drag pans, double click shows everything."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from ...charts import model, ticks
 from ...inspection import section_plot
 from ...objects.preferences import deviation_unit, length_text
 from ..common.compat import QtCore, QtGui, translate
-from . import paint
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot
 NEAR = 40  # pixels around the mouse in which a point is shown
 ZOOM = 1.2  # per step of the wheel
-INK = "#30343a"  # of texts
 LABELS = {  # of section_plot.LOOKS
     "tolerance": translate("BeltGrinding", "tolerance"),
     "uncertainty": translate("BeltGrinding", "95 % uncertainty"),
@@ -25,7 +21,7 @@ LABELS = {  # of section_plot.LOOKS
 
 
 class SectionChart(QtGui.QWidget):
-    """Draws a ``section_plot.Plot``. Data in mm; ``window`` is the part of it that is seen."""
+    """Draws what ``section_plot.plot`` gives. Data in mm; ``window`` is the part of it that is seen."""
 
     def __init__(self):
         super().__init__()
@@ -33,14 +29,10 @@ class SectionChart(QtGui.QWidget):
         self.setMinimumSize(320, 160)
         self.setMouseTracking(True)
         self.plot = self.section = self.window = self.hovered = self.dragged = None
-        self.drawing = None
 
     def show_plot(self, section, plot):
-        """Shows a section; the zoom stays when its kind stays. Raises InputError without matplotlib."""
-        same = self.plot is not None and plot is not None and self.plot.mode == plot.mode
-        if plot is not None:
-            ticks.ticker()  # a missing one is told here, not while painting
-            self.drawing = paint.Drawing(plot.chart)
+        """Shows a section; the zoom stays when its kind stays."""
+        same = self.plot is not None and plot is not None and self.plot["mode"] == plot["mode"]
         self.section, self.plot, self.hovered = section, plot, None
         if not same or not self.zoomed:
             self.fit()
@@ -49,8 +41,7 @@ class SectionChart(QtGui.QWidget):
     def fit(self):
         """Shows everything."""
         self.zoomed = False
-        x, y = (self.plot.chart.x, self.plot.chart.y) if self.plot else (None, None)
-        self.window = [x.low, y.low, x.high, y.high] if self.plot else None
+        self.window = list(self.plot["bounds"]) if self.plot else None
         self.update()
 
     # Data and pixels
@@ -62,16 +53,14 @@ class SectionChart(QtGui.QWidget):
 
     def scales(self):
         """(x0, y0 of the lower left in mm, pixels per mm in x and y)."""
+        x0, y0, x1, y1 = self.window
         area = self.area()
-        size = area.width(), area.height()
-        x0, y0, x1, y1 = model.window(self.plot.chart, *size, self.window)
-        return x0, y0, size[0] / max(x1 - x0, 1e-9), size[1] / max(y1 - y0, 1e-9)
-
-    def matrix(self):
-        """Qt's matrix from mm to pixels."""
-        x0, y0, x, y = self.scales()
-        area = self.area()
-        return QtGui.QTransform(x, 0.0, 0.0, -y, area.left() - x0 * x, area.bottom() + y0 * y)
+        x, y = area.width() / max(x1 - x0, 1e-9), area.height() / max(y1 - y0, 1e-9)
+        if self.plot["equal"]:
+            x = y = min(x, y)
+            x0 = 0.5 * (x0 + x1) - 0.5 * area.width() / x
+            y0 = 0.5 * (y0 + y1) - 0.5 * area.height() / y
+        return x0, y0, x, y
 
     def pixels(self, points):
         """(n, 2) pixels of (n, 2) mm."""
@@ -79,6 +68,9 @@ class SectionChart(QtGui.QWidget):
         area = self.area()
         left, bottom = area.left() - x0 * x, area.bottom() + y0 * y
         return np.column_stack([left + points[:, 0] * x, bottom - points[:, 1] * y])
+
+    def _polygon(self, points):
+        return QtGui.QPolygonF([QtCore.QPointF(x, y) for x, y in self.pixels(points).tolist()])
 
     # Painting
 
@@ -94,31 +86,48 @@ class SectionChart(QtGui.QWidget):
             painter.end()
             return
         self._grid(painter)
-        self.drawing.paint(painter, self.matrix(), self.area())
-        paint.legend(painter, self.plot.chart, LEFT, 14, LABELS, QtGui.QColor(INK))
+        painter.save()
+        painter.setClipRect(self.area())
+        for layer in self.plot["layers"]:
+            colour = QtGui.QColor(layer["colour"])
+            if "polygons" in layer:
+                painter.setPen(QtCore.Qt.NoPen)
+                colour.setAlphaF(0.7)
+                painter.setBrush(colour)
+                for polygon in layer["polygons"]:
+                    painter.drawPolygon(self._polygon(polygon))
+                continue
+            painter.setPen(_pen(layer))
+            for line in layer["lines"]:
+                painter.drawPolyline(self._polygon(line))
+        painter.restore()
+        self._legend(painter)
         self._value(painter)
         painter.end()
 
     def _grid(self, painter):
         area, (x0, y0, x, y) = self.area(), self.scales()
         width, height = area.width() / x, area.height() / y
-        grey, dark = QtGui.QColor(model.GRID), QtGui.QColor(INK)
-        across, up = self.axes()
-        for tick in ticks.ticks(across, x0, x0 + width, max(int(area.width() / 90), 2)):
-            at = area.left() + (tick.value - x0) * x
+        grey, dark = QtGui.QColor("#e3e5e8"), QtGui.QColor("#30343a")
+        values, decimals = section_plot.ticks(x0, x0 + width, max(int(area.width() / 90), 2))
+        for value in values:
+            at = area.left() + (value - x0) * x
             painter.setPen(grey)
             painter.drawLine(QtCore.QPointF(at, area.top()), QtCore.QPointF(at, area.bottom()))
             painter.setPen(dark)
             box = QtCore.QRectF(at - 40, area.bottom() + 3, 80, 16)
-            painter.drawText(box, QtCore.Qt.AlignCenter, tick.text)
-        for tick in ticks.ticks(up, y0, y0 + height, max(int(area.height() / 45), 2)):
-            at = area.bottom() - (tick.value - y0) * y
+            painter.drawText(box, QtCore.Qt.AlignCenter, f"{value + 0.0:.{decimals}f}")
+        size = self.height_unit()
+        low, high = y0 / size, (y0 + height) / size
+        values, decimals = section_plot.ticks(low, high, max(int(area.height() / 45), 2))
+        for value in values:
+            at = area.bottom() - (value * size - y0) * y
             painter.setPen(grey)
             painter.drawLine(QtCore.QPointF(area.left(), at), QtCore.QPointF(area.right(), at))
             painter.setPen(dark)
             box = QtCore.QRectF(0, at - 9, area.left() - 5, 18)
             right = QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter
-            painter.drawText(box, int(right), tick.text)
+            painter.drawText(box, int(right), f"{value + 0.0:.{decimals}f}")
         painter.setPen(dark)
         box = QtCore.QRectF(area.left(), area.bottom() + 20, area.width(), 18)
         painter.drawText(box, QtCore.Qt.AlignCenter, self._x_label())
@@ -126,29 +135,37 @@ class SectionChart(QtGui.QWidget):
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
 
-    def axes(self):
-        """The chart's axes, the upright one in the unit of deviations."""
-        chart = self.plot.chart
-        return chart.x, replace(chart.y, size=self.height_unit())
-
     def height_unit(self):
         """What the upright axis counts in, mm: the outline's true shape stays in mm."""
-        return deviation_unit().size if self.plot.mode == section_plot.UNROLLED else 1.0
+        return deviation_unit().size if self.plot["mode"] == section_plot.UNROLLED else 1.0
 
     def _x_label(self):
-        if self.plot.mode == section_plot.UNROLLED:
+        if self.plot["mode"] == section_plot.UNROLLED:
             text = translate("BeltGrinding", "arc length, mm; upright: height above the design, {}")
             return text.format(deviation_unit().symbol)
-        factor = f"{self.plot.exaggeration:g}"
+        factor = f"{self.plot['exaggeration']:g}"
         return translate("BeltGrinding", "in the plane, mm; heights ×{}").format(factor)
+
+    def _legend(self, painter):
+        x, metrics = LEFT, QtGui.QFontMetrics(painter.font())
+        for layer in self.plot["layers"]:
+            text = LABELS[layer["key"]]
+            if "polygons" in layer:
+                painter.fillRect(QtCore.QRectF(x, 9, 22, 10), QtGui.QColor(layer["colour"]))
+            else:
+                painter.setPen(_pen(layer))
+                painter.drawLine(QtCore.QPointF(x, 14), QtCore.QPointF(x + 22, 14))
+            painter.setPen(QtGui.QColor("#30343a"))
+            painter.drawText(QtCore.QPointF(x + 27, 18), text)
+            x += 44 + metrics.boundingRect(text).width()
 
     def _value(self, painter):
         if self.hovered is None:
             return
         piece, k = self.hovered
-        at = self.pixels(self.plot.ground[piece][k : k + 1])[0]
+        at = self.pixels(self.plot["ground"][piece][k : k + 1])[0]
         painter.setPen(QtGui.QPen(QtGui.QColor("white"), 1.5))
-        painter.setBrush(QtGui.QColor(model.BLUE))
+        painter.setBrush(QtGui.QColor(section_plot.LOOKS["ground"][1]))
         painter.drawEllipse(QtCore.QPointF(*at), 4.5, 4.5)
         text = self.value_text(piece, k)
         metrics = QtGui.QFontMetrics(painter.font())
@@ -161,7 +178,7 @@ class SectionChart(QtGui.QWidget):
         painter.setPen(QtGui.QColor("#6b7078"))
         painter.setBrush(QtGui.QColor(255, 255, 255, 235))
         painter.drawRoundedRect(box, 3, 3)
-        painter.setPen(QtGui.QColor(INK))
+        painter.setPen(QtGui.QColor("#30343a"))
         painter.drawText(box.adjusted(7, 4, -7, -4), int(QtCore.Qt.AlignLeft), text)
 
     def value_text(self, piece, k):
@@ -234,11 +251,11 @@ class SectionChart(QtGui.QWidget):
         section counts alone.
         """
         best, found = math.inf, None
-        for piece, line in enumerate(self.plot.ground):
+        for piece, line in enumerate(self.plot["ground"]):
             if np.isnan(line).all():
                 continue
             away = self.pixels(line) - (x, y)
-            if self.plot.mode == section_plot.UNROLLED:
+            if self.plot["mode"] == section_plot.UNROLLED:
                 away[:, 1] = np.where(np.isnan(away[:, 1]), np.nan, 0.0)
             distance = np.hypot(*away.T)
             k = int(np.nanargmin(distance))
@@ -249,3 +266,10 @@ class SectionChart(QtGui.QWidget):
 
 def _position(event):
     return event.position() if hasattr(event, "position") else event.pos()
+
+
+def _pen(layer):
+    pen = QtGui.QPen(QtGui.QColor(layer["colour"]), layer["width"])
+    if layer["dash"]:
+        pen.setDashPattern([value / layer["width"] for value in layer["dash"]])
+    return pen

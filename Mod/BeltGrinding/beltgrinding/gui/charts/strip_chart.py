@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from ...charts.model import Axis, Chart, Line
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
-from . import paint
 
 ROWS = (  # column of the steps, unit, colour
     ("force", "N", "#1f5fa8"),
@@ -40,11 +38,11 @@ class StripChart(QtGui.QWidget):
         self.events = events
         self.time = 0.0
         self.chosen = lambda time: None
-        named = texts()
-        self.charts = {row[0]: row_chart(steps, *row, named[row[0]], self.duration) for row in ROWS}
+        self.lines = {name: staircase(steps, name) for name, *_ in ROWS}
         self.menu = QtGui.QMenu(self)
+        self.texts = texts()
         for name, *_ in ROWS:
-            action = self.menu.addAction(named[name])
+            action = self.menu.addAction(self.texts[name])
             action.setObjectName(name)
             action.setCheckable(True)
             action.setChecked(True)
@@ -111,17 +109,14 @@ class StripChart(QtGui.QWidget):
         height = self._height()
         for k, (name, unit, colour) in enumerate(self.rows()):
             painter.setPen(QtGui.QColor(colour))
-            value = f"{self._points(name)[index, 1]:.4g} {unit}" if index is not None else ""
+            value = f"{self.lines[name][1][index]:.4g} {unit}" if index is not None else ""
             box = QtCore.QRect(6, int(EVENTS + k * height + 0.5 * height), LEFT - 16, 16)
             painter.drawText(box, int(QtCore.Qt.AlignLeft), value)
         painter.end()
 
     def _index(self):
-        times = self._points(ROWS[0][0])[:, 0]
+        times = next(iter(self.lines.values()))[0]
         return min(int(np.searchsorted(times, self.time)), len(times) - 1) if len(times) else None
-
-    def _points(self, name):
-        return self.charts[name].series[0].lines[0]
 
     def _height(self):
         return (self.height() - EVENTS) / max(len(self.rows()), 1)
@@ -134,34 +129,25 @@ class StripChart(QtGui.QWidget):
     def _draw(self, painter):
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         width, height = self.width() - LEFT - RIGHT, self._height()
-        for k, (name, *_) in enumerate(self.rows()):
-            chart = self.charts[name]
-            (line,) = chart.series
+        for k, (name, unit, colour) in enumerate(self.rows()):
+            times, values = self.lines[name]
             top, bottom = EVENTS + k * height + 4, EVENTS + (k + 1) * height - 4
+            most = float(values.max()) if len(values) else 0.0
             painter.setPen(QtGui.QColor("#dddddd"))
             painter.drawLine(LEFT, round(bottom), LEFT + width, round(bottom))
             painter.setPen(QtGui.QColor("black"))
-            painter.drawText(6, round(EVENTS + k * height + 0.5 * height - 2), chart.y.label)
-            x, y = envelope(*self._points(name).T, self.duration, width)
-            y = bottom - (bottom - top) * y / chart.y.span
-            painter.setPen(paint.pen(line))
-            painter.drawPolyline(paint.polygon(np.column_stack([LEFT + x, y])))
+            label = f"{self.texts[name]}, 0…{most:.3g} {unit}"
+            painter.drawText(6, round(EVENTS + k * height + 0.5 * height - 2), label)
+            x, y = envelope(times, values, self.duration, width)
+            y = bottom - (bottom - top) * y / (most or 1.0)
+            painter.setPen(QtGui.QPen(QtGui.QColor(colour), 1.2))
+            points = [QtCore.QPointF(LEFT + a, b) for a, b in zip(x.tolist(), y.tolist())]
+            painter.drawPolyline(QtGui.QPolygonF(points))
         painter.setPen(QtCore.Qt.NoPen)
         painter.setBrush(QtGui.QColor(MARK))
         for x in sorted({round(self.x(event["time"])) for event in self.events}):
             corners = ((x - 4, 1), (x + 4, 1), (x, EVENTS - 3))
             painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(*c) for c in corners]))
-
-
-def row_chart(steps, name, unit, colour, text, duration):
-    """The chart of a row: its column of the steps against the time, from 0 to the greatest value."""
-    points = np.column_stack(staircase(steps, name))
-    most = float(points[:, 1].max(initial=0.0))
-    return Chart(
-        Axis(0.0, duration),
-        Axis(0.0, most or 1.0, f"{text}, 0…{most:.3g} {unit}"),
-        [Line([points], colour)],
-    )
 
 
 def staircase(steps, name):

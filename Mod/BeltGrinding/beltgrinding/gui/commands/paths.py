@@ -58,9 +58,7 @@ class FollowPath(Command):
         ]
         if len(sources) != 1:
             raise InputError(
-                translate(
-                    "BeltGrinding", "Select one CAM path or robot trajectory in the tree first."
-                )
+                "gui.select_path", "Select one CAM path or robot trajectory in the tree first."
             )
         with transaction(
             job.Document, translate("BeltGrinding", "Follow selected path"), panel=True
@@ -142,7 +140,7 @@ class ExportProgram(Command):
         selected = self.candidates()
         if len(selected) != 1:
             raise InputError(
-                translate("BeltGrinding", "Select the robot path that is to be written.")
+                "gui.select_robot_path", "Select the robot path that is to be written."
             )
         title = translate("BeltGrinding", "Export robot program")
         kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;CSV (*.csv)"

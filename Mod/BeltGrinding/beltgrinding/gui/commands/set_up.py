@@ -33,7 +33,7 @@ class NewJob(Command):
                 links.append((one.Object, [s for s in one.SubElementNames if s.startswith("Face")]))
         if not links:
             raise InputError(
-                translate("BeltGrinding", "Select the faces to be ground, or the part, first.")
+                "gui.select_faces", "Select the faces to be ground, or the part, first."
             )
         with transaction(
             document, translate("BeltGrinding", "New grinding job"), panel=True

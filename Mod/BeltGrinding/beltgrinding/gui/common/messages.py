@@ -10,7 +10,7 @@ from .compat import QtGui, translate
 
 
 def error_text(error):
-    """What an error says, in the window's language."""
+    """What an error, a warning or a note says, in the window's language."""
     if not hasattr(error, "code"):
         return str(error)
     from .report_language import language  # not above: that the core is missing must be said, too

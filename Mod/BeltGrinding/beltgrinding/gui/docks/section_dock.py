@@ -138,10 +138,10 @@ class SectionDock(ObjectDock):
             section = obj.Proxy.cut(obj)
             mode = section_plot.SHAPE if shape else section_plot.UNROLLED
             plot = section_plot.plot(section, mode, self.exaggeration())
-            self.chart.show_plot(section, plot)
         except InputError as error:
             self.chart.show_plot(None, None)
             return self._say(error_text(error), True)
+        self.chart.show_plot(section, plot)
         self._say(self.figures_text(obj), False)
 
     def preferences_changed(self):

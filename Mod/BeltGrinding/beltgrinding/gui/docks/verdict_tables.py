@@ -1,6 +1,7 @@
 """What the verdict's dock writes into its tables and labels."""
 
 from ..common.compat import QtGui, translate
+from ..common.messages import error_text
 
 BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
 
@@ -93,7 +94,7 @@ def doubts(found):
     )
     told = ", ".join(f"{count} {what}" for what, count in counts)
     lines.append(translate("BeltGrinding", "In doubt") + f": {told}")
-    return "\n".join(lines + found["notes"])
+    return "\n".join([*lines, *(error_text(note) for note in found["notes"])])
 
 
 class _Rows:

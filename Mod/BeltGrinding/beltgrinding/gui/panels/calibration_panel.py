@@ -160,7 +160,9 @@ class CalibrationPanel:
         preview = QtGui.QPixmap()
         preview.loadFromData(small)
         self.plot.setPixmap(preview.scaledToWidth(WIDTH, QtCore.Qt.SmoothTransformation))
-        self.warnings.setText("\n".join(f"\u2022 {text}" for text in report["warnings"]))
+        self.warnings.setText(
+            "\n".join(f"\u2022 {error_text(text)}" for text in report["warnings"])
+        )
         self._show_parts(True)
         self.warnings.setVisible(bool(report["warnings"]))
 

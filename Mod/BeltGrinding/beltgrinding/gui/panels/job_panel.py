@@ -15,7 +15,7 @@ from .panel import Panel
 def check_tolerance(job):
     """Raises InputError if a job's tolerance is upside down."""
     if job.ToleranceLower > job.ToleranceUpper:
-        raise InputError(translate("BeltGrinding", "The lower limit lies above the upper limit."))
+        raise InputError("gui.limits_swapped", "The lower limit lies above the upper limit.")
 
 
 def mark_tolerance(form, job):
@@ -154,7 +154,7 @@ class JobPanel(Panel):
 
     def check(self):
         if self.obj.Spacing.Value <= 0:
-            raise InputError(translate("BeltGrinding", "The sample spacing must be positive."))
+            raise InputError("gui.spacing", "The sample spacing must be positive.")
         check_tolerance(self.obj)
         job_data.design(self.obj)
 

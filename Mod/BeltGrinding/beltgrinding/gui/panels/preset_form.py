@@ -108,7 +108,7 @@ class PresetForm(QtGui.QGroupBox):
         self.recommended = 0.0  # m/s
         if found.problems:
             wrong = _hint("PresetProblems")
-            wrong.setText("\n".join(str(problem) for problem in found.problems))
+            wrong.setText("\n".join(error_text(problem) for problem in found.problems))
             wrong.setStyleSheet("color: #b3261e;")
             wrong.show()
             self.rows.addRow(wrong)

@@ -134,7 +134,7 @@ class ScanPanel(Panel):
         """What ``scan.compare`` takes, from the fields. Raises InputError."""
         start, file = self.start.currentIndex(), self.start_file.text().strip()
         if start in (MATRIX, PAIRS) and not file:
-            raise InputError(translate("BeltGrinding", "Choose the file of the start."))
+            raise InputError("gui.choose_start", "Choose the file of the start.")
         options = {"unit_mm": UNITS[self.unit.currentIndex()][1], "aligned": start == ALIGNED}
         if start == PRINCIPAL:
             options["start"] = "principal"
@@ -153,7 +153,7 @@ class ScanPanel(Panel):
         path = self.file.text().strip()
         try:
             if not Path(path).is_file():
-                raise InputError(translate("BeltGrinding", "Choose the scan's file."))
+                raise InputError("gui.choose_scan", "Choose the scan's file.")
             options = self.options()
             result = part_scan.prepare(self.obj, self.job)
         except InputError as error:
@@ -185,7 +185,8 @@ class ScanPanel(Panel):
         self.obj.touch()
         self.document.recompute()
         self.show(figures)
-        self.tell(" ".join(figures["warnings"]), bool(figures["warnings"]))
+        told = " ".join(error_text(warning) for warning in figures["warnings"])
+        self.tell(told, bool(told))
 
     def show(self, figures):
         """The figures of a comparison."""
@@ -226,7 +227,7 @@ class ScanPanel(Panel):
 
     def check(self):
         if self.work is not None:
-            raise InputError(translate("BeltGrinding", "The comparison is still running."))
+            raise InputError("gui.comparison_runs", "The comparison is still running.")
 
     def close(self):
         if self.work is not None:

@@ -61,9 +61,9 @@ class StockPanel(Panel):
     def check(self):
         obj = self.obj
         if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
-            raise InputError(translate("BeltGrinding", "Choose the solid that is the stock."))
+            raise InputError("gui.choose_solid", "Choose the solid that is the stock.")
         if obj.Kind == "mesh" and not (hasattr(obj.Source, "Mesh") or obj.File):
-            raise InputError(translate("BeltGrinding", "Choose the mesh: an object or a file."))
+            raise InputError("gui.choose_mesh", "Choose the mesh: an object or a file.")
 
 
 def _belts(document):
@@ -145,27 +145,26 @@ class BeltMachinePanel(Panel):
         self.tell("")
 
     def check(self):
-        for name, text in (
-            ("WheelRadius", translate("BeltGrinding", "The wheel's radius must be positive.")),
-            ("WheelWidth", translate("BeltGrinding", "The wheel's width must be positive.")),
-            ("BeltSpeed", translate("BeltGrinding", "The belt speed must be positive.")),
-        ):
-            if getattr(self.obj, name).Value <= 0:
-                raise InputError(text)
+        if self.obj.WheelRadius.Value <= 0:
+            raise InputError("gui.wheel_radius", "The wheel's radius must be positive.")
+        if self.obj.WheelWidth.Value <= 0:
+            raise InputError("gui.wheel_width", "The wheel's width must be positive.")
+        if self.obj.BeltSpeed.Value <= 0:
+            raise InputError("gui.belt_speed", "The belt speed must be positive.")
         rim = self.obj.Compliance in ("wheel_rim", "bonded_layer")
         if rim and not 0 < self.obj.RimThickness.Value < self.obj.WheelRadius.Value:
             raise InputError(
-                translate("BeltGrinding", "The rim must be thinner than the wheel's radius.")
+                "gui.rim_too_thick", "The rim must be thinner than the wheel's radius."
             )
         if self.obj.Compliance != "elastic_foundation" and self.obj.YoungsModulus.Value <= 0:
-            raise InputError(translate("BeltGrinding", "Young's modulus must be positive."))
+            raise InputError("gui.youngs_modulus", "Young's modulus must be positive.")
         if self.obj.Compliance == "surrogate" and not self.obj.SurrogateFile:
             raise InputError(
-                translate("BeltGrinding", "Choose the file that `beltgrind surrogate` wrote.")
+                "gui.choose_surrogate", "Choose the file that `beltgrind surrogate` wrote."
             )
         if self.obj.Compliance == "geometric" and self.obj.Control == "force":
             raise InputError(
-                translate("BeltGrinding", "A rigid tool has no force: set the control to position.")
+                "gui.rigid_force", "A rigid tool has no force: set the control to position."
             )
         if not 0 <= self.obj.PoissonsRatio <= 0.499:
-            raise InputError(translate("BeltGrinding", "Poisson's ratio lies from 0 to 0.499."))
+            raise InputError("gui.poissons_ratio", "Poisson's ratio lies from 0 to 0.499.")

@@ -3,12 +3,13 @@
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import job_data
+from ...objects import job_data, report_data
 from ...objects.job_data import child
 from ...objects.simulation import Simulation
 from ...objects.verdict import limits_changed
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..common.report_language import language
 from ..common.runner import Runner
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
@@ -87,7 +88,9 @@ class SimulationPanel(RunPanel):
                 simulation.DefectiveSamples,
             )
             + ("" if simulation.Events else "\n" + translate("BeltGrinding", "No events."))
-            + "".join(f"\n⚠ {warning}" for warning in simulation.Warnings[:10])
+            + "".join(
+                f"\n⚠ {warning}" for warning in report_data.warnings(simulation, language())[:10]
+            )
         )
         events = simulation.Proxy.events(simulation)
         self.table.setVisible(bool(events))

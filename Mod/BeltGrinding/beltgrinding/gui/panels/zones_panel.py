@@ -119,15 +119,16 @@ class ZonesPanel(Panel):
         zone = {"name": self.text(row, NAME), "faces": self._faces(row)}
         if not zone["name"]:
             raise InputError(
-                translate("BeltGrinding", "Row {}: a zone needs a name.").format(row + 1)
+                "gui.zone_without_name", "Row {row}: a zone needs a name.", row=row + 1
             )
         if self.text(row, EDGE):
             zone["edge_radius_mm"] = self._number(row, EDGE)
         for low, high, key in LIMITS:
             given = [bool(self.text(row, column)) for column in (low, high)]
             if any(given) and not all(given):
-                text = translate("BeltGrinding", "{}: give both limits, or none.")
-                raise InputError(text.format(zone["name"]))
+                raise InputError(
+                    "gui.both_limits", "{zone}: give both limits, or none.", zone=zone["name"]
+                )
             if all(given):
                 zone[key] = [self._number(row, low), self._number(row, high)]
         return zone
@@ -135,8 +136,11 @@ class ZonesPanel(Panel):
     def _faces(self, row):
         words = self.text(row, FACES).replace(",", " ").replace("Face", " ").split()
         if not all(word.isdigit() for word in words):
-            text = translate("BeltGrinding", "{}: write the faces' numbers, such as 1 2 5.")
-            raise InputError(text.format(self.text(row, NAME)))
+            raise InputError(
+                "gui.face_numbers",
+                "{zone}: write the faces' numbers, such as 1 2 5.",
+                zone=self.text(row, NAME),
+            )
         return list(dict.fromkeys(int(word) for word in words))
 
     def _number(self, row, column):
@@ -144,8 +148,12 @@ class ZonesPanel(Panel):
         try:
             value = float(text[:-2] if text.endswith("mm") else text)
         except ValueError:
-            told = translate("BeltGrinding", "{}: '{}' is no number of millimetres.")
-            raise InputError(told.format(self.text(row, NAME), text)) from None
+            raise InputError(
+                "gui.no_length",
+                "{zone}: '{text}' is no number of millimetres.",
+                zone=self.text(row, NAME),
+                text=text,
+            ) from None
         return value
 
     def zones(self):

@@ -131,7 +131,7 @@ class FieldView:
         colours = np.asarray(colours)
         if colours.ndim == 2:
             if colours.dtype != np.uint8 or colours.shape[1] != 4:
-                raise InputError("colours are (n, 4) uint8 or (n,) uint32")
+                raise InputError("gui.colours", "colours are (n, 4) uint8 or (n,) uint32")
             colours = np.ascontiguousarray(colours).view(">u4").ravel().astype(np.uint32)
         self.drawn.set_colours(self._one_each(colours, np.uint32))
 
@@ -156,7 +156,12 @@ class FieldView:
             limits = limits or ((1.0,) if mode == CONTACT else ())
             colours = core.magnitude_colours(values, self.flags, *limits)
         else:
-            raise InputError(f"'{mode}' is no colour mode; use one of {', '.join(MODES)}")
+            raise InputError(
+                "gui.colour_mode",
+                "'{mode}' is no colour mode; use one of {modes}",
+                mode=mode,
+                modes=", ".join(MODES),
+            )
         self.drawn.set_colours(colours)
 
     def _known(self, mode):
@@ -164,14 +169,22 @@ class FieldView:
             return self.field.stock_height - self.heights
         if mode == UNCERTAINTY:
             if len(self.field.height_sd) != len(self.points):
-                raise InputError("the result has no uncertainty: its law was not calibrated")
+                raise InputError(
+                    "inspection.no_uncertainty",
+                    "the result has no uncertainty: its law was not calibrated",
+                )
             return self.field.height_sd
-        raise InputError(f"colours by {mode} need its values")
+        raise InputError("gui.colour_values", "colours by {mode} need its values", mode=mode)
 
     def _one_each(self, values, kind):
         values = np.ascontiguousarray(values, dtype=kind)
         if values.shape != (len(self.points),):
-            raise InputError(f"{values.shape} values given, ({len(self.points)},) needed")
+            raise InputError(
+                "gui.values",
+                "{given} values given, ({needed},) needed",
+                given=values.shape,
+                needed=len(self.points),
+            )
         return values
 
     def pick(self, view, position):

@@ -9,7 +9,6 @@ from ...objects import job_data, job_inputs, preferences
 from ...objects.belt_machine import BeltMachine
 from ...objects.deviation import Deviation, bands_of
 from ...objects.robot_path import RobotPath
-from ..common.compat import translate
 from . import legend
 from .cell_view import CellView
 from .field_view import DEVIATION, FieldView
@@ -36,8 +35,9 @@ class Scene:
         self.scale = self._scale(job)
         field = simulation.Proxy.field(simulation)
         if field is None or field.size != recording.samples:
-            text = translate("BeltGrinding", "The recording is of another field; simulate again.")
-            raise InputError(text)
+            raise InputError(
+                "gui.other_recording", "The recording is of another field; simulate again."
+            )
         self.field = FieldView(field)
         self.frame, self.heights = 0, recording.heights_at(0)
         self._draw()

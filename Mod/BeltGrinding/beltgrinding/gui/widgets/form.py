@@ -195,7 +195,9 @@ class Form(QtGui.QGroupBox):
         for name, mistake in self.mistakes.items():
             label, widget = self.rows[name]
             if mistake and not widget.isHidden():
-                raise InputError(f"{label.text()}: {mistake}")
+                raise InputError(
+                    "gui.field", "{label}: {mistake}", label=label.text(), mistake=mistake, key=name
+                )
 
     def show_rows(self, names):
         """Shows the rows in ``names`` and hides the others."""

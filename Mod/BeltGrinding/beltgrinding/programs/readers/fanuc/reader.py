@@ -33,7 +33,7 @@ JUMP = re.compile(rf"JMP\s+LBL\s*{INDEX}$")
 FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(.+?)\s+(TO|DOWNTO)\s+(.+)$")
 
 
-def zone_of(rest):
+def zeither(rest):
     """mm by the termination type in a motion's additions: FINE stops; CD is the distance from the
     corner, CR its radius (the same where the path turns by 90 degrees); CNT is a share of the speed
     and no length, so its zone is not known, of CNT0 neither: nearly a stop without being one.
@@ -450,7 +450,7 @@ class _Reader(Registers):
             for motion, _ in motions:
                 motion.speed_mm_s = speed
         for motion, _ in motions:
-            motion.zone_mm = zone_of(rest)
+            motion.zone_mm = zeither(rest)
         for motion, _ in motions:
             (self.add_arc_point if kind == "A" else self.add)(motion)
 

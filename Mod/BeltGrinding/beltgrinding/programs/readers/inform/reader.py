@@ -46,7 +46,7 @@ BLOCKS = {
 }
 
 
-def zone_of(rest):
+def zeither(rest):
     """mm by a motion's tags: PL=0 stops; CR is a corner radius in mm (exact where the path turns by
     90 degrees); the other position levels are parameters of the controller, so not known.
     """
@@ -312,7 +312,7 @@ class _Reader(TaughtPath):
         if kind == "IMOV":
             components, base = self.step(components, rest)
         motion = Motion(simple, pose_of(components), line, self.file, tool=tool, base=base)
-        motion.zone_mm = zone_of(rest)
+        motion.zone_mm = zeither(rest)
         if kind != "MOVJ":
             motion.speed_mm_s = self.speed(line, OTHER.sub("", rest))
         self.here = (components, base)

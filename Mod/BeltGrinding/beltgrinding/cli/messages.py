@@ -1,0 +1,67 @@
+"""Errors and warnings on standard error, in the language of the locale or of ``--language``; errors as
+JSON for scripts."""
+
+import json
+import math
+import os
+import sys
+
+LANGUAGES = ("en", "de")
+
+
+def of_locale():
+    """German where the locale's messages are, else English."""
+    names = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    return "de" if next(filter(None, names), "").startswith("de") else "en"
+
+
+class Messages:
+    """``language``: "en", "de" or None for the locale's. ``as_json``: errors as one line of JSON."""
+
+    def __init__(self, language=None, as_json=False):
+        self.language, self.as_json = language or of_locale(), as_json
+
+    def print_error(self, error):
+        """An InputError, one line on standard error."""
+        if self.as_json:
+            print(json.dumps({"error": error_data(error)}), file=sys.stderr)
+        else:
+            print("beltgrind: " + " ".join(self._sentence(error).split()), file=sys.stderr)
+
+    def print_warnings(self, warnings):
+        """Sentences or facts, a line each."""
+        from ..base.messages import word
+
+        for warning in warnings:
+            name = word("cli.warning", "warning", self.language)
+            print(f"{name}: {self._sentence(warning)}", file=sys.stderr)
+
+    def _sentence(self, told):
+        from ..base.messages import sentence
+
+        return sentence(told, self.language)
+
+
+def error_data(error):
+    """An InputError as JSON has it: ``code``, ``message`` (English), ``culprit``, ``arguments`` and
+    ``context``, the parts of the message before its own, the outermost first, each with code and
+    arguments; ``remarks`` likewise, after it. A number that is not finite becomes its text."""
+    return {
+        "code": error.code,
+        "message": str(error),
+        "culprit": _plain(error.culprit),
+        "arguments": _plain(error.arguments),
+        "context": _parts(error.context),
+        "remarks": _parts(error.remarks),
+    }
+
+
+def _parts(parts):
+    return [{"code": code, "arguments": _plain(arguments)} for code, _, arguments in parts]
+
+
+def _plain(arguments):
+    return {
+        name: str(value) if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in arguments.items()
+    }

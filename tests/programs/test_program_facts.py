@@ -15,7 +15,6 @@ from beltgrinding.programs.program import (  # noqa: E402
     Problem,
     ProgramError,
     Unknown,
-    fact_of,
     shortened,
 )
 from beltgrinding.programs.registry import read_program  # noqa: E402
@@ -79,9 +78,17 @@ def test_a_jobs_warnings_stay_facts(tmp_path):
     assert sentence(warnings[0], "de").startswith("a.src:3: LIN bleibt weg")
 
 
+def test_what_is_wrong_with_a_quaternion_keeps_its_code(tmp_path):
+    text = "x_mm,y_mm,z_mm,qw,qx,qy,qz\n1,2,3,1,0,0,0\n1,2,3,1,0,0,1\n"
+    with pytest.raises(ProgramError, match="a.csv:3: the quaternion has length 1.414") as caught:
+        read(tmp_path, "a.csv", text)
+    assert caught.value.code.startswith("frames.") and caught.value.culprit["line"] == 3
+    assert sentence(caught.value, "de").startswith("a.csv:3: das Quaternion hat die Länge 1,414")
+
+
 def test_an_error_as_a_reason_keeps_its_place():
     error = ProgramError.at("a.script", 3, "programs.too_long", "the program is too long")
-    fact = fact_of(error)
+    fact = error.fact
     assert fact == str(error) == "a.script:3: the program is too long"
     assert sentence(fact, "de") == "a.script:3: das Programm ist zu lang"
 

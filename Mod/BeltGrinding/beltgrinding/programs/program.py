@@ -26,8 +26,19 @@ class ProgramError(InputError):
     @classmethod
     def at(cls, file, line, code, text, /, **arguments):
         """The error in a line of a file."""
-        error = cls(code, text, **arguments)
-        return error.within("programs.at", "{file}:{line}: ", file=file, line=line)
+        return cls(code, text, **arguments).in_line(file, line)
+
+    @classmethod
+    def of(cls, error):
+        """Another InputError as one of a program."""
+        own = cls.__new__(cls)
+        own.__dict__.update(error.__dict__)
+        own.args = error.args
+        return own
+
+    def in_line(self, file, line):
+        """The error with its place before it."""
+        return self.within("programs.at", "{file}:{line}: ", file=file, line=line)
 
 
 def cannot_be_read(path, error):
@@ -59,9 +70,6 @@ class Problem(Fact):
         """As an InputError's."""
         return [("programs.at", "{file}:{line}: ", {"file": self.file, "line": self.line})]
 
-    def __getnewargs_ex__(self):
-        return (self.file, self.line, self.message), {}
-
 
 class Reason:
     """Why something is not known: a Fact that is made when it is asked for, since most never are.
@@ -85,19 +93,6 @@ class Unknown(Reason, Exception):
 
     def __str__(self):
         return str(self.fact)
-
-
-def fact_of(error):
-    """What an InputError says as one Fact, its context included."""
-    fact = Fact(error.code, error.text, **error.arguments)
-    for code, text, arguments in reversed(error.context):
-        fact = Fact(
-            "programs.within",
-            "{where}{what}",
-            where=Fact(code, text, **arguments),
-            what=fact,
-        )
-    return fact
 
 
 def shortened(fact, most):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base import frames
+from ...engine import InputError
 from ..program import MAX_COORDINATE, Fact, Motion, Program, ProgramError, cannot_be_read, name_of
 
 POSITION = ("x_mm", "y_mm", "z_mm")
@@ -86,14 +87,12 @@ def _turn(motions):
     values = np.array([motion.pose for motion in motions], dtype=float).reshape(-1, 7)
     try:
         poses = frames.from_quaternions(values[:, :3], values[:, 3:])
-    except ValueError:
+    except InputError:
         for motion, row in zip(motions, values):  # which one it is
             try:
                 frames.from_quaternion(row[:3], row[3:])
-            except ValueError as error:
-                raise ProgramError.at(
-                    motion.file, motion.line, "programs.reason", "{reason}", reason=str(error)
-                ) from None
+            except InputError as error:
+                raise ProgramError.of(error).in_line(motion.file, motion.line) from None
         raise
     for motion, pose in zip(motions, poses):
         motion.pose = pose

@@ -10,7 +10,7 @@ kinematics) is a Problem.
 import re
 from pathlib import Path
 
-from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, fact_of, name_of
+from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, name_of
 from ..urscript.expression import Pose
 from ..urscript.reader import MOVE
 from ..xml_tree import read_xml
@@ -386,7 +386,7 @@ class _Reader(Waypoints):
             raise Unknown(
                 "programs.urp.script",
                 "its script cannot be followed ({reason})",
-                reason=fact_of(error),
+                reason=error.fact,
             ) from None
         finally:
             for problem in script.program.problems:

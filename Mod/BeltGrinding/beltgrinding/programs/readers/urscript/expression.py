@@ -12,7 +12,7 @@ import re
 import numpy as np
 
 from ....base.frames import to_quaternions
-from ...program import ProgramError, Unknown, fact_of
+from ...program import Unknown
 
 MAX_WHOLE = 2**53  # beyond, a whole number is no longer exact
 # What Python reads as a number or two, but the controller does not.
@@ -140,7 +140,7 @@ def evaluate(node, lookup, call):
         raise Unknown(
             "programs.urscript.not_computable",
             "it cannot be computed ({reason})",
-            reason=fact_of(error) if isinstance(error, ProgramError) else str(error),
+            reason=getattr(error, "fact", str(error)),
         ) from None
     except RecursionError:
         raise Unknown("programs.nested_expression", "the expression is nested too deeply") from None

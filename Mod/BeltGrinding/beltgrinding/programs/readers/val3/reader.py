@@ -9,7 +9,7 @@ a program gives its points as PTP targets, over which nothing is ground.
 
 from pathlib import Path
 
-from ...program import Fact, Motion, ProgramError, Unknown, cannot_be_read, fact_of
+from ...program import Fact, Motion, ProgramError, Unknown, cannot_be_read
 from . import data
 from .control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Break, Control
 from .data import Array, Missing, Record, number, six
@@ -40,9 +40,7 @@ def read(path):
         error = ProgramError("programs.val3.nested", "values or calls are nested too deeply")
         if interpreter is None:
             raise error.within("programs.in_file", "{file}: ", file=path.name) from None
-        raise error.within(
-            "programs.at", "{file}:{line}: ", file=interpreter.file, line=interpreter.line
-        ) from None
+        raise error.in_line(interpreter.file, interpreter.line) from None
     except OSError as error:
         raise cannot_be_read(path, error) from None
     return interpreter.finish()
@@ -398,7 +396,7 @@ class _Interpreter(Control):
             try:
                 routine = self.project.routine(name)
             except ProgramError as error:
-                raise Unknown(fact_of(error)) from None
+                raise Unknown(error.fact) from None
             if routine is None:
                 raise Unknown(
                     "programs.val3.no_program_of_name",

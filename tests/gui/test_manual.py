@@ -105,6 +105,7 @@ type_in("ApproachLength", "20 mm")
 type_in("Clearance", "20 mm")
 raster = doc.RasterPath
 wait(lambda: raster.Clearance.Value == 20 and raster.PassCount > 5)
+doc.recompute()  # or the picture may be of the passes before the last field
 Gui.SendMsgToActiveView("ViewFit")
 for obj in (raster, doc.Stock, doc.BeltMachine):
     tree(obj)

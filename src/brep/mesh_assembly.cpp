@@ -157,7 +157,7 @@ class Assembly {
         if (!BRep_Tool::SameParameter(edge) || !BRep_Tool::SameRange(edge)) return {};
         for (const TopoDS_Shape& use : {edge, TopoDS::Edge(edge.Reversed())}) {
             double first = 0, last = 0;
-            const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(
+            Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(
                 TopoDS::Edge(use), TopoDS::Face(face.Oriented(TopAbs_FORWARD)), first, last);
             if (curve.IsNull()) return {};
             const auto off = [&](double t, const FaceMesh::Node& n) {

@@ -37,7 +37,7 @@ class QuietMessenger {
 };
 
 Shape shape_of(const CadShape& read, const std::string& name) {
-    const Shape shape = make_shape(read.shape, name, MissingCurves::kAreDone);
+    Shape shape = make_shape(read.shape, name, MissingCurves::kAreDone);
     shape.impl().valid = read.valid;
     if (read.extents) shape.impl().extents = std::make_unique<Box>(*read.extents);
     return shape;

@@ -73,7 +73,7 @@ std::vector<std::uint32_t> weld_vertices(const TriangleMesh& mesh, std::vector<V
     std::vector<std::array<float, 3>> keys;
     keys.reserve(mesh.vertices.size());
     for (const Vec3f& v : mesh.vertices) keys.push_back({v.x(), v.y(), v.z()});
-    const std::vector<std::uint32_t> place = weld(keys);
+    std::vector<std::uint32_t> place = weld(keys);
     std::uint32_t places = 0;
     for (const std::uint32_t p : place) places = std::max(places, p + 1);
     welded.resize(places);

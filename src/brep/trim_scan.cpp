@@ -44,6 +44,7 @@ std::vector<std::size_t> crossing_segments(const Boundary& boundary) {
         }
         const bool by_x = depth % 2 == 0;
         std::vector<std::int32_t> middles;
+        middles.reserve(set.size());
         for (const std::size_t i : set)
             middles.push_back(by_x ? box[i].x0 / 2 + box[i].x1 / 2 : box[i].y0 / 2 + box[i].y1 / 2);
         std::nth_element(middles.begin(),

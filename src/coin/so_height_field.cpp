@@ -97,6 +97,7 @@ void SoHeightField::initClass() {
 }
 
 SoHeightField* SoHeightField::at(std::uintptr_t address) {
+    // pivy hands nodes over as numbers. NOLINTNEXTLINE(performance-no-int-to-ptr)
     auto* node = reinterpret_cast<SoHeightField*>(address);
     return living().contains(node) ? node : nullptr;
 }
@@ -112,6 +113,8 @@ SoHeightField::~SoHeightField() {
     SoContextHandler::removeContextDestructionCallback(contextDestroyed, this);
     for (const auto& [context, b] : buffers_) {
         SoGLCacheContextElement::scheduleDeleteCallback(
+            // Out of memory, nothing would be left to do.
+            // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new)
             context, delete_orphans, new Orphans{{b.vertex, b.normal, b.colour, b.index}});
     }
 }
@@ -322,8 +325,8 @@ void SoHeightField::generatePrimitives(SoAction* action) {
     SoPointDetail corner;
     SoFaceDetail face;
     beginShape(action, TRIANGLES, &face);
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        for (const std::uint32_t v : triangles_[i]) {
+    for (const auto& triangle : triangles_) {
+        for (const std::uint32_t v : triangle) {
             corner.setCoordinateIndex(static_cast<int>(v));
             SoPrimitiveVertex vertex;
             vertex.setPoint(to_coin(vertices_[v]));

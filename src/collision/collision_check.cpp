@@ -168,6 +168,7 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
     }
     const MotionBound bound(path);
     std::vector<std::unique_ptr<CollisionPair>> pairs;
+    pairs.reserve(numbers.size());
     for (const auto& [a, b] : numbers) {
         pairs.push_back(std::make_unique<CollisionPair>(path, bound, bodies[a], meshes[a],
                                                         bodies[b], meshes[b], options));

@@ -139,7 +139,7 @@ void CollisionPair::polish() {
     Look best = look(least->place, least->nearest, true);
     constexpr double kGolden = 0.6180339887498949;
     const auto inner = [&](double share) {
-        const Look at = look(low + share * (high - low), best.nearest, true);
+        Look at = look(low + share * (high - low), best.nearest, true);
         if (at.distance < best.distance) best = at;
         return at;
     };

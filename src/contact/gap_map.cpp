@@ -22,7 +22,7 @@ constexpr double kLayer = 0.5;  // cells: samples further behind the nearest bel
 
 }  // namespace
 
-GapMap::GapMap(const ContactWheel& wheel, double spacing) : wheel_(wheel), spacing_(spacing) {
+GapMap::GapMap(const ContactWheel& wheel, double spacing) : wheel_(wheel) {
     grid_.ds = spacing;
     grid_.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
     grid_.dy = wheel.width / grid_.ny;

@@ -172,7 +172,8 @@ RimSection::Half RimSection::assemble(const WheelRimDesign& design, bool symmetr
     // Nodes on a grid of half elements (the elements' middles have none), numbered column by
     // column; -1 is held: the core, and what the symmetry holds in the middle plane.
     const int height = 2 * rows + 1;
-    std::vector<int> dof(static_cast<std::size_t>(3 * height * (2 * columns + 1)), -1);
+    std::vector<int> dof(
+        3 * static_cast<std::size_t>(height) * static_cast<std::size_t>(2 * columns + 1), -1);
     const auto at = [&](int i, int j, int c) -> int& {
         return dof[static_cast<std::size_t>(3 * (j * height + i) + c)];
     };

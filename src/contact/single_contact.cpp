@@ -90,8 +90,9 @@ class Press {
         } else {
             points = kPointsPerSide * kPointsPerSide;
             for (int p = 0; p < points; ++p) {
-                const double u = (p % kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
-                const double v = (p / kPointsPerSide + 0.5) / kPointsPerSide - 0.5;
+                const int column = p % kPointsPerSide, row = p / kPointsPerSide;
+                const double u = (column + 0.5) / kPointsPerSide - 0.5;
+                const double v = (row + 0.5) / kPointsPerSide - 0.5;
                 look(grid_.s(i) + u * grid_.ds, grid_.y(j) + v * grid_.dy);
             }
         }

@@ -25,7 +25,10 @@ constexpr int kBatch = 512;             // cells that are predicted at once
 class BoxMeans {
   public:
     BoxMeans(const ContactGrid& grid, const Eigen::ArrayXf& values, double outside)
-        : grid_(grid), outside_(outside), sums_((grid.nx + 1) * (grid.ny + 1), 0.0) {
+        : grid_(grid),
+          outside_(outside),
+          sums_(static_cast<std::size_t>(grid.nx + 1) * static_cast<std::size_t>(grid.ny + 1),
+                0.0) {
         for (int j = 0; j < grid.ny; ++j) {
             double row = 0.0;
             for (int i = 0; i < grid.nx; ++i) {
@@ -119,7 +122,8 @@ Eigen::MatrixXf ContactFeatures::of(const ContactGrid& grid, const ContactProble
     Eigen::MatrixXf result(size(), static_cast<Eigen::Index>(cells.size()));
     for (Eigen::Index column = 0; column < result.cols(); ++column) {
         const int k = cells[static_cast<std::size_t>(column)];
-        const double s = (k % grid.nx + 0.5) * grid.ds, y = (k / grid.nx + 0.5) * grid.dy;
+        const int i = k % grid.nx, j = k / grid.nx;
+        const double s = (i + 0.5) * grid.ds, y = (j + 0.5) * grid.dy;
         int row = 0;
         const auto put = [&](double value) { result(row++, column) = static_cast<float>(value); };
         put(depth[k]);

@@ -95,7 +95,6 @@ class GapMap {
     void fit_grid(double half_length);
 
     ContactWheel wheel_;
-    double spacing_;
     ContactGrid grid_;
     Eigen::ArrayXd gap_, coverage_, nearest_, weight_;
     std::vector<std::uint8_t> at_boundary_;

@@ -1,7 +1,10 @@
 #include "meshio/mesh_3mf.h"
 
 #include <algorithm>
+#include <clocale>
 #include <cstring>
+#include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +41,25 @@ void require(HRESULT result, const char* what) {
             {{"what", what}, {"error", static_cast<std::uint32_t>(result)}});
     }
 }
+
+/// lib3mf sets the whole program's locale to "C" and leaves it so, after which Python reads no
+/// UTF-8 and the host writes its numbers otherwise. This puts back what was there; one call at a
+/// time, or one would keep what the other has set.
+class KeptLocale {
+  public:
+    KeptLocale() : lock_(mutex()), locale_(std::setlocale(LC_ALL, nullptr)) {}
+    ~KeptLocale() { std::setlocale(LC_ALL, locale_.c_str()); }
+    KeptLocale(const KeptLocale&) = delete;
+    KeptLocale& operator=(const KeptLocale&) = delete;
+
+  private:
+    static std::mutex& mutex() {
+        static std::mutex one;
+        return one;
+    }
+    std::lock_guard<std::mutex> lock_;
+    std::string locale_;
+};
 
 /// Any object of lib3mf's, released at the end of its life.
 class Object {
@@ -98,6 +120,7 @@ std::string write_3mf(std::span<const Vec3> vertices, std::span<const Triangle> 
     for (std::size_t t = 0; t < faces.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) faces[t].m_nIndices[k] = triangles[t][k];
 
+    const KeptLocale kept;
     Object model, mesh, item, writer;
     require(NMR::lib3mf_createmodel(model.slot()), "model");
     require(NMR::lib3mf_model_setunit(model, NMR::MODELUNIT_MILLIMETER), "unit");
@@ -129,6 +152,7 @@ std::string write_3mf(std::span<const Vec3> vertices, std::span<const Triangle> 
 }
 
 std::optional<RawMesh> read_3mf(const std::string& path) {
+    const KeptLocale kept;
     Object model, reader, merged, meshes;
     const auto read = [&](HRESULT result) {
         if (result == 0) return;

@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
+#include "beltgrinding/error.h"
+#include "meshio/mesh_3mf.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -21,6 +27,30 @@ TEST(DeviationPly, HasTheSizeThatItsHeaderSays) {
     const std::string plain = mesh_ply(field, false);
     std::memcpy(&z, plain.data() + plain.find("end_header\n") + 11 + 8, 4);
     EXPECT_FLOAT_EQ(z, 0.0F);
+}
+
+TEST(ThreeMf, LeavesTheProgramsLocaleAsItWas) {
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    ASSERT_NE(std::setlocale(LC_ALL, "C.UTF-8"), nullptr);
+    const std::string ours = std::setlocale(LC_ALL, nullptr);
+    const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const Triangle faces[] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const std::string path = ::testing::TempDir() + "locale.3mf";
+    try {
+        const std::string bytes = write_3mf(corners, faces);
+        EXPECT_EQ(std::setlocale(LC_ALL, nullptr), ours);
+        std::ofstream(path, std::ios::binary) << bytes;
+        const auto mesh = read_3mf(path);
+        EXPECT_TRUE(mesh && mesh->triangles.size() == 4);
+        EXPECT_EQ(std::setlocale(LC_ALL, nullptr), ours);
+        std::ofstream(path, std::ios::binary) << "no 3MF at all";
+        EXPECT_THROW(read_3mf(path), InputError);
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.code(), "mesh.no_lib3mf");
+    }
+    EXPECT_EQ(std::setlocale(LC_ALL, nullptr), ours);
+    std::filesystem::remove(path);
+    std::setlocale(LC_ALL, before.c_str());
 }
 
 }  // namespace

@@ -85,7 +85,9 @@ def check(folder):
         """The file that an address in ``path`` names, None if there is nothing to look for."""
         parts = urlsplit(address)
         here = path.relative_to(folder)
-        if parts.scheme in ("data", "javascript") or (not fetched and (parts.scheme or parts.netloc)):
+        if parts.scheme in ("data", "javascript") or (
+            not fetched and (parts.scheme or parts.netloc)
+        ):
             return None
         if parts.scheme or parts.netloc:
             wrong.append(f"{here} would fetch {address}")

@@ -175,7 +175,8 @@ RimSection::Half RimSection::assemble(const WheelRimDesign& design, bool symmetr
     std::vector<int> dof(
         3 * static_cast<std::size_t>(height) * static_cast<std::size_t>(2 * columns + 1), -1);
     const auto at = [&](int i, int j, int c) -> int& {
-        return dof[static_cast<std::size_t>(3 * (j * height + i) + c)];
+        const auto row = static_cast<std::size_t>(j) * static_cast<std::size_t>(height);
+        return dof[3 * (row + static_cast<std::size_t>(i)) + static_cast<std::size_t>(c)];
     };
     int size = 0;
     for (int j = 0; j <= 2 * columns; ++j) {

@@ -105,14 +105,11 @@ type_in("ApproachLength", "20 mm")
 type_in("Clearance", "20 mm")
 raster = doc.RasterPath
 wait(lambda: raster.Clearance.Value == 20 and raster.PassCount > 5)
-# The panel's timer and FreeCAD's own, which greys its buttons, have their turn: or the picture may be
-# of the passes before the last field.
+# The panel's timer has its turn, or the passes may be those before the last field.
 for _ in range(2):
     begun = time.monotonic()
     wait(lambda: time.monotonic() > begun + 1.0)
     doc.recompute()
-begun = time.monotonic()
-wait(lambda: time.monotonic() > begun + 1.0)
 Gui.SendMsgToActiveView("ViewFit")
 for obj in (raster, doc.Stock, doc.BeltMachine):
     tree(obj)

@@ -221,14 +221,36 @@ def screenshot(path):
 def picture(name):
     """A picture of the manual: the whole screen, to build/pictures."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    bars, end = widgets(QtGui.QProgressBar), time.monotonic() + 3
-    while any(bar.isVisible() for bar in bars) and time.monotonic() < end:
-        settle()  # FreeCAD's own of loading goes a while later
     replaced = _as_everywhere()
+    _come_to_rest()
     screenshot(PICTURES / f"{name}.png")
     for widget, text in replaced:
         _set_silently(widget, text)
     _taken.append(name)
+
+
+def _come_to_rest(quiet=0.7, patience=3, most=10):
+    """Waits until the screen has shown the same for ``quiet`` seconds: FreeCAD greys out its buttons and
+    brings its tree and status bar up to date by timers of its own, late on a busy machine. Its bar of
+    loading may come when the loading is over, and then stay: after ``patience`` seconds it is put away.
+    """
+    screen, begun = QtGui.QGuiApplication.primaryScreen(), time.monotonic()
+    seen, since = None, begun
+    while time.monotonic() - begun < most:
+        settle()
+        time.sleep(0.05)
+        left_over = [bar for bar in window.statusBar().findChildren(QtGui.QProgressBar) if bar.isVisible()]
+        if left_over and time.monotonic() - begun > patience:
+            for bar in left_over:
+                bar.hide()
+            for label in window.statusBar().findChildren(QtGui.QLabel):
+                if label.text().endswith("..."):
+                    label.clear()
+        shown = screen.grabWindow(0).toImage()
+        if shown != seen or left_over:
+            seen, since = shown, time.monotonic()
+        elif time.monotonic() - since > quiet:
+            return
 
 
 def _as_everywhere():

@@ -57,9 +57,10 @@ Eigen::MatrixXd spline_weights(const std::vector<double>& at, int count) {
 }
 
 /// y += A x for a complex x laid out as pairs: A is n x n, column by column.
-// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when the loader
-// chooses between them.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
+// the loader chooses between them.
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx2,arch=haswell", "default")))
 #endif
 void multiply(const float* matrix, int n, const float* x, float* re, float* im) {

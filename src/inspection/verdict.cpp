@@ -85,7 +85,7 @@ Verdict judge(const HeightField& field, const std::vector<ToleranceZone>& zones,
         if (faces[f].samples == 0) continue;
         faces[f].region = f;
         finish(faces[f]);
-        verdict.faces.push_back(std::move(faces[f]));
+        verdict.faces.push_back(faces[f]);
     }
     find_clusters(field, beyond, judged, verdict);
     return verdict;

@@ -20,6 +20,10 @@ void put(char*& out, const T& value) {
     out += sizeof(T);
 }
 
+void put(char*& out, const Vec3f& value) {
+    for (const float v : value) put(out, v);
+}
+
 Vec3f place(const HeightField& field, std::size_t i, bool ground) {
     return (ground ? field.top(i) : field.point[i]).cast<float>();
 }

@@ -31,10 +31,10 @@ void bind_geometry(py::module_& m) {
     py::class_<TriangleMesh>(m, "TriangleMesh", "A bare triangle mesh in millimetres.")
         .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
         .def_property_readonly("vertices",
-                               [](py::object self) {
+                               [](const py::object& self) {
                                    return view<float>(self.cast<TriangleMesh&>().vertices, 3, self);
                                })
-        .def_property_readonly("triangles", [](py::object self) {
+        .def_property_readonly("triangles", [](const py::object& self) {
             return view<std::uint32_t>(self.cast<TriangleMesh&>().triangles, 3, self);
         });
     m.def(

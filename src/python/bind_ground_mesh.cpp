@@ -36,7 +36,7 @@ std::optional<ColourScale> scale_of(const Scale& given) {
 
 void bind_ground_mesh(py::module_& m) {
 #define BELTGRINDING_VIEW(name, member, Scalar, row)                     \
-    def_property_readonly(name, [](py::object self) {                    \
+    def_property_readonly(name, [](const py::object& self) {             \
         return view<Scalar>(self.cast<GroundMesh&>().member, row, self); \
     })
     py::class_<GroundMesh>(m, "GroundMesh",

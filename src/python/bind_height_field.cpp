@@ -25,7 +25,7 @@ void bind_height_field(py::module_& m) {
     m.attr("DEGENERATE") = static_cast<int>(kDegenerate);
 
 #define BELTGRINDING_VIEW(name, member, Scalar, row)                      \
-    def_property_readonly(name, [](py::object self) {                     \
+    def_property_readonly(name, [](const py::object& self) {              \
         return view<Scalar>(self.cast<HeightField&>().member, row, self); \
     })
     py::class_<HeightField>(m, "HeightField",

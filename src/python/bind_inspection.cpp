@@ -104,6 +104,7 @@ void bind_inspection(py::module_& m) {
         "uncertainty_scale",
         [](double limit, const std::vector<double>& values) {
             std::vector<std::uint32_t> colours;
+            colours.reserve(values.size());
             for (const double v : values) colours.push_back(uncertainty_colour(v, limit));
             return own(std::move(colours));
         },
@@ -113,6 +114,7 @@ void bind_inspection(py::module_& m) {
         [](double lower, double upper, double limit, const std::vector<double>& values, int bands,
            const Choice& choice) {
             std::vector<std::uint32_t> colours;
+            colours.reserve(values.size());
             const ColourScale scale = scale_of(lower, upper, limit, bands, choice);
             for (const double v : values) colours.push_back(scale.colour(v));
             return own(std::move(colours));

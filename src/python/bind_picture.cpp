@@ -40,6 +40,7 @@ void bind_picture(py::module_& m) {
     py::class_<Renderer>(m, "Renderer", "Pictures of coloured triangles without a display.")
         .def(py::init([](const std::vector<py::dict>& surfaces, const RunContext* context) {
                  std::vector<ColouredSurface> taken;
+                 taken.reserve(surfaces.size());
                  for (const py::dict& one : surfaces) taken.push_back(surface_of(one));
                  const RunContext watched = context != nullptr ? *context : RunContext();
                  const py::gil_scoped_release release;

@@ -2,6 +2,8 @@
 
 #include <pybind11/eval.h>
 
+#include <algorithm>
+
 namespace beltgrinding::python {
 
 extern const char* const kFactsPy;  // facts.py, by CMakeLists.txt
@@ -59,14 +61,14 @@ py::list to_list(const std::vector<Fact>& facts) {
     return list;
 }
 
-void raise(const InputError& error, py::handle type) noexcept {
+void raise(const InputError& error, py::handle type) {
     try {
         py::object value = made(type, error.fact());
         const std::vector<Fact>& context = error.context();
-        for (auto outer = context.rbegin(); outer != context.rend(); ++outer) {
-            value = value.attr("within")(text(outer->code), text(outer->text),
-                                         **to_dict(outer->arguments));
-        }
+        std::for_each(context.rbegin(), context.rend(), [&](const Fact& outer) {
+            value = value.attr("within")(text(outer.code), text(outer.text),
+                                         **to_dict(outer.arguments));
+        });
         PyErr_SetObject(type.ptr(), value.ptr());
     } catch (py::error_already_set& failure) {
         failure.restore();

@@ -28,6 +28,6 @@ py::dict to_dict(const Fact& fact);
 py::list to_list(const std::vector<Fact>& facts);
 
 /// Sets Python's error: an instance of `type`, which is `beltgrinding_core.InputError`.
-void raise(const InputError& error, py::handle type) noexcept;
+void raise(const InputError& error, py::handle type);
 
 }  // namespace beltgrinding::python

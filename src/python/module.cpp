@@ -32,7 +32,7 @@ void bind_base(py::module_& m) {
     static PyObject* const input_error = py::object(m.attr("InputError")).release().ptr();
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
-            if (thrown) std::rethrow_exception(thrown);
+            if (thrown) std::rethrow_exception(std::move(thrown));
         } catch (const InputError& error) {
             raise(error, input_error);
         }

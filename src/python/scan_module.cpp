@@ -35,7 +35,7 @@ PYBIND11_MODULE(beltgrinding_scan, m) {
     static PyObject* const cancelled = py::object(core.attr("Cancelled")).release().ptr();
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
-            if (thrown) std::rethrow_exception(thrown);
+            if (thrown) std::rethrow_exception(std::move(thrown));
         } catch (const InputError& error) {
             raise(error, input_error);
         } catch (const Cancelled& error) {

@@ -7,6 +7,7 @@
 #endif
 
 #include <cstring>
+#include <memory>
 
 #include "beltgrinding/error.h"
 
@@ -52,7 +53,8 @@ RayScene::RayScene(std::span<const TriangleMesh> meshes, Build build)
             rtcReleaseGeometry(geometry);
             throw InputError("rays.out_of_memory", "the mesh does not fit in memory");
         }
-        std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+        std::uninitialized_copy(mesh.vertices.begin(), mesh.vertices.end(),
+                                static_cast<Vec3f*>(vertices));
         std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(&mesh - meshes.data()));

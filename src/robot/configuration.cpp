@@ -87,7 +87,7 @@ std::optional<ArmSolution> Follower::nearest(const Frame& target, const ArmSolut
 
 std::optional<ArmSolution> Follower::refine(std::size_t pose, double begin, double end,
                                             const ArmSolution& from, int depth) const {
-    const std::optional<ArmSolution> next = nearest(target(pose, end), from);
+    std::optional<ArmSolution> next = nearest(target(pose, end), from);
     if (!next || depth == 0 || (next->branch == from.branch && turned(next->q, from.q) < kJump)) {
         return next;
     }

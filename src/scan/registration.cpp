@@ -71,6 +71,7 @@ void trim(std::vector<Pair>& pairs, std::size_t count) {
     if (count >= pairs.size()) return;
     std::vector<double> squares;
     squares.reserve(pairs.size());
+    squares.reserve(pairs.size());
     for (const Pair& p : pairs) squares.push_back(p.squared);
     const auto cut = squares.begin() + std::ptrdiff_t(count);
     std::nth_element(squares.begin(), cut, squares.end());
@@ -186,6 +187,7 @@ class Aligner {
         Normals sums;
         if (!pairs.empty()) {
             std::vector<double> squares;
+            squares.reserve(pairs.size());
             for (const Pair& p : pairs) squares.push_back(p.squared);
             const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
             std::nth_element(squares.begin(), middle, squares.end());
@@ -336,7 +338,8 @@ std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vec
         std::vector<std::uint32_t> index(neighbours);
         std::vector<double> squared(neighbours);
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 foot = points[i], normal = normals[i].cast<double>();
+            const Vec3& foot = points[i];
+            const Vec3 normal = normals[i].cast<double>();
             double h = start[i];
             bool found = false;
             for (int round = 0; round < kMeasureRounds; ++round) {

@@ -155,7 +155,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         record.segments = static_cast<std::uint32_t>(pressing.localised());
         if (state != Pressing::State::kNoContact) {
             touched = true;
-            const ContactSolution contact = pressing.solution();
+            const ContactSolution& contact = pressing.solution();
             record.force = static_cast<float>(contact.force);
             record.approach = static_cast<float>(pressing.approach());
             record.contact_area = static_cast<float>(contact.area);

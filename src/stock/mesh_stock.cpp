@@ -33,13 +33,8 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
         near = hit.distance + kAdvance;
         if (hit.cosine < least) continue;
         if (hit.leaving) {
-            if (std::isnan(best)) {
-                best = hit.distance;
-            } else if (hit.distance - best <= kDoubleSurface) {
-                best = hit.distance;
-            } else {
-                break;
-            }
+            if (!std::isnan(best) && hit.distance - best > kDoubleSurface) break;
+            best = hit.distance;
         } else if (std::isnan(best)) {
             entered = true;
         }

@@ -86,7 +86,7 @@ Frame CellFrames::work_from_contact(const Frame& base_from_tcp) const {
 }
 
 ToolPath::ToolPath(std::vector<PathPose> poses, CellFrames frames, const TimeLaw& law)
-    : poses_(std::move(poses)), frames_(frames), law_(law) {
+    : poses_(std::move(poses)), frames_(std::move(frames)), law_(law) {
     law_.validate();
     if (poses_.empty()) {
         throw InputError("path.no_pose",

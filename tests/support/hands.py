@@ -239,7 +239,9 @@ def _come_to_rest(quiet=0.7, patience=3, most=10):
     while time.monotonic() - begun < most:
         settle()
         time.sleep(0.05)
-        left_over = [bar for bar in window.statusBar().findChildren(QtGui.QProgressBar) if bar.isVisible()]
+        left_over = [
+            bar for bar in window.statusBar().findChildren(QtGui.QProgressBar) if bar.isVisible()
+        ]
         if left_over and time.monotonic() - begun > patience:
             for bar in left_over:
                 bar.hide()

@@ -1,6 +1,5 @@
-// Grinds a strip across a flat plate, and prints how deep.
+// Grinds a strip across a flat plate, and prints how deep. Lengths in mm, forces in N, times in s.
 #include <beltgrinding/contact_factory.h>
-#include <beltgrinding/removal_law.h>
 #include <beltgrinding/simulation.h>
 
 #include <cstdio>
@@ -17,26 +16,18 @@ int main() {
         plate.area[i] = 0.25F;
         plate.height[i] = plate.stock_height[i] = 1.0F;
     }
-
     SimulationOptions options;
-    options.process.wheel.radius = 100.0;  // mm
-    options.process.wheel.width = 20.0;    // mm
-    options.process.force = 40.0;          // N
-    options.process.belt_speed = 20e3;     // mm/s
-    ContactModelParameters rubber;
-    rubber.model = "elastic_foundation";
-    rubber.stiffness = 0.5;  // MPa/mm
-    const auto contact = make_contact_model(rubber, options.process.wheel, options.process.force);
+    options.process.wheel = {.radius = 100.0, .width = 20.0};
+    options.process.force = 40.0;
+    options.process.belt_speed = 20e3;
+    const auto contact = make_contact_model({.model = "elastic_foundation", .stiffness = 0.5},
+                                            options.process.wheel, options.process.force);
     const auto law = make_removal_law("local", {.coefficient = 1e-4});  // mm2/N
 
-    PathPose begin,
-        end;  // the contact frame's z points into the work, its y along the wheel's axis
-    begin.base_from_tcp = end.base_from_tcp = Frame(Eigen::DiagonalMatrix<double, 3>(1, -1, -1));
-    begin.base_from_tcp.translation() = Vec3(-40.0, 0.0, 1.0);
-    end.base_from_tcp.translation() = Vec3(40.0, 0.0, 1.0);
-    end.feed = 50.0;  // mm/s
-    const ToolPath path({begin, end}, {});
-
+    const Eigen::DiagonalMatrix<double, 3> down(1.0, -1.0, -1.0);  // z into the work, y the axle
+    const Frame begin = Eigen::Translation3d(-40.0, 0.0, 1.0) * Frame(down);
+    const Frame end = Eigen::Translation3d(40.0, 0.0, 1.0) * Frame(down);
+    const ToolPath path({{.base_from_tcp = begin}, {.base_from_tcp = end, .feed = 50.0}}, {});
     const SimulationResult result = simulate(plate, path, *contact, *law, options);
     std::printf("depth %.4f mm, volume %.2f mm3\n", 1.0 - plate.height[40 * 201 + 100],
                 result.removed_volume);

@@ -50,6 +50,19 @@ box = window.findChild(QtGui.QMessageBox, "BeltGrinding_Error")
 assert box.text() == "/no/such.stl: Diese Datei gibt es nicht", box.text()
 box.close()
 
+# What a program leaves open, too; in the document it stands in English.
+import beltgrinding
+Path("pass.src").write_text(
+    "DEF pass()\\nLIN {X 0, Y 0, Z 30, A 0, B 0, C 180}\\nLIN NOWHERE\\nLIN {X 50, Y 0, Z 30, A 0, B 0, C 180}\\nEND\\n"
+)
+robot = beltgrinding.import_program(doc.BeltGrindingJob, "pass.src")
+assert robot.ViewObject.Proxy.doubleClicked(robot.ViewObject)
+settle()
+(told,) = [w.item(0).text() for w in widgets(QtGui.QListWidget) if w.count() and "NOWHERE" in w.item(0).text()]
+assert told != robot.Problems[0] and told.startswith(robot.Problems[0].split(" ")[0]), told
+Gui.Control.closeDialog()
+doc.removeObject(robot.Name)
+
 # What is said of a property: FreeCAD stores it in English, and looks for its translation when it shows it.
 Gui.Selection.clearSelection()
 Gui.Selection.addSelection(doc.BeltMachine)

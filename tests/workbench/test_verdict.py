@@ -14,7 +14,7 @@ import pytest
 import beltgrinding
 from beltgrinding.engine import InputError, core
 from beltgrinding.cell import motions
-from beltgrinding.base import schemas
+from beltgrinding.base import messages, schemas
 from beltgrinding.inspection import verdict
 from beltgrinding.job import workpiece, load as jobs
 from beltgrinding.simulation.result import Result
@@ -142,6 +142,11 @@ def test_zones_have_limits_of_their_own_and_later_ones_win(job):
         ("narrow", "fail"),
     ]
     assert "holds no sample" in result.verdict["notes"][0]
+    stored = json.loads(json.dumps(result.verdict))
+    assert messages.notes(stored, "en") == stored["notes"] == result.verdict["notes"]
+    assert all(de != en for de, en in zip(messages.notes(stored, "de"), stored["notes"]))
+    del stored["note_facts"]  # of a version before 0.2
+    assert messages.notes(stored, "de") == stored["notes"]
     turned = verdict.of_result(
         result, inspection={**result.job["inspection"], "zones": zones[::-1]}
     )

@@ -111,6 +111,12 @@ def warnings(summary, language):
     return [sentence(one, language) for one in told]
 
 
+def notes(found, language):
+    """The sentences of the notes of a verdict or a check of the settings. Of a version before 0.2, in
+    English."""
+    return [sentence(one, language) for one in found.get("note_facts") or found["notes"]]
+
+
 def kind_text(kind):
     """A kind of events in English words: "force_not_reached" is "Force not reached"."""
     return kind.replace("_", " ").capitalize()

@@ -6,6 +6,7 @@ Faces are numbered from 1 as FreeCAD does; programs, poses and motions from 0 as
 
 import numpy as np
 
+from ..base.messages import fact_data
 from ..cell import motions as ways
 from ..engine import InputError, core
 from ..job.poses import program_name
@@ -96,6 +97,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
         },
         "programs": _programs(job, motions),
         "notes": notes,
+        "note_facts": [fact_data(note) for note in notes],
     }
 
 

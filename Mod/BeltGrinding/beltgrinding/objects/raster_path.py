@@ -7,7 +7,7 @@ from ..engine import InputError
 from ..job import load as jobs
 from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster
-from . import job_data, job_object
+from . import job_data, job_object, stored_facts
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
 from .properties import Key, Output, add_keys, add_outputs, to_job
@@ -47,6 +47,7 @@ OUTPUTS = (
     Output("StepOverUsed", "Length", "Result", "distance of neighbouring passes, at most"),
     Output("ContactWidth", "Length", "Result", "contact's width across the pass; 0: not asked for"),
     Output("Warnings", "StringList", "Result", "what the user should know of the passes"),
+    stored_facts.output("Warnings", "Result"),
     Output("Inputs", "String", "Result", "hash of what the passes were laid from", True),
 )
 
@@ -88,7 +89,7 @@ def generate(obj):
     obj.GroundLength = sum(one["length_mm"] for one in found["passes"])
     obj.StepOverUsed = found["step_over_mm"]
     obj.ContactWidth = found["contact_width_mm"] or 0.0
-    obj.Warnings = found["warnings"]
+    stored_facts.store(obj, "Warnings", found["warnings"])
     obj.Inputs = digest
 
 

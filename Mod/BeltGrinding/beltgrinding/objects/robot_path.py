@@ -13,7 +13,7 @@ from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
 from ..programs.registry import read_program
 from ..programs.writers.writer import write_program
-from . import freecad_path
+from . import freecad_path, stored_facts
 from .geometry import matrix
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
@@ -29,6 +29,7 @@ OUTPUTS = (
         "time at the programmed feeds without acceleration, s; the job's own: Simulation.ProcessTime",
     ),
     Output("Problems", "StringList", "Program", "what could not be resolved, by file and line"),
+    stored_facts.output("Problems", "Program"),
 )
 # name, type, text; parallel lists, one value per pose
 LISTS = (
@@ -200,7 +201,7 @@ def follow(obj):
         arrays["frames"] = frames.base_from_tcp(arrays["frames"], **cell)
     set_arrays(obj, arrays)
     obj.Language = program.language
-    obj.Problems = [str(problem) for problem in program.problems]
+    stored_facts.store(obj, "Problems", program.problems)
 
 
 def load_program(obj, path, **values):
@@ -210,7 +211,7 @@ def load_program(obj, path, **values):
     obj.SourceObject = None
     obj.Source = os.path.abspath(path)
     obj.Language = program.language
-    obj.Problems = [str(problem) for problem in program.problems]
+    stored_facts.store(obj, "Problems", program.problems)
     set_by_name(obj, values)
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ..base.messages import sentence
+from ..base import messages
 from ..simulation.convergence_record import LEVELS, worst
 from .layout import table
 from .markup import element
@@ -98,7 +98,7 @@ def convergence_part(convergence, words):
             "The error is Richardson's estimate from the three runs with a margin; where the figures do "
             "not settle evenly, it is their range."
         ), class_="small"),
-        [element("p", sentence(note, words.code), class_="note") for note in convergence["notes"]],
+        [element("p", note, class_="note") for note in messages.notes(convergence, words.code)],
     ]  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.messages import body, event_message, kind_text, sentence, warnings
+from ..base.messages import body, event_message, kind_text, notes, sentence, warnings
 from ..engine import core
 from ..job.poses import program_name
 from . import charts, facts, verdict_section
@@ -346,7 +346,7 @@ def trust(content, words):
     heads = [(words("Count"), "number"), (words("Doubtful"), ""), (words("What it means"), "")]
     told = warnings(result.summary, words.code)
     if content.verdict is not None:
-        told += [sentence(note, words.code) for note in content.verdict["notes"]]
+        told += notes(content.verdict, words.code)
     return section(
         words("How sure is that?"),
         element(

@@ -13,6 +13,7 @@ import time
 
 import numpy as np
 
+from ..base.messages import fact_data
 from ..engine import InputError, core
 from . import run as runs
 from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
@@ -79,6 +80,7 @@ def converge(job, context=None):
         context.report(so_far / whole)
         rest = context.part(so_far / whole, 1.0)
         answer["settings"] = _blame(job, levels["given"], rest, notes)
+    answer["note_facts"] = [fact_data(note) for note in notes]
     result.convergence = answer
     context.report(1.0)
     return result

@@ -24,7 +24,7 @@ struct PathPose {
     /// there; negative: unknown (the time law's default zone)
     double zone = -1.0;
     /// rad; the robot's joints there, where the program gives them (a joint target)
-    std::optional<Eigen::Matrix<double, 6, 1>> joints;
+    std::optional<Eigen::Matrix<double, 6, 1>> joints = {};
 };
 
 /// Linear in position, slerp in orientation, in the program's frame; t in [0, 1].

@@ -5,7 +5,7 @@ import traceback
 import FreeCAD
 import FreeCADGui as Gui
 
-from ...base.messages import sentence
+from ...base.messages import notes, sentence
 from .compat import QtGui, translate
 
 
@@ -16,6 +16,13 @@ def error_text(error):
     from .report_language import language  # not above: that the core is missing must be said, too
 
     return sentence(error, language())
+
+
+def note_texts(found):
+    """What the notes of a verdict or a check of the settings say, in the window's language."""
+    from .report_language import language  # not above, as in error_text
+
+    return notes(found, language())
 
 
 def report(error):

@@ -1,7 +1,7 @@
 """What the verdict's dock writes into its tables and labels."""
 
 from ..common.compat import QtGui, translate
-from ..common.messages import error_text
+from ..common.messages import note_texts
 
 BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
 
@@ -94,7 +94,7 @@ def doubts(found):
     )
     told = ", ".join(f"{count} {what}" for what, count in counts)
     lines.append(translate("BeltGrinding", "In doubt") + f": {told}")
-    return "\n".join([*lines, *(error_text(note) for note in found["notes"])])
+    return "\n".join([*lines, *note_texts(found)])
 
 
 class _Rows:

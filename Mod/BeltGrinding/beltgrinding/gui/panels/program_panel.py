@@ -3,9 +3,10 @@
 from pathlib import Path
 
 from ...engine import InputError
-from ...objects import robot_path
+from ...objects import robot_path, stored_facts
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
+from ..common.report_language import language
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from .panel import Panel, edit
@@ -87,7 +88,7 @@ class ProgramPanel(Panel):
         if obj.Poses:
             self.table.show_pose(0)
         self.problems.clear()
-        self.problems.addItems(obj.Problems[:SHOWN_PROBLEMS])
+        self.problems.addItems(stored_facts.sentences(obj, "Problems", language(), SHOWN_PROBLEMS))
         if len(obj.Problems) > SHOWN_PROBLEMS:
             more = len(obj.Problems) - SHOWN_PROBLEMS
             self.problems.addItem(translate("BeltGrinding", "... and {} more").format(more))

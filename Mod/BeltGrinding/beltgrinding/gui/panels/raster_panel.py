@@ -3,9 +3,10 @@
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import raster_path
+from ...objects import raster_path, stored_facts
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..common.report_language import language
 from ..widgets.form import Form
 from .panel import Panel
 
@@ -164,7 +165,7 @@ class RasterPanel(Panel):
             text += "\n" + width.format(obj.ContactWidth.Value)
         self.tell(text)
         self.warnings.clear()
-        self.warnings.addItems(obj.Warnings[:SHOWN_WARNINGS])
+        self.warnings.addItems(stored_facts.sentences(obj, "Warnings", language(), SHOWN_WARNINGS))
         self.warnings.setVisible(bool(obj.Warnings))
 
     def check(self):

@@ -6,7 +6,7 @@ from ...objects.simulation import Simulation
 from ...reporting import convergence_section
 from ...simulation import convergence
 from ..common.compat import QtGui, translate
-from ..common.messages import error_text
+from ..common.messages import note_texts
 from ..common.report_language import words
 from ..common.runner import Runner
 from .run_panel import BAD, RunPanel
@@ -86,7 +86,7 @@ class SettingsCheckPanel(RunPanel):
             return
         first, *others = convergence_section.sentences(found, self.words)
         self._say(first, not found["fine_enough"])
-        self.more.setText("\n\n".join([*others, *(error_text(note) for note in found["notes"])]))
+        self.more.setText("\n\n".join([*others, *note_texts(found)]))
         for row, one in enumerate(found["quantities"]):
             name = convergence_section.name_of(one, self.words)
             value, error, limit = (

@@ -1,0 +1,34 @@
+"""Facts in a document: English sentences that everyone can read, and beside them, hidden, what makes them
+sentences in another language.
+"""
+
+import json
+
+from ..base.messages import fact_data, sentence
+from .properties import Output
+
+MOST = 200  # facts kept beside their sentences; no panel shows more
+
+
+def output(name, group):
+    """The hidden property beside the StringList ``name``."""
+    return Output(f"{name}Data", "String", group, "the same as JSON, for other languages", True)
+
+
+def store(obj, name, facts):
+    """Sets both properties. ``facts``: Facts, or sentences that are none."""
+    setattr(obj, name, [str(fact) for fact in facts])
+    data = [fact_data(fact) for fact in facts[:MOST]]
+    setattr(obj, f"{name}Data", json.dumps(data) if data else "")
+
+
+def sentences(obj, name, language, most=MOST):
+    """The first ``most`` sentences of a property. Those without a fact are told as they stand: of a
+    version before 0.2, or set by a macro.
+    """
+    told = list(getattr(obj, name))[:most]
+    data = json.loads(getattr(obj, f"{name}Data", "") or "[]")
+    for at, (english, fact) in enumerate(zip(told, data)):
+        if sentence(fact, "en") == english:
+            told[at] = sentence(fact, language)
+    return told

@@ -2,6 +2,7 @@
 
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.registry import read_program  # noqa: E402
+from support.cost import cost  # noqa: E402
 
 LIN = "LIN {X 1,Y 2,Z 3,A 4,B 5,C 6}\n"
 POINT = "[[1,2,3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
@@ -23,6 +25,21 @@ def read(tmp_path, name, text):
     path = tmp_path / name
     path.write_bytes(text.encode("latin-1"))
     return read_program(path)
+
+
+@pytest.fixture(scope="module")
+def ordinary(tmp_path_factory):
+    """CPU time in s of a long program that asks for nothing."""
+    folder, text = tmp_path_factory.mktemp("ordinary"), "DEF a()\n" + 20_000 * LIN + "END\n"
+    return cost(lambda: read(folder, "a.src", text))
+
+
+@contextmanager
+def soon(ordinary):
+    """What happens in it takes no longer than reading 100,000 motions."""
+    begin = time.process_time()
+    yield
+    assert time.process_time() - begin < 5 * ordinary
 
 
 @pytest.mark.parametrize(
@@ -85,11 +102,12 @@ LOOPS = {
 
 
 @pytest.mark.parametrize("name", LOOPS)
-def test_endless_work_is_refused_soon(tmp_path, name):
-    begin = time.process_time()
-    with pytest.raises(ProgramError, match=rf"{name}:\d+: .*(too long|too deeply|does not end)"):
-        read(tmp_path, name, LOOPS[name])
-    assert time.process_time() - begin < 4.0
+def test_endless_work_is_refused_soon(tmp_path, ordinary, name):
+    with soon(ordinary):
+        with pytest.raises(
+            ProgramError, match=rf"{name}:\d+: .*(too long|too deeply|does not end)"
+        ):
+            read(tmp_path, name, LOOPS[name])
 
 
 def test_a_loop_over_all_points_of_a_file_is_followed(tmp_path):
@@ -107,11 +125,10 @@ def test_a_loop_without_its_end_is_followed_once(tmp_path):
     assert "while has no end" in str(program.problems[0])
 
 
-def test_a_huge_array_is_not_made(tmp_path):
-    begin = time.process_time()
+def test_a_huge_array_is_not_made(tmp_path, ordinary):
     text = f"MODULE a\nVAR robtarget p{{1000,1000}};\nPROC main()\n{MOVE}ENDPROC\nENDMODULE"
-    assert len(read(tmp_path, "a.mod", text).motions) == 1
-    assert time.process_time() - begin < 1.0
+    with soon(ordinary):
+        assert len(read(tmp_path, "a.mod", text).motions) == 1
 
 
 def test_a_head_that_swallows_a_statement_is_refused(tmp_path):
@@ -181,14 +198,12 @@ def val3(tmp_path, code, fathers=("world[0]", "world[0]")):
     return read(tmp_path, "a.pgx", VAL3.format(code))
 
 
-def test_an_endless_val3_loop_is_refused_soon(tmp_path):
-    begin = time.process_time()
-    with pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
+def test_an_endless_val3_loop_is_refused_soon(tmp_path, ordinary):
+    with soon(ordinary), pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
         val3(tmp_path, "for l_n=1 to 9E9\nmovel(p[0],t[0],m[0])\nendFor\n")
     (tmp_path / "b.pgx").write_text(VAL3.format("return\n" + "x=1\n" * 1000).replace('"a"', '"b"'))
-    with pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
+    with soon(ordinary), pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
         val3(tmp_path, "for l_n=1 to 9E9\ncall b()\nendFor\n")
-    assert time.process_time() - begin < 4.0
 
 
 @pytest.mark.parametrize("fathers", [("nowhere", "f[#1]"), ("p", "t"), ("f[http]", "world[0]")])
@@ -205,14 +220,12 @@ def test_a_val3_call_cut_off_in_a_skipped_block_is_a_gap(tmp_path):
     assert "if is decided at run time" in str(program.problems[0])
 
 
-def test_an_endless_polyscope_loop_is_refused_soon(tmp_path):
+def test_an_endless_polyscope_loop_is_refused_soon(tmp_path, ordinary):
     inner = '<Loop type="Counting" count="999999"><children>{}</children></Loop>'
     text = (
         "<URProgram><children><MainProgram><children>"
         + inner.format(inner.format("<Comment/>"))
         + "</children></MainProgram></children></URProgram>"
     )
-    begin = time.process_time()
-    with pytest.raises(ProgramError, match="a.urp:1: the program is too long"):
+    with soon(ordinary), pytest.raises(ProgramError, match="a.urp:1: the program is too long"):
         read(tmp_path, "a.urp", text)
-    assert time.process_time() - begin < 4.0

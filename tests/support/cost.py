@@ -1,0 +1,23 @@
+"""What work costs, compared with other work of the same run: a limit in seconds would measure the machine,
+its load, or the counters of tools/coverage.
+"""
+
+import time
+
+
+def cost(work):
+    """CPU time of ``work()`` in seconds, the smaller of two."""
+    return min(_once(work) for _ in range(2))
+
+
+def _once(work):
+    begin = time.process_time()
+    work()
+    return time.process_time() - begin
+
+
+def growth(work, size):
+    """How much dearer per item ``work(4 * size)`` is than ``work(size)``: 1 if the cost is in proportion,
+    4 if it goes with the square.
+    """
+    return cost(lambda: work(4 * size)) / (4 * cost(lambda: work(size)))

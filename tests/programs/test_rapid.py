@@ -338,7 +338,7 @@ def test_the_time_of_reading_goes_with_the_number_of_motions(tmp_path):
         program = main(tmp_path, rows)
         assert len(program.motions) == n and not program.problems
 
-    assert growth(work, 10_000) < 2
+    assert growth(work, 5000) < 3
 
 
 OWN = (

@@ -71,7 +71,6 @@ void trim(std::vector<Pair>& pairs, std::size_t count) {
     if (count >= pairs.size()) return;
     std::vector<double> squares;
     squares.reserve(pairs.size());
-    squares.reserve(pairs.size());
     for (const Pair& p : pairs) squares.push_back(p.squared);
     const auto cut = squares.begin() + std::ptrdiff_t(count);
     std::nth_element(squares.begin(), cut, squares.end());

@@ -35,11 +35,11 @@ def ordinary(tmp_path_factory):
 
 
 @contextmanager
-def soon(ordinary):
-    """What happens in it takes no longer than reading 100,000 motions."""
+def soon(ordinary, times=5):
+    """What happens in it takes no longer than ``times`` the reading of 20,000 motions."""
     begin = time.process_time()
     yield
-    assert time.process_time() - begin < 5 * ordinary
+    assert time.process_time() - begin < times * ordinary
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_a_loop_without_its_end_is_followed_once(tmp_path):
 
 def test_a_huge_array_is_not_made(tmp_path, ordinary):
     text = f"MODULE a\nVAR robtarget p{{1000,1000}};\nPROC main()\n{MOVE}ENDPROC\nENDMODULE"
-    with soon(ordinary):
+    with soon(ordinary, 1):
         assert len(read(tmp_path, "a.mod", text).motions) == 1
 
 
@@ -199,11 +199,12 @@ def val3(tmp_path, code, fathers=("world[0]", "world[0]")):
 
 
 def test_an_endless_val3_loop_is_refused_soon(tmp_path, ordinary):
-    with soon(ordinary), pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
-        val3(tmp_path, "for l_n=1 to 9E9\nmovel(p[0],t[0],m[0])\nendFor\n")
     (tmp_path / "b.pgx").write_text(VAL3.format("return\n" + "x=1\n" * 1000).replace('"a"', '"b"'))
-    with soon(ordinary), pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
-        val3(tmp_path, "for l_n=1 to 9E9\ncall b()\nendFor\n")
+    with soon(ordinary):
+        with pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
+            val3(tmp_path, "for l_n=1 to 9E9\nmovel(p[0],t[0],m[0])\nendFor\n")
+        with pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
+            val3(tmp_path, "for l_n=1 to 9E9\ncall b()\nendFor\n")
 
 
 @pytest.mark.parametrize("fathers", [("nowhere", "f[#1]"), ("p", "t"), ("f[http]", "world[0]")])

@@ -14,8 +14,8 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 from beltgrinding.base import frames  # noqa: E402
 from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.readers.inform import reader as inform  # noqa: E402
-from support.cost import growth  # noqa: E402
 from beltgrinding.programs.registry import read_program  # noqa: E402
+from support.cost import growth  # noqa: E402
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")

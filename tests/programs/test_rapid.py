@@ -336,7 +336,7 @@ def test_the_time_of_reading_goes_with_the_number_of_motions(tmp_path):
     def work(n):
         rows = "".join(f"MoveL {point(i / 100, i % 7, 3)},v100,z1,tool0;\n" for i in range(n))
         program = main(tmp_path, rows)
-        assert len(program.motions) == n and not program.problems
+        assert len(positions(program)) == n and not program.problems
 
     assert growth(work, 5000) < 3
 

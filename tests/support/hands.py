@@ -239,14 +239,13 @@ def _come_to_rest(quiet=0.7, patience=3, most=10):
     while time.monotonic() - begun < most:
         settle()
         time.sleep(0.05)
-        left_over = [
-            bar for bar in window.statusBar().findChildren(QtGui.QProgressBar) if bar.isVisible()
-        ]
+        status = window.statusBar()
+        left_over = [bar for bar in visible(QtGui.QProgressBar) if status.isAncestorOf(bar)]
         if left_over and time.monotonic() - begun > patience:
             for bar in left_over:
                 bar.hide()
-            for label in window.statusBar().findChildren(QtGui.QLabel):
-                if label.text().endswith("..."):
+            for label in visible(QtGui.QLabel):
+                if status.isAncestorOf(label) and label.text().endswith("..."):
                     label.clear()
         shown = screen.grabWindow(0).toImage()
         if shown != seen or left_over:

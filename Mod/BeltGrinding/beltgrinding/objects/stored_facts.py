@@ -7,7 +7,7 @@ import json
 from ..base.messages import fact_data, sentence
 from .properties import Output
 
-MOST = 200  # facts kept beside their sentences; no panel shows more
+MOST = 200  # facts kept beside their sentences
 
 
 def output(name, group):

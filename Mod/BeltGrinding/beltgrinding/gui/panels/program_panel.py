@@ -11,7 +11,7 @@ from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from .panel import Panel, edit
 
-SHOWN_PROBLEMS = 200
+SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
 TABLE_HEIGHT = 260  # pixels
 _open = []  # the panel that is open
 

@@ -44,9 +44,7 @@ Fact within(const std::string& path) {
     return {"heightfield.file", "{file}: the height field ", {{"file", path}}};
 }
 
-void write_all(const HeightField& field, const std::string& path, const std::string& attributes) {
-    const Handle file(create_file(path), H5Fclose);
-    require(file.ok(), "hdf5.not_made", "cannot be made there");
+void write_all(const HeightField& field, hid_t file, const std::string& attributes) {
     write_scalar(file, "format", H5T_NATIVE_INT, &kFormat);
     write_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
     write_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
@@ -65,8 +63,6 @@ void write_all(const HeightField& field, const std::string& path, const std::str
         });
     }
     write_text(file, "attributes", attributes);
-    require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.disk_full",
-            "cannot be written; is the disk full?");
 }
 
 void check(const RemovalTrace& t, std::size_t n) {
@@ -118,21 +114,42 @@ void check(const HeightField& f) {
 
 }  // namespace
 
+std::string hdf5_image(const HeightField& field, const std::string& attributes) {
+    const auto lock = hdf5_lock();
+    try {
+        return image_of([&](hid_t file) { write_all(field, file, attributes); });
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within("HDF5")});
+    }
+}
+
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes) {
     const auto lock = hdf5_lock();
-    write_whole(path, within(path),
-                [&](const std::string& temporary) { write_all(field, temporary, attributes); });
+    try {
+        write_bytes(path, image_of([&](hid_t file) { write_all(field, file, attributes); }));
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within(path)});
+    }
 }
 
 HeightField read_hdf5(const std::string& path, std::string* attributes) {
+    try {
+        return read_hdf5_image(bytes_of(path), path, attributes);
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within(path)});
+    }
+}
+
+HeightField read_hdf5_image(std::string_view image, const std::string& name,
+                            std::string* attributes) {
     const auto lock = hdf5_lock();
     try {
-        const InputFile file(path, "format", kFormat);
+        const InputFile file(image, "format", kFormat);
         HeightField field;
         read_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
         read_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
-        each_array(field, [&](const char* name, auto& data, hid_t type, hsize_t row) {
-            read_array(file, name, data, type, row);
+        each_array(field, [&](const char* array, auto& data, hid_t type, hsize_t row) {
+            read_array(file, array, data, type, row);
         });
         if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
             read_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
@@ -141,8 +158,8 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
             read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
         }
         if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
-            each_trace_array(field.trace, [&](const char* name, auto& data, hid_t type) {
-                read_array(file, name, data, type, 1);
+            each_trace_array(field.trace, [&](const char* array, auto& data, hid_t type) {
+                read_array(file, array, data, type, 1);
             });
         }
         check(field);
@@ -150,7 +167,7 @@ HeightField read_hdf5(const std::string& path, std::string* attributes) {
         if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return field;
     } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(path)});
+        throw InputError(fault.fact, {within(name)});
     }
 }
 

@@ -88,15 +88,16 @@ std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale) {
                scale ? &colours : nullptr, deviation);
 }
 
-std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground) {
+std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground,
+                          const std::string& run) {
     const auto vertex = [&](std::size_t i) { return place(field, i, ground); };
     const auto deviation = [&](std::size_t i) {
         return (field.flags[i] & kMissed) != 0 ? std::numeric_limits<float>::quiet_NaN()
                                                : static_cast<float>(field.height[i]);
     };
     const std::vector<std::uint32_t> colours = deviation_colours(field, scale);
-    return ply("belt-grinding deviation", field.size(), vertex, field.triangles, &colours,
-               deviation);
+    const std::string title = "belt-grinding deviation" + (run.empty() ? "" : ", run " + run);
+    return ply(title.c_str(), field.size(), vertex, field.triangles, &colours, deviation);
 }
 
 std::string mesh_ply(const HeightField& field, bool ground) {

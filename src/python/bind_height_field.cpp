@@ -112,6 +112,31 @@ void bind_height_field(py::module_& m) {
                 write_hdf5(field, path, attributes);
             },
             py::arg("path"), py::arg("attributes") = "")
+        .def(
+            "hdf5",
+            [](const HeightField& field, const std::string& attributes) {
+                std::string image;
+                {
+                    const py::gil_scoped_release release;
+                    image = hdf5_image(field, attributes);
+                }
+                return py::bytes(image);
+            },
+            py::arg("attributes") = "", "The bytes that write_hdf5 writes.")
+        .def_static(
+            "from_hdf5_bytes",
+            [](const py::bytes& image, const std::string& name) {
+                const auto view = static_cast<std::string_view>(image);
+                std::string attributes;
+                HeightField field;
+                {
+                    const py::gil_scoped_release release;
+                    field = read_hdf5_image(view, name, &attributes);
+                }
+                return py::make_tuple(std::move(field), attributes);
+            },
+            py::arg("image"), py::arg("name"),
+            "As from_hdf5, of a file's bytes; errors tell the name.")
         .def_static(
             "from_hdf5",
             [](const std::string& path) {

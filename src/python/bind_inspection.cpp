@@ -124,11 +124,12 @@ void bind_inspection(py::module_& m) {
         "Colours 0xRRGGBBAA of deviations, for a legend.");
     m.def(
         "deviation_ply",
-        [](const HeightField& field, double lower, double upper, double limit, bool ground) {
-            return py::bytes(deviation_ply(field, scale_of(lower, upper, limit), ground));
+        [](const HeightField& field, double lower, double upper, double limit, bool ground,
+           const std::string& run) {
+            return py::bytes(deviation_ply(field, scale_of(lower, upper, limit), ground, run));
         },
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
-        py::arg("ground") = true);
+        py::arg("ground") = true, py::arg("run") = "");
     m.def(
         "mesh_ply",
         [](const HeightField& field, bool ground) { return py::bytes(mesh_ply(field, ground)); },

@@ -46,6 +46,31 @@ void bind_recording(py::module_& m) {
                 write_hdf5(r, path, attributes);
             },
             py::arg("path"), py::arg("attributes") = "")
+        .def(
+            "hdf5",
+            [](const Recording& r, const std::string& attributes) {
+                std::string image;
+                {
+                    const py::gil_scoped_release release;
+                    image = hdf5_image(r, attributes);
+                }
+                return py::bytes(image);
+            },
+            py::arg("attributes") = "", "The bytes that write_hdf5 writes.")
+        .def_static(
+            "from_hdf5_bytes",
+            [](const py::bytes& image, const std::string& name) {
+                const auto view = static_cast<std::string_view>(image);
+                std::string attributes;
+                Recording recording;
+                {
+                    const py::gil_scoped_release release;
+                    recording = read_recording_image(view, name, &attributes);
+                }
+                return py::make_tuple(std::move(recording), attributes);
+            },
+            py::arg("image"), py::arg("name"),
+            "As from_hdf5, of a file's bytes; errors tell the name.")
         .def_static(
             "from_hdf5",
             [](const std::string& path) {

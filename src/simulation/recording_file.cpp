@@ -32,9 +32,7 @@ struct RecordingFile {
         visit("steps", r.steps_, H5T_NATIVE_UINT32, hsize_t{1});
     }
 
-    static void write(const Recording& r, const std::string& path, const std::string& attributes) {
-        const Handle file(create_file(path), H5Fclose);
-        require(file.ok(), "hdf5.not_made", "cannot be made there");
+    static void write(const Recording& r, hid_t file, const std::string& attributes) {
         write_scalar(file, "recording_format", H5T_NATIVE_INT, &kFormat);
         write_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
         const auto stride = static_cast<std::uint64_t>(r.stride_);
@@ -43,12 +41,10 @@ struct RecordingFile {
             write_array(file, name, data, type, row);
         });
         write_text(file, "attributes", attributes);
-        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.disk_full",
-                "cannot be written; is the disk full?");
     }
 
-    static Recording read(const std::string& path, std::string* attributes) {
-        const InputFile file(path, "recording_format", kFormat);
+    static Recording read(std::string_view image, std::string* attributes) {
+        const InputFile file(image, "recording_format", kFormat);
         Recording r;
         std::uint64_t stride = 1;
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
@@ -97,20 +93,46 @@ struct RecordingFile {
     }
 };
 
+namespace {
+std::string image(const Recording& recording, const std::string& attributes) {
+    return image_of([&](hid_t file) { RecordingFile::write(recording, file, attributes); });
+}
+}  // namespace
+
+std::string hdf5_image(const Recording& recording, const std::string& attributes) {
+    const auto lock = hdf5_lock();
+    try {
+        return image(recording, attributes);
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within("HDF5")});
+    }
+}
+
 void write_hdf5(const Recording& recording, const std::string& path,
                 const std::string& attributes) {
     const auto lock = hdf5_lock();
-    write_whole(path, within(path), [&](const std::string& temporary) {
-        RecordingFile::write(recording, temporary, attributes);
-    });
+    try {
+        write_bytes(path, image(recording, attributes));
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within(path)});
+    }
 }
 
 Recording read_recording(const std::string& path, std::string* attributes) {
-    const auto lock = hdf5_lock();
     try {
-        return RecordingFile::read(path, attributes);
+        return read_recording_image(bytes_of(path), path, attributes);
     } catch (const FileFault& fault) {
         throw InputError(fault.fact, {within(path)});
+    }
+}
+
+Recording read_recording_image(std::string_view image, const std::string& name,
+                               std::string* attributes) {
+    const auto lock = hdf5_lock();
+    try {
+        return RecordingFile::read(image, attributes);
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {within(name)});
     }
 }
 

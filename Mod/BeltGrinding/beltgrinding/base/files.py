@@ -1,20 +1,103 @@
 """Files that are written whole or not at all; and errors of files and of the keys in them."""
 
+import collections
+import contextlib
 import errno
 import json
 import os
+import signal
+import stat
+import threading
+import uuid
+from pathlib import Path
 
 from .. import engine
 
+PART = ".beltgrind-part-"  # what is not whole yet; not NAME and more, which may be too long a name
+_written = collections.deque(maxlen=1)
+
 
 def write_whole(path, data):
-    """Writes bytes to ``path``, whole or not at all."""
-    part = path.with_name(path.name + ".part")
+    """Writes bytes to ``path``, whole or not at all, and onto the disk. Raises OSError."""
+    path = Path(os.path.realpath(path))  # a link stays one
+    if path.exists() and not path.is_file():
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        path.write_bytes(data)  # a pipe or a device, which nothing may take the place of
+        return
+    part = path.with_name(PART + uuid.uuid4().hex)
     try:
-        part.write_bytes(data)
-        os.replace(part, path)
+        write_new(part, data)
+        if path.exists():
+            with contextlib.suppress(OSError):
+                os.chmod(part, path.stat().st_mode & 0o7777)
+        with uninterrupted():
+            os.replace(part, path)
+            written(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def write_new(path, data):
+    """Writes bytes to a file that is not there yet, onto the disk. Raises OSError."""
+    number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+    with open(number, "wb", buffering=0) as file:  # a file system may fail as late as on closing
+        left = memoryview(data)
+        while left:
+            left = left[file.write(left) :]
+        os.fsync(number)
+
+
+def read_regular(path):
+    """The bytes of a regular file; a pipe or a device may have no end. Raises OSError."""
+    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    with open(number, "rb") as file:
+        if not stat.S_ISREG(os.fstat(number).st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file", str(path))
+        return file.read()
+
+
+@contextlib.contextmanager
+def uninterrupted():
+    """Lets Ctrl-C wait until its end; in other threads than the main one it never comes."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came = []
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before):  # ignored, or not Python's: nothing that would break in
+        yield
+        return
+    signal.signal(signal.SIGINT, lambda *told: came.append(told))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            before(*came[0])
+
+
+def written(path):
+    """Notes that something was written there: who is interrupted can say so."""
+    _written.append(path)
+
+
+def last_written():
+    """The path noted last, None where nothing was."""
+    return _written[-1] if _written else None
+
+
+def absolute(folder, name):
+    """The path of a file that is named relative to ``folder``, without links. Raises InputError for a name
+    that no file can have."""
+    try:
+        path = os.path.realpath(os.path.join(folder, name))
+        os.fsencode(path)
+    except (ValueError, UnicodeEncodeError):  # a NUL in it, half a character
+        raise engine.InputError(
+            "files.no_name", "{file}: no file can have this name", file=ascii(str(name))
+        ) from None
+    return path
 
 
 def json_bytes(data):
@@ -48,6 +131,9 @@ def reason_of(error):
         errno.ENOSPC: engine.core.Fact("files.disk_full", "No space left on device"),
         errno.EISDIR: engine.core.Fact("files.folder", "Is a directory"),
         errno.ENOTDIR: engine.core.Fact("files.no_folder", "Not a directory"),
+        errno.ELOOP: engine.core.Fact("files.links", "its links lead in a circle"),
+        errno.ENAMETOOLONG: engine.core.Fact("files.long_name", "its name is too long"),
+        errno.EDQUOT: engine.core.Fact("files.quota", "Disk quota exceeded"),
         errno.EEXIST: engine.core.Fact("files.exists", "File exists"),
     }
     known = usual.get(getattr(error, "errno", None))

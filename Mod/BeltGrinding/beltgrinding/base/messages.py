@@ -6,6 +6,8 @@ as of another version, is told in English.
 """
 
 import json
+import math
+import re
 import string
 from functools import lru_cache
 
@@ -13,6 +15,7 @@ from .resources import resources
 
 POINTS = {"en": ".", "de": ","}
 MINUS = "\N{MINUS SIGN}"
+FORMAT = re.compile(r"[+-]?(\.?\d{1,2})?[a-z%]?")  # all that our forms use
 BODIES = ("body", "other")  # arguments that are bodies of the cell
 PARTS = ("context", "remarks")  # of what is told, before and after it
 
@@ -35,11 +38,17 @@ class _Formatter(string.Formatter):
     def __init__(self, language):
         self.language = language
 
+    def get_field(self, field_name, args, kwargs):
+        # A form may come out of a document: nothing but the arguments themselves is told.
+        return kwargs[field_name], field_name
+
     def format_field(self, value, format_spec):
+        if isinstance(value, str):  # also a number that JSON does not have
+            return value
+        if not FORMAT.fullmatch(format_spec):
+            raise ValueError(format_spec)
         text = format(value, format_spec)
-        if isinstance(value, str) or self.language == "en":
-            return text
-        return decimal(text, self.language)
+        return text if self.language == "en" else decimal(text, self.language)
 
 
 def word(code, text, language):
@@ -70,7 +79,10 @@ def _filled(code, text, arguments, language):
     if form is None:
         form, language = text, "en"
     named = {name: _argument(name, value, language) for name, value in arguments.items()}
-    return _Formatter(language).vformat(form, (), named)
+    try:
+        return _Formatter(language).vformat(form, (), named)
+    except (KeyError, ValueError, TypeError):  # a document's own words, or damaged ones
+        return form
 
 
 def sentence(told, language):
@@ -101,8 +113,15 @@ def fact_data(told):
 
 
 def _part(code, text, arguments):
-    kept = {k: fact_data(v) if hasattr(v, "code") else v for k, v in arguments.items()}
+    kept = {k: _plain(v) for k, v in arguments.items()}
     return {"code": code, "text": text, "arguments": kept}
+
+
+def _plain(value):
+    """As JSON has it, which knows no number that is not finite."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return fact_data(value) if hasattr(value, "code") else value
 
 
 def warnings(summary, language):

@@ -3,9 +3,10 @@
 import copy
 import json
 import math
+import sys
 
 from ..engine import InputError
-from .files import cannot_be_read, in_file
+from .files import cannot_be_read, in_file, read_regular
 from .resources import resources
 from .schema_errors import explained
 
@@ -19,11 +20,17 @@ def schema(name):
 def read_json(path):
     """The content of a JSON file (a pathlib.Path). Raises InputError."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_regular(path).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise cannot_be_read(path, error) from None
     try:
-        return json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
+        return json.loads(
+            text,
+            parse_constant=_refuse_constant,
+            parse_float=_finite,
+            parse_int=_not_too_large,
+            object_pairs_hook=_without_twins,
+        )
     except json.JSONDecodeError as error:
         raise InputError(
             "base.no_json",
@@ -42,6 +49,23 @@ def read_json(path):
 
 def _refuse_constant(name):
     raise InputError("base.json_number", "{name} is no number that a job can use", name=name)
+
+
+def _not_too_large(text):
+    value = int(text)
+    if abs(value) > sys.float_info.max:
+        raise InputError("base.json_too_large", "{text} is too large a number", text=text[:40])
+    return value
+
+
+def _without_twins(pairs):
+    """A JSON object's dict; the later of two equal keys would win without a word."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [key for key, _ in pairs]
+        twin = next(key for key in names if names.count(key) > 1)
+        raise InputError("base.json_twin", "the key '{key}' is there twice", key=twin)
+    return found
 
 
 def _finite(text):

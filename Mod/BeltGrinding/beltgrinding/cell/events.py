@@ -4,7 +4,7 @@ The kinds stand in the core (src/events/event_kinds.cpp); events.schema.json is 
 """
 
 from ..base import schemas
-from ..engine import core
+from ..engine import InputError, core
 
 SEVERITIES = ("error", "warning", "info")  # the worst first
 # What an event of an older result, or one that a caller makes, need not have.
@@ -33,6 +33,18 @@ def kinds():
 def schema():
     """The JSON Schema of events.json, as a dict."""
     return schemas.schema("events")
+
+
+def read(path):
+    """The events of a file (a pathlib.Path), complete. Raises InputError."""
+    found = schemas.read_json(path)
+    if not isinstance(found, list) or not all(
+        isinstance(one, dict) and isinstance(one.get("kind"), str) for one in found
+    ):
+        raise InputError("cell.no_events", "{file}: is no list of events", file=path)
+    rules = schema()
+    del rules["items"]["properties"]["kind"]["enum"]  # another version's may be new
+    return schemas.checked(complete(found), rules, str(path))
 
 
 def complete(events):

@@ -5,10 +5,13 @@ errors: docs/job-file.md.
 """
 
 import argparse
+import contextlib
 import json
+import os
+import signal
 import sys
 
-from . import calibrate, grind, inspect, lists, measure, press, program, report
+from . import calibrate, faults, grind, inspect, lists, measure, press, program, report
 from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
@@ -63,20 +66,45 @@ def _parser():
 
 def main(argv=None):
     """Runs the command line; returns the exit status."""
-    parser = _parser()
-    arguments = parser.parse_args(argv)
-    messages = Messages(arguments.message_language, getattr(arguments, "json_errors", False))
+    messages, status = Messages(), 0
+    try:
+        with faults.standard_streams():
+            status = _main(argv, messages)
+    except KeyboardInterrupt:  # before a command has begun, or while an error is told
+        return _interrupted(messages)
+    except OSError as error:
+        status = _other_error(error, messages)
+    return status
+
+
+def process():
+    """``main`` as a process of its own, which it ends: Ctrl-C may come at any moment, and a thread that
+    computes may still do so."""
+    try:
+        status = main()
+    except SystemExit as error:  # argparse
+        status = error.code if isinstance(error.code, int) else 2
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(status)
+
+
+def _main(argv, messages):
+    arguments = _parser().parse_args(argv)
+    messages.set(arguments.message_language, getattr(arguments, "json_errors", False))
     arguments.messages = messages
     try:
         from ..engine import Cancelled, InputError, core
     except ImportError as error:
         print(f"beltgrind: {error}", file=sys.stderr)
-        return 1
+        return 2
     try:
         if arguments.version:
             print(json.dumps(core.versions()))
         elif arguments.command is None:
-            parser.print_usage(sys.stderr)
+            _parser().print_usage(sys.stderr)
             return 2
         else:
             arguments.do(arguments)
@@ -84,11 +112,42 @@ def main(argv=None):
         messages.print_error(error)
         return 2
     except (KeyboardInterrupt, Cancelled):
-        messages.print_error(InputError("cli.interrupted", "interrupted; nothing was written"))
-        return 130
+        return _interrupted(messages)
     except MemoryError:
         messages.print_error(
-            InputError("cli.out_of_memory", "out of memory; enlarge sampling.spacing_mm")
+            InputError(
+                "cli.out_of_memory",
+                "out of memory; close other programs, or take a smaller part or coarser settings",
+            )
         )
         return 2
+    except BrokenPipeError:
+        raise
+    except Exception as error:
+        return _other_error(error, messages)
     return 0
+
+
+def _other_error(error, messages):
+    if not faults.of_output(error):
+        return faults.ours(error, messages)
+    messages.print_error(faults.output_error(error))
+    return 2
+
+
+def _interrupted(messages):
+    try:
+        from ..base.files import last_written
+        from ..engine import InputError
+
+        path = last_written()
+        if path is None:
+            error = InputError("cli.interrupted", "interrupted; nothing was written")
+        else:
+            error = InputError(
+                "cli.interrupted_late", "interrupted; {file} was written whole before", file=path
+            )
+        messages.print_error(error)
+    except (KeyboardInterrupt, ImportError):
+        pass
+    return 130

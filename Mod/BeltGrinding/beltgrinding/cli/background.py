@@ -31,7 +31,7 @@ def run(work, quiet=False):
             pass
     except KeyboardInterrupt:
         context.cancel()
-        done.wait(CANCEL_TIME)
+        done.wait(CANCEL_TIME)  # what does not hear it ends with the process
         raise
     if "error" in outcome:
         raise outcome["error"]

@@ -3,6 +3,9 @@
 import json
 from pathlib import Path
 
+from . import outputs
+from .messages import print_text
+
 
 def add(commands):
     """Adds the commands to the parser's ``commands``."""
@@ -15,6 +18,7 @@ def add(commands):
         "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
     )
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    outputs.add(fit)
     fit.set_defaults(do=_calibrate)
     scan = commands.add_parser(
         "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
@@ -28,12 +32,14 @@ def add(commands):
     scan.add_argument("-o", "--output", required=True, help="file for the law (.json)")
     scan.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
     scan.add_argument("--offset", action="store_true", help="the scan may lie too high everywhere")
+    outputs.add(scan)
     scan.set_defaults(do=_calibrate_scan)
     told = commands.add_parser("predict", help="predict further grinds by a calibrated law")
     told.add_argument("law", help="what calibrate wrote")
     told.add_argument("table", help="CSV of the grinds; measured removals are compared")
     told.add_argument("-o", "--output", help="CSV of the predictions")
     told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
+    outputs.add(told)
     told.set_defaults(do=_predict)
 
 
@@ -44,6 +50,8 @@ def _calibrate(arguments):
         report as calibration_report,
     )
 
+    written = [arguments.output, arguments.report, arguments.plot]
+    outputs.check(arguments, written, [arguments.table])
     result = calibration.fit(arguments.table, arguments.wheel_diameter, arguments.wear_unit)
     report = result["report"]
     if arguments.plot:
@@ -52,12 +60,13 @@ def _calibrate(arguments):
         calibration.write(report, arguments.report)
     calibration.write(result["law"], arguments.output)
     arguments.messages.print_warnings(report["warnings"])
-    print(calibration_report.text(report))
+    print_text(calibration_report.text(report))
 
 
 def _calibrate_scan(arguments):
     from ..calibration import calibrate as calibration, part_scan as calibration_scan
 
+    outputs.check(arguments, [arguments.output], [arguments.scan], arguments.result)
     law, figures = calibration_scan.from_files(
         arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
     )
@@ -69,6 +78,7 @@ def _predict(arguments):
     from ..base import schemas
     from ..calibration import law as calibration_law
 
+    outputs.check(arguments, [arguments.output], [arguments.law, arguments.table])
     law = schemas.checked(
         schemas.read_json(Path(arguments.law)), schemas.schema("job")["properties"]["law"], "law"
     )

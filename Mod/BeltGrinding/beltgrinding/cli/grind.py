@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from . import background
+from . import background, outputs
+from .messages import print_text
 
 
 def add(commands):
@@ -12,18 +13,23 @@ def add(commands):
     run.add_argument("-o", "--output", required=True, help="folder for the results")
     run.add_argument("--belt", help="JSON file that carries the belt's use from job to job")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outputs.add(run)
     run.set_defaults(do=_run)
 
 
 def _run(arguments):
-    from ..job import law, load as jobs
-    from ..simulation import run as runs
+    from ..job import inputs, law, load as jobs
+    from ..simulation import result_folder, run as runs
 
     given = jobs.load(arguments.job)
+    used = [path for path in (arguments.job, arguments.belt) if path]
+    files = inputs.files(given)
+    result_folder.check(arguments.output, None, [*used, *files], arguments.force)
+    outputs.check(arguments, [arguments.belt], [arguments.job, *files])
     if arguments.belt and Path(arguments.belt).exists():
         given["belt_machine"]["belt"] = law.read_belt(arguments.belt)
     result = background.run(lambda context: runs.run(given, context), arguments.quiet)
-    result.write(arguments.output)
+    result.write(arguments.output, arguments.force, used)
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
@@ -36,11 +42,11 @@ def _report(result, arguments):
     summary = result.summary
     arguments.messages.print_warnings(summary["warnings"])
     deviation = summary["deviation_mm"]
-    print(
+    print_text(
         f"{summary['samples']} samples, {summary['steps']} steps, "
         f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
         f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "
         f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "
         f"results in {arguments.output}"
     )
-    print(verdict.text(result.verdict))
+    print_text(verdict.text(result.verdict))

@@ -3,7 +3,8 @@
 import json
 from pathlib import Path
 
-from . import background
+from . import background, outputs
+from .messages import print_text
 
 
 def add(commands):
@@ -24,6 +25,7 @@ def add(commands):
     )
     cut.add_argument("--mode", choices=("unrolled", "shape"), default="unrolled", help="of the SVG")
     cut.add_argument("--exaggeration", type=float, help="of the heights in the shape's SVG")
+    outputs.add(cut)
     cut.set_defaults(do=_section)
     judge = commands.add_parser(
         "verdict",
@@ -34,27 +36,31 @@ def add(commands):
     judge.add_argument("result", help="folder that run wrote")
     judge.add_argument("--job", help="job.json whose key inspection is taken in place of its own")
     judge.add_argument("-o", "--output", help="file for the verdict in place of verdict.json there")
+    outputs.add(judge)
     judge.set_defaults(do=_verdict)
 
 
 def _verdict(arguments):
-    from ..base.files import cannot_be_written
+    from ..base.files import cannot_be_written, write_whole
     from ..inspection import verdict
     from ..job import load as job
     from ..simulation.result import Result
 
+    outputs.check(arguments, [arguments.output], [arguments.job], arguments.result)
     result = Result.read(arguments.result)
     given = job.load(arguments.job) if arguments.job else job.validate(result.job)
     result.verdict = background.run(
         lambda context: verdict.of_result(result, inspection=given["inspection"], context=context),
         quiet=True,
     )
-    path = Path(arguments.output or Path(arguments.result) / result.VERDICT)
-    try:
-        result.write_verdict(path)
-    except OSError as error:
-        raise cannot_be_written(path, error) from None
-    print(verdict.text(result.verdict))
+    if arguments.output:
+        try:
+            write_whole(arguments.output, result.verdict_bytes())
+        except OSError as error:
+            raise cannot_be_written(arguments.output, error) from None
+    else:
+        result.update(verdict=True)
+    print_text(verdict.text(result.verdict))
 
 
 def _section(arguments):
@@ -69,6 +75,7 @@ def _section(arguments):
             raise InputError(
                 "cli.section_suffix", "{file}: a section is written as .csv or .svg", file=path
             )
+    outputs.check(arguments, arguments.output, result=arguments.result)
     if all(by_plane) and not any(by_line):
         found = section.section(Result.read(arguments.result), *by_plane)
     elif all(by_line) and not any(by_plane):

@@ -2,7 +2,7 @@
 
 import json
 
-from . import background
+from . import background, outputs
 
 
 def add(commands):
@@ -15,6 +15,7 @@ def add(commands):
     mesh.add_argument(
         "--deflection-mm", type=float, default=0.05, help="chord error of other faces (0.05)"
     )
+    outputs.add(mesh)
     mesh.set_defaults(do=_mesh)
     scan = commands.add_parser(
         "scan",
@@ -44,6 +45,7 @@ def _mesh(arguments):
     from ..inspection import closed_mesh
     from ..simulation.result import Result
 
+    outputs.check(arguments, [arguments.output], result=arguments.result)
     result = Result.read(arguments.result)
     found = background.run(
         lambda context: closed_mesh.export(
@@ -79,6 +81,6 @@ def _scan(arguments):
         ),
         quiet=True,
     )
-    scan.write(result, figures, arguments.result)
+    scan.write(result, figures)
     arguments.messages.print_warnings(figures["warnings"])
     print(json.dumps(figures))

@@ -1,11 +1,14 @@
 """Errors and warnings on standard error, in the language of the locale or of ``--language``; errors as
 JSON for scripts."""
 
+import contextlib
 import json
 import math
 import os
 import sys
+import unicodedata
 
+CONTROLS = ("Cc", "Cf", "Cs")
 LANGUAGES = ("en", "de")
 
 
@@ -19,14 +22,18 @@ class Messages:
     """``language``: "en", "de" or None for the locale's. ``as_json``: errors as one line of JSON."""
 
     def __init__(self, language=None, as_json=False):
+        self.set(language, as_json)
+
+    def set(self, language, as_json):
         self.language, self.as_json = language or of_locale(), as_json
 
     def print_error(self, error):
         """An InputError, one line on standard error."""
         if self.as_json:
-            print(json.dumps({"error": error_data(error)}), file=sys.stderr)
+            text = json.dumps({"error": error_data(error)})
         else:
-            print("beltgrind: " + " ".join(self._sentence(error).split()), file=sys.stderr)
+            text = "beltgrind: " + " ".join(self._sentence(error).split())
+        _to_stderr(text)
 
     def print_warnings(self, warnings):
         """Sentences or facts, a line each."""
@@ -34,12 +41,30 @@ class Messages:
 
         for warning in warnings:
             name = word("cli.warning", "warning", self.language)
-            print(f"{name}: {self._sentence(warning)}", file=sys.stderr)
+            _to_stderr(f"{name}: {' '.join(self._sentence(warning).split())}")
 
     def _sentence(self, told):
         from ..base.messages import sentence
 
         return sentence(told, self.language)
+
+
+def print_text(text):
+    """On standard output, as a terminal can show it."""
+    print(without_controls(text))
+
+
+def _to_stderr(text):
+    with contextlib.suppress(OSError):  # nowhere to say it; the exit status does
+        print(without_controls(text), file=sys.stderr, flush=True)
+
+
+def without_controls(text):
+    """Names of files and zones may hold what a terminal obeys, or what turns the writing round."""
+    return "".join(
+        c if c == "\n" or unicodedata.category(c) not in CONTROLS else f"\\x{ord(c):02x}"
+        for c in text
+    )
 
 
 def error_data(error):

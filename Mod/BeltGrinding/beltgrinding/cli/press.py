@@ -3,7 +3,7 @@
 import json
 import sys
 
-from . import background
+from . import background, outputs
 
 
 def add(commands):
@@ -15,6 +15,7 @@ def add(commands):
     contact.add_argument("-o", "--output", help="CSV for the pressure of every cell")
     contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
     contact.add_argument("--keep", help="folder for CalculiX's deck and results")
+    outputs.add(contact)
     contact.set_defaults(do=_contact)
     learn = commands.add_parser(
         "surrogate", help="train a surrogate of the contact on a database of solved contacts"
@@ -26,6 +27,7 @@ def add(commands):
     learn.add_argument("--seed", type=int, default=1, help="of the random contacts (default 1)")
     learn.add_argument("--database", help="file that keeps the database (.npz)")
     learn.add_argument("--train-on", help="a database of your own in place of a contact.json")
+    outputs.add(learn)
     learn.set_defaults(do=_surrogate)
 
 
@@ -33,6 +35,7 @@ def _contact(arguments):
     from ..contact import single_contact as contact
     from ..job import load as job
 
+    outputs.check(arguments, [arguments.output], [arguments.contact])
     if arguments.pose is None:
         given = contact.load(arguments.contact)
         result = contact.run(given)
@@ -62,6 +65,9 @@ def _surrogate(arguments):
         raise InputError(
             "cli.contact_or_database", "give either a contact.json or --train-on with a database"
         )
+
+    written = [arguments.output, arguments.database]
+    outputs.check(arguments, written, [arguments.contact, arguments.train_on])
 
     def tell(done, count):
         print(f"\r{done} of {count} contacts", end="", file=sys.stderr, flush=True)

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from . import background
+from . import background, outputs
 
 
 def add(commands):
@@ -19,6 +19,7 @@ def add(commands):
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
+    outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
     raster.add_argument("job", help="job.json; it need not have a program yet")
@@ -29,10 +30,12 @@ def add(commands):
     raster.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
+    outputs.add(raster)
     raster.set_defaults(do=_raster)
     reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
     reach.add_argument("job", help="job.json")
     reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
+    outputs.add(reach)
     reach.set_defaults(do=_reach)
 
 
@@ -59,6 +62,7 @@ def _program(arguments):
         raise InputError(
             "cli.program_output", "program {action}: say by -o what file to write", action=action
         )
+    outputs.check(arguments, [arguments.output], files)
     try:
         if action == "write":
             changed = patch(*files, arguments.output)
@@ -81,6 +85,7 @@ def _raster(arguments):
     from ..programs.writers.writer import write_program
     from ..raster import raster_path as raster
 
+    outputs.check(arguments, [arguments.output], [arguments.job, arguments.settings])
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
     if not isinstance(settings, dict):
         raise InputError(
@@ -110,10 +115,12 @@ def _reach(arguments):
     from ..base.files import cannot_be_written, write_whole
     from ..cell import events as event_lists, reach, tool_path as tool_paths
     from ..engine import InputError
-    from ..job import load as jobs
+    from ..job import inputs, load as jobs
     from ..presets import robot as robots
 
     given = jobs.load(arguments.job)
+    files = inputs.files(given)
+    outputs.check(arguments, [arguments.output], [arguments.job, *files])
     if not robots.given(given["robot"]):
         raise InputError(
             "cli.no_robot",

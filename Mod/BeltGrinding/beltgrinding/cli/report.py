@@ -1,7 +1,9 @@
 """Telling others of a result: the report; and how sure its settings make it."""
 
+from pathlib import Path
 
-from . import background
+from . import background, outputs
+from .messages import print_text
 
 
 def add(commands):
@@ -17,6 +19,7 @@ def add(commands):
     told.add_argument("--pdf", help="file for the same as PDF; needs WeasyPrint")
     told.add_argument("--language", choices=("en", "de"), default="en", help="default en")
     told.add_argument("--title", help="what the part is called (default: its file's name)")
+    outputs.add(told)
     told.set_defaults(do=_report)
 
     finer = commands.add_parser(
@@ -29,24 +32,31 @@ def add(commands):
     finer.add_argument("job", help="job.json")
     finer.add_argument("-o", "--output", required=True, help="folder for the results")
     finer.add_argument("-q", "--quiet", action="store_true", help="no progress, no answer")
+    outputs.add(finer)
     finer.set_defaults(do=_converge)
 
 
 def _converge(arguments):
-    from ..job import load as job
+    from ..job import inputs, load as job
     from ..reporting import convergence_section, language
-    from ..simulation import convergence
+    from ..simulation import convergence, result_folder
 
     given = job.load(arguments.job)
+    used = [arguments.job, *inputs.files(given)]
+    result_folder.check(arguments.output, None, used, arguments.force)
     result = background.run(lambda context: convergence.converge(given, context), arguments.quiet)
-    result.write(arguments.output)
+    result.write(arguments.output, arguments.force, used)
     if not arguments.quiet:
         arguments.messages.print_warnings(result.convergence["notes"])
-        print(" ".join(convergence_section.sentences(result.convergence, language.Language())))
+        print_text(" ".join(convergence_section.sentences(result.convergence, language.Language())))
 
 
 def _report(arguments):
     from ..reporting import report as reporting
+    from ..simulation import result_folder
+
+    output = arguments.output or Path(arguments.result, result_folder.REPORT)
+    outputs.check(arguments, [output, arguments.pdf], result=arguments.result)
 
     def work(context):
         return reporting.report(
@@ -58,4 +68,4 @@ def _report(arguments):
             context,
         )
 
-    print(background.run(work, quiet=True))
+    print_text(str(background.run(work, quiet=True)))

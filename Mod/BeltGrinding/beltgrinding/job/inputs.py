@@ -14,25 +14,40 @@ def digests(job):
     The job itself comes first, as its JSON with sorted keys and without blanks.
     """
     found = [_held("job", job)]
+    for what, path, data in _inputs(job):
+        if path is not None:
+            found.append(_file(what, path))
+        else:
+            found.append(_text(what, data) if isinstance(data, str) else _held(what, data))
+    return found
+
+
+def files(job):
+    """Paths of all files that a validated job reads."""
+    return [path for _, path, _ in _inputs(job) if path is not None]
+
+
+def _inputs(job):
+    """(the job's key, path or None, what the job itself holds) of each input."""
     for key in ("design", "stock"):
         if "file" in job[key]:
-            found.append(_file(key, Path(job[key]["file"])))
+            yield key, Path(job[key]["file"]), None
         elif "brep" in job[key]:
-            found.append(_text(f"{key}.brep", job[key]["brep"]))
+            yield f"{key}.brep", None, job[key]["brep"]
     for i, body in enumerate(job["cell"].get("bodies", [])):
         if "file" in body:
-            found.append(_file(f"cell.bodies[{i}]", Path(body["file"])))
+            yield f"cell.bodies[{i}]", Path(body["file"]), None
         else:
-            found.append(_text(f"cell.bodies[{i}].brep", body["brep"]))
+            yield f"cell.bodies[{i}].brep", None, body["brep"]
     for i, program in enumerate(job["programs"]):
         if "file" in program:
-            found += [_file(f"programs[{i}]", path) for path in _program_files(program["file"])]
+            for path in _program_files(program["file"]):
+                yield f"programs[{i}]", path, None
         else:
-            found.append(_held(f"programs[{i}].poses", program["poses"]))
+            yield f"programs[{i}].poses", None, program["poses"]
     surrogate = job["belt_machine"]["compliance"]["surrogate_file"]
     if surrogate:
-        found.append(_file("belt_machine.compliance.surrogate_file", Path(surrogate)))
-    return found
+        yield "belt_machine.compliance.surrogate_file", Path(surrogate), None
 
 
 def _program_files(path):

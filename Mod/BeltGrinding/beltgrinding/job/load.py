@@ -6,7 +6,7 @@ The format is Resources/schema/job.schema.json; every default stands there and n
 from pathlib import Path
 
 from ..base import schemas
-from ..base.files import in_file
+from ..base.files import absolute, in_file
 from ..engine import InputError
 from ..presets import robot as robots
 from . import bodies as job_bodies
@@ -23,7 +23,7 @@ def load(path):
     path = Path(path)
     job = schemas.read_json(path)
     try:
-        return validate(job, path.resolve().parent)
+        return validate(job, Path(absolute(".", path)).parent)
     except InputError as error:
         raise in_file(error, path) from None
 
@@ -36,10 +36,10 @@ def validate(job, folder="."):
     job = schemas.checked(job, schema(), "job")
     for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
         if "file" in holder:
-            holder["file"] = str(Path(folder, holder["file"]).resolve())
+            holder["file"] = absolute(folder, holder["file"])
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
-        compliance["surrogate_file"] = str(Path(folder, compliance["surrogate_file"]).resolve())
+        compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])
     elif compliance["model"] == "surrogate":
         raise InputError(
             "job.no_surrogate_file",

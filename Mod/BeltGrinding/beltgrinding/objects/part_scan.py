@@ -1,13 +1,11 @@
 """A scan of the ground part beside a Simulation's prediction."""
 
 import json
-import tempfile
-from pathlib import Path
 from types import SimpleNamespace
 
 from ..engine import InputError, core
 from ..scan import comparison as scan
-from . import job_inputs
+from . import job_inputs, result_files
 from .properties import Output, add_outputs
 
 OUTPUTS = (
@@ -40,11 +38,9 @@ def prepare(simulation, job):
 
 def store(simulation, result, figures):
     """Keeps what ``scan.compare`` gave in the Simulation object."""
-    attributes = core.HeightField.from_hdf5(simulation.HeightField)[1]
-    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
-        path = Path(folder, "heightfield.h5")
-        result.field.write_hdf5(str(path), attributes)
-        simulation.HeightField = str(path)
+    kept = result_files.read(simulation, "HeightField")
+    attributes = core.HeightField.from_hdf5_bytes(kept, simulation.HeightField)[1]
+    result_files.store(simulation, {"HeightField": result.field.hdf5(attributes)})
     add_outputs(simulation, OUTPUTS)
     simulation.ScanFile = figures["file"]
     simulation.ScanShare = 100.0 * figures["measured_area_share"]

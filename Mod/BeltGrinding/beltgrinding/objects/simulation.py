@@ -1,8 +1,6 @@
 """The result of a simulation in the document: the stored height field, the events, the figures."""
 
 import json
-import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +8,8 @@ import numpy as np
 from ..cell import events as event_lists
 from ..engine import InputError, core
 from ..job.poses import program_name
-from . import part_scan, report_data
+from ..simulation import result_folder
+from . import part_scan, report_data, result_files
 from .job_data import child
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -69,17 +68,15 @@ class Simulation(Proxy):
 
     def field(self, obj):
         """core.HeightField of the result; None if there is none."""
-        path = obj.HeightField
-        if not path or not os.path.exists(path):
-            return None
-        return core.HeightField.from_hdf5(path)[0]
+        data = result_files.read(obj, "HeightField")
+        return core.HeightField.from_hdf5_bytes(data, obj.HeightField)[0] if data else None
 
     def recording(self, obj):
         """(core.Recording, steps as in ``Result.steps``) of the result; None if there is none."""
-        path = getattr(obj, "Recording", "")
-        if not path or not os.path.exists(path):
+        data = result_files.read(obj, "Recording")
+        if not data:
             return None
-        recording, attributes = core.Recording.from_hdf5(path)
+        recording, attributes = core.Recording.from_hdf5_bytes(data, obj.Recording)
         steps = json.loads(attributes)["steps"]
         return recording, {name: np.array(values) for name, values in steps.items()}
 
@@ -101,12 +98,24 @@ class Simulation(Proxy):
 
 def store(obj, result, fingerprint):
     """Puts a ``job.Result`` into a Simulation object."""
+    job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
+    files = {"HeightField": result.field.hdf5(json.dumps(job))}
+    if result.recording is not None:
+        steps = {name: values.tolist() for name, values in result.steps.items()}
+        files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
+    try:
+        _store(obj, result, files)
+    except BaseException:
+        obj.Fingerprint = ""  # half of it is there: no result, rather than two in one
+        raise
+    obj.Fingerprint = fingerprint
+    obj.OutOfDate = False
+
+
+def _store(obj, result, files):
     part_scan.forget(obj)  # it was compared with the older result
-    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
-        path = Path(folder, "heightfield.h5")
-        result.field.write_hdf5(str(path), json.dumps(_without_bulk(result.job)))
-        obj.HeightField = str(path)
-        _store_recording(obj, result, folder)
+    _prepare_recording(obj, result)
+    result_files.store(obj, files)
     s = result.summary
     obj.RemovedVolume, obj.StockVolume = s["removed_volume_mm3"], s["stock_volume_mm3"]
     obj.DesignArea = s["design_area_mm2"]
@@ -125,8 +134,6 @@ def store(obj, result, fingerprint):
     obj.EventData = json.dumps(result.events)
     report_data.store(obj, result)
     _store_verdict(obj, result)
-    obj.Fingerprint = fingerprint
-    obj.OutOfDate = False
 
 
 def _store_verdict(obj, result):
@@ -144,7 +151,7 @@ def _store_verdict(obj, result):
     obj.VerdictData = json.dumps(judged)
 
 
-def _store_recording(obj, result, folder):
+def _prepare_recording(obj, result):
     """The property exists only where there is a recording: FreeCAD empties none of its kind."""
     if "Recording" in obj.PropertiesList:
         obj.removeProperty("Recording")
@@ -153,10 +160,6 @@ def _store_recording(obj, result, folder):
     text = "what changed in every step, for playback"
     obj.addProperty("App::PropertyFileIncluded", "Recording", "Result", text)
     obj.setEditorMode("Recording", 1)
-    path = Path(folder, "recording.h5")
-    steps = {name: values.tolist() for name, values in result.steps.items()}
-    result.recording.write_hdf5(str(path), json.dumps({"steps": steps}))
-    obj.Recording = str(path)
 
 
 def _without_bulk(job):

@@ -1,5 +1,6 @@
 """The report of a result: one HTML file that holds everything, and a PDF of it."""
 
+import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -43,15 +44,30 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     words = Language(language)
     printer = _printer() if pdf is not None else None
     context = context or core.RunContext()
-    html = render(load(result, title, notes, context), words, context)
+    content = load(result, title, notes, context)
+    html = render(content, words, context)
     context.throw_if_cancelled()
-    try:
-        write_whole(output, html.encode())
-        if printer is not None:
-            write_whole(Path(pdf), printer(html))
-    except OSError as error:
-        raise cannot_be_written(error.filename or output, error) from None
+    files = {output: html.encode()}
+    if printer is not None:
+        files[Path(pdf)] = printer(html)
+    _write(content.result, files)
     return output
+
+
+def _write(result, files):
+    """Writes bytes by path. Those in the result's own folder belong to it from now on: another result
+    removes them."""
+    folder = os.path.realpath(result.folder) if result.folder else None
+    own = {p.name: data for p, data in files.items() if os.path.realpath(p.parent) == folder}
+    if own:
+        result.update(others=own)
+    for path, data in files.items():
+        if path.name in own:
+            continue
+        try:
+            write_whole(path, data)
+        except OSError as error:
+            raise cannot_be_written(error.filename or path, error) from None
 
 
 def load(result, title=None, notes=(), context=None):

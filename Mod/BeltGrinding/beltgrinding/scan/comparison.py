@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import cannot_be_written, write_whole
+from ..base.files import json_bytes
 from ..engine import InputError, core
 from ..job import workpiece
 from . import file as scan_file, start as scan_start
@@ -324,17 +324,12 @@ def compare(
     return figures
 
 
-def write(result, figures, folder):
-    """Keeps a comparison with the result in ``folder``: heightfield.h5 (``measured_mm``) and
-    scan.json, each whole or not at all.
+def write(result, figures):
+    """Keeps a comparison in the folder that the result was read from: heightfield.h5 (``measured_mm``)
+    and scan.json, both or none. Raises InputError.
     """
-    folder = Path(folder)
-    text = json.dumps(figures, indent=2, allow_nan=False) + "\n"
-    result.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(result.job))
-    try:
-        write_whole(folder / "scan.json", text.encode())
-    except OSError as error:
-        raise cannot_be_written(folder, error) from None
+    run = {key: result.summary[key] for key in ("run_id",) if key in result.summary}
+    result.update(measured=True, others={"scan.json": json_bytes({**figures, **run})})
 
 
 def _plain(found):

@@ -3,19 +3,17 @@
 import copy
 import io
 import json
-import os
-import shutil
-import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 
-from ..base import schemas
-from ..base.files import cannot_be_read, cannot_be_written, json_bytes, write_whole
+from ..base import folders, schemas
+from ..base.files import cannot_be_read, json_bytes
 from ..cell import events, motions
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
+from . import convergence_record, result_folder
 
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
 LATER = {
@@ -23,21 +21,6 @@ LATER = {
     "robot": {},
     "clearances": [],
 }
-
-FILES = (  # of a result
-    "deviation.ply",
-    "heightfield.h5",
-    "events.json",
-    "steps.csv",
-    "motions.csv",
-    "verdict.json",
-    "convergence.json",
-    "summary.json",
-)
-
-OF_THE_LAST = ("scan.json",)  # what was made of a result before, and does not belong to a new one
-PART = ".part-"  # a folder with what is not yet whole
-LEFT_OVER = 3600.0  # s; a folder of that age is a killed run's
 
 
 class Result:
@@ -49,6 +32,7 @@ class Result:
     """
 
     VERDICT = "verdict.json"
+    folder = None  # that ``read`` read
     bins = None  # the time series of a document's result, as ``reporting.charts.binned`` makes it
     convergence = None
     motions = None
@@ -62,110 +46,97 @@ class Result:
         self.steps = steps
         self.recording = recording
 
-    def write(self, folder):
-        """Writes the files of ``FILES``, all of them whole or none: until all are written they lie in
-        a folder beside. The last to change its place is summary.json; without it a folder is no
-        result.
+    def write(self, folder, force=False, used=()):
+        """Writes the files of a result (``result_folder.FILES``) in place of an older one's, all of them
+        or none. A file that the run has read, or one of ``used``, is never written over; another's file
+        only by ``force``. Raises InputError; the folder is then as it was.
         """
         start = time.perf_counter()
-        folder = Path(folder)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            _remove_left_over(folder)
-            with tempfile.TemporaryDirectory(prefix=PART, dir=folder) as part:
-                self._write_files(Path(part))
-                self.summary["wall_time_s"]["write"] = time.perf_counter() - start
-                write_whole(Path(part, FILES[-1]), json_bytes(self.summary))
-                for path in Path(part).iterdir():
-                    _put_on_disk(path)  # the file system would do it between two changes of place
-                (folder / FILES[-1]).unlink(missing_ok=True)
-                for name in FILES:
-                    if Path(part, name).exists():
-                        os.replace(Path(part, name), folder / name)
-                    else:
-                        (folder / name).unlink(missing_ok=True)  # of another run
-                for name in OF_THE_LAST:
-                    (folder / name).unlink(missing_ok=True)
-        except OSError as error:
-            raise cannot_be_written(folder, error) from None
+        self.summary["run_id"] = result_folder.run_id(self.summary)
+        contents = self._contents()
+        self.summary["wall_time_s"]["write"] = time.perf_counter() - start
+        result_folder.write(folder, contents, self.summary, force, used)
 
-    def _write_files(self, folder):
-        """All but summary.json."""
+    def _contents(self):
+        """Bytes by file name, of all but summary.json."""
+        run = self.summary["run_id"]
         lower, upper, limit = colour_scale(self.job)
-        ply = core.deviation_ply(self.field, lower, upper, limit, True)
-        write_whole(folder / "deviation.ply", ply)
-        self.field.write_hdf5(str(folder / "heightfield.h5"), json.dumps(self.job))
-        write_whole(folder / "events.json", json_bytes(self.events))
+        contents = {
+            "deviation.ply": core.deviation_ply(self.field, lower, upper, limit, True, run),
+            "heightfield.h5": self._height_field(),
+            "events.json": json_bytes(self.events),
+        }
         if self.steps is not None:
-            write_whole(folder / "steps.csv", _table(self.steps))
+            contents["steps.csv"] = _table(self.steps)
         if self.convergence is not None:
-            write_whole(folder / "convergence.json", json_bytes(self.convergence))
+            contents["convergence.json"] = json_bytes(self.convergence)
         if self.motions is not None:
-            write_whole(folder / motions.FILE, motions.csv_text(self.motions).encode())
+            contents[motions.FILE] = motions.csv_text(self.motions).encode()
         if self.verdict is not None:
-            self.write_verdict(folder / self.VERDICT)
+            contents[self.VERDICT] = self.verdict_bytes()
+        return contents
 
-    def write_verdict(self, path):
-        """Writes the verdict alone. Raises OSError."""
-        write_whole(Path(path), json_bytes(self.verdict))
+    def _height_field(self):
+        return self.field.hdf5(json.dumps({**self.job, **self._run_id()}))
+
+    def _run_id(self):
+        """None of an older version's result."""
+        return {key: self.summary[key] for key in ("run_id",) if key in self.summary}
+
+    def verdict_bytes(self):
+        """verdict.json"""
+        return json_bytes({**self.verdict, **self._run_id()})
+
+    def update(self, verdict=False, measured=False, others=()):
+        """Writes what was made of a result that was read into its folder: its verdict, the heights
+        that a scan measured, ``others`` (bytes by file name). Raises InputError.
+        """
+        contents = dict(others)
+        if verdict:
+            contents[self.VERDICT] = self.verdict_bytes()
+        if measured:
+            contents["heightfield.h5"] = self._height_field()
+        result_folder.update(self.folder, self.summary, contents)
 
     @classmethod
     def read(cls, folder):
         """The result that ``write`` left in ``folder``. An older version's gets what has come since, by
-        its default; its motions and verdict are None. Raises InputError.
+        its default; its motions and verdict are None. Raises InputError, also where a file is not as it
+        was written.
         """
-        from . import convergence_record
-
         folder = Path(folder)
-        if folder.is_dir() and not (folder / FILES[-1]).exists():
-            raise InputError(
-                "simulation.no_result",
-                "{file}: holds no result: no run has ended there, or one was broken off while it "
-                "wrote; run the job again",
-                file=folder,
-            )
-        data = {}
-        for name in ("summary.json", "events.json"):
-            try:
-                data[name] = json.loads((folder / name).read_text(encoding="utf-8"))
-            except OSError as error:
-                raise cannot_be_read(folder / name, error) from None
-            except ValueError as error:
-                raise InputError(
-                    "simulation.no_json",
-                    "{file}: no JSON: {reason}",
-                    file=folder / name,
-                    reason=error,
-                ) from None
+        try:
+            with folders.reading(folder):
+                return cls._read(folder)
+        except OSError as error:
+            raise cannot_be_read(error.filename or folder, error) from None
+
+    @classmethod
+    def _read(cls, folder):
+        summary = result_folder.read_summary(folder)
+        result_folder.check_sums(folder, summary)
+        found = events.read(folder / "events.json")
         field, attributes = core.HeightField.from_hdf5(str(folder / "heightfield.h5"))
         try:
-            job = schemas.filled(json.loads(attributes), schemas.schema("job"))
-        except ValueError:
+            job = json.loads(attributes)
+            job.pop("run_id", None)
+            job = schemas.filled(job, schemas.schema("job"))
+        except (ValueError, AttributeError, TypeError):
             raise InputError(
                 "simulation.no_job",
                 "{file}: holds no job; it is not a run's result",
                 file=folder / "heightfield.h5",
             ) from None
-        data["summary.json"] = {**copy.deepcopy(LATER), **data["summary.json"]}
-        found = events.complete(data["events.json"])
-        result = cls(job, field, data["summary.json"], found, _read_table(folder))
+        summary = {**copy.deepcopy(LATER), **summary}
+        result = cls(job, field, summary, found, _read_table(folder))
+        result.folder = folder
         result.convergence = convergence_record.read(folder / "convergence.json", job)
         result.motions = motions.read(folder / motions.FILE)
         if (folder / cls.VERDICT).exists():
             result.verdict = schemas.read_json(folder / cls.VERDICT)
+            if isinstance(result.verdict, dict):
+                result.verdict.pop("run_id", None)
         return result
-
-
-def _put_on_disk(path):
-    with open(path, "rb") as file:
-        os.fsync(file.fileno())
-
-
-def _remove_left_over(folder):
-    """What killed runs could not tidy up themselves."""
-    for part in folder.glob(PART + "*"):
-        if time.time() - part.stat().st_mtime > LEFT_OVER:
-            shutil.rmtree(part, ignore_errors=True)
 
 
 STEP_COLUMNS = {

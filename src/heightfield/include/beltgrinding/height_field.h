@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "beltgrinding/geometry.h"
@@ -79,8 +80,16 @@ struct HeightField {
 /// failed write leaves an older file of that name as it was. Throws InputError naming the path.
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes);
 
+/// The bytes that `write_hdf5` writes. Throws InputError when memory does not suffice.
+std::string hdf5_image(const HeightField& field, const std::string& attributes);
+
 /// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for
-/// any file that is not a sound height field (wrong lengths, indices out of range, no HDF5).
+/// any file that is not a sound height field (wrong lengths, indices out of range, no HDF5, a
+/// checksum that does not fit, data that lie in another file).
 HeightField read_hdf5(const std::string& path, std::string* attributes = nullptr);
+
+/// As `read_hdf5`, from a file's bytes; `name` is told in errors.
+HeightField read_hdf5_image(std::string_view image, const std::string& name,
+                            std::string* attributes = nullptr);
 
 }  // namespace beltgrinding

@@ -4,10 +4,10 @@
 
 #include <hdf5.h>
 
-#include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +22,7 @@ class Handle {
     ~Handle() {
         if (id_ >= 0) close_(id_);
     }
+    Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
     Handle(const Handle&) = delete;
     Handle& operator=(const Handle&) = delete;
     operator hid_t() const { return id_; }
@@ -40,24 +41,6 @@ struct FileFault {
 
 inline void require(bool ok, const char* code, const char* form, Arguments arguments = {}) {
     if (!ok) throw FileFault{{code, form, std::move(arguments)}};
-}
-
-/// Lets `write(temporary)` write a file beside `path`, which it then becomes: whole or not at all.
-/// Throws InputError within `context`, which names the path. Call it with the lock held.
-template <class Write>
-void write_whole(const std::string& path, const Fact& context, Write&& write) {
-    const std::string temporary = path + ".part";
-    try {
-        write(temporary);
-        std::error_code error;
-        std::filesystem::rename(temporary, path, error);
-        require(!error, "hdf5.not_written", "cannot be written: {reason}",
-                {{"reason", error.message()}});
-    } catch (const FileFault& fault) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        throw InputError(fault.fact, {context});
-    }
 }
 
 /// Debian's serial HDF5 is not thread-safe, and prints its errors unless told not to.
@@ -83,69 +66,54 @@ inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
             "hdf5.attribute", "its attribute '{name}' is not a number", {{"name", name}});
 }
 
-/// A file opened for reading.
+/// A file's bytes, opened for reading. Nothing of them leads out of them: see `check_inside`.
 class InputFile {
   public:
     /// Checks that the file has the format `known`, which its attribute `format_name` tells.
-    InputFile(const std::string& path, const char* format_name, int known)
-        : bytes_(bytes_of(path)),
-          file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
-        require(file_.ok(), "hdf5.no_file", "is no HDF5 file");
-        int format = 0;
-        read_scalar(file_, format_name, H5T_NATIVE_INT, &format);
-        require(format == known, "hdf5.format", "has format {format}, this version reads {known}",
-                {{"format", format}, {"known", known}});
-    }
+    /// `image` is copied.
+    InputFile(std::string_view image, const char* format_name, int known);
     operator hid_t() const { return file_; }
     hsize_t bytes() const { return bytes_; }
 
   private:
-    static hsize_t bytes_of(const std::string& path) {
-        std::error_code error;
-        const auto bytes = static_cast<hsize_t>(std::filesystem::file_size(path, error));
-        require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
-                {{"reason", error.message()}});
-        return bytes;
-    }
-
     hsize_t bytes_;
     Handle file_;
 };
 
-/// A new file, empty, without times of its own: the same data make the same bytes at any time. In
-/// the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
-/// damaged ones lead it beyond its memory.
-inline hid_t create_file(const std::string& path) {
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    if (!creation.ok() || H5Pset_obj_track_times(creation, false) < 0 || !access.ok() ||
-        H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
-        return H5I_INVALID_HID;
-    }
-    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
-}
+/// The bytes of the file at `path`. Throws FileFault.
+std::string bytes_of(const std::string& path);
+
+/// Writes the bytes to `path`, whole or not at all. Throws FileFault.
+void write_bytes(const std::string& path, const std::string& image);
+
+/// A data set opened for reading. An external link, a link to another name, data that lie in other
+/// files or behind a filter that HDF5 would load are refused: a file is what its bytes say. Throws
+/// FileFault.
+Handle open_array(const InputFile& file, const char* name);
+
+/// A new, empty data set of `rows` rows of `row` values, with checksums (Fletcher32). Throws
+/// FileFault.
+Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsize_t row);
+
+/// The bytes of a file that `write(file)` fills, made in memory: a full disk meets us with all
+/// bytes in hand, never HDF5, which then keeps a file open that it cannot close. Without times: the
+/// same data make the same bytes. Throws FileFault.
+std::string image_of(const std::function<void(hid_t)>& write);
 
 template <class T>
 inline void write_array(hid_t file, const char* name, const std::vector<T>& data, hid_t type,
                         hsize_t row) {
-    const hsize_t dims[2] = {data.size(), row};
-    const Handle space(H5Screate_simple(row == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation, false);  // the same data make the same bytes at any time
-    const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                     H5Dclose);
-    require(creation.ok() && set.ok(), "hdf5.not_writable", "cannot write it");
+    const Handle set = create_array(file, name, type, data.size(), row);
     if (!data.empty()) {
         require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                "hdf5.not_writable_full", "cannot write it; is the disk full?");
+                "hdf5.not_writable", "cannot write it");
     }
 }
 
 template <class T>
 inline void read_array(const InputFile& file, const char* name, std::vector<T>& data, hid_t type,
                        hsize_t row) {
-    const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-    require(set.ok(), "hdf5.no_array", "has no array '{name}'", {{"name", name}});
+    const Handle set = open_array(file, name);
     const Handle space(H5Dget_space(set), H5Sclose);
     hsize_t dims[2] = {0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
@@ -160,7 +128,9 @@ inline void read_array(const InputFile& file, const char* name, std::vector<T>& 
     data.resize(dims[0]);
     if (dims[0] > 0) {
         require(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                "hdf5.array_unreadable", "its array '{name}' cannot be read", {{"name", name}});
+                "hdf5.array_damaged",
+                "its array '{name}' is damaged: it is not what was written there",
+                {{"name", name}});
     }
 }
 

@@ -14,8 +14,10 @@ std::string mesh_stl(const GroundMesh& mesh);
 std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale);
 
 /// Binary PLY of the samples' tops (`ground` true) or of the design points, with triangles, vertex
-/// colours (red green blue alpha) and the float property `deviation` (mm; NaN where missed).
-std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground);
+/// colours (red green blue alpha) and the float property `deviation` (mm; NaN where missed). `run`,
+/// one word or none, is told in its comment.
+std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground,
+                          const std::string& run = "");
 
 /// Binary PLY with nothing but vertices and triangles, as FreeCAD's Mesh reads it fastest; vertex i
 /// is sample i.

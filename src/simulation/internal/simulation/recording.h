@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "beltgrinding/height_field.h"
@@ -129,8 +130,15 @@ class Recording {
 /// Throws InputError naming the path.
 void write_hdf5(const Recording& recording, const std::string& path, const std::string& attributes);
 
+/// The bytes that `write_hdf5` writes. Throws InputError when memory does not suffice.
+std::string hdf5_image(const Recording& recording, const std::string& attributes);
+
 /// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for
 /// any file that is no sound recording.
 Recording read_recording(const std::string& path, std::string* attributes = nullptr);
+
+/// As `read_recording`, from a file's bytes; `name` is told in errors.
+Recording read_recording_image(std::string_view image, const std::string& name,
+                               std::string* attributes = nullptr);
 
 }  // namespace beltgrinding

@@ -1,0 +1,75 @@
+"""HDF5 files of a result, kept inside the document's file, known by their SHA-256."""
+
+import contextlib
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path
+
+from ..base.files import cannot_be_read, cannot_be_written, read_regular, write_new
+from ..engine import InputError
+from .properties import Output, add_outputs
+
+SUMS = "FileSums"
+OUTPUTS = (Output(SUMS, "String", "Result", "SHA-256 of the files of the result, as JSON", True),)
+
+
+def read(obj, name):
+    """The bytes of the property ``name`` (App::PropertyFileIncluded); None where it holds no file. Raises
+    InputError where they are not those that were stored with the result.
+    """
+    path = getattr(obj, name, "")
+    if not path or not os.path.exists(path):
+        return None
+    try:
+        data = read_regular(path)
+    except OSError as error:
+        raise cannot_be_read(path, error) from None
+    kept = _sums(obj).get(name)
+    if kept is not None and kept != hashlib.sha256(data).hexdigest():
+        raise InputError(
+            "objects.not_as_stored",
+            "{object}: the file of {property} is not the one of this result: the document is damaged; "
+            "simulate again",
+            object=obj.Label,
+            property=name,
+        )
+    return data
+
+
+def store(obj, contents):
+    """Puts bytes, by name of property, into the document. Raises InputError; nothing is then changed
+    unless FreeCAD itself fails to copy a file.
+    """
+    add_outputs(obj, OUTPUTS)
+    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
+        for name, data in contents.items():
+            with _written(folder):
+                write_new(_path(folder, name), data)
+        for name in contents:
+            with _written(folder):
+                setattr(obj, name, str(_path(folder, name)))
+    sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+    setattr(obj, SUMS, json.dumps({**_sums(obj), **sums}))
+
+
+def _path(folder, name):
+    return Path(folder, name.lower() + ".h5")
+
+
+@contextlib.contextmanager
+def _written(folder):
+    try:
+        yield
+    except OSError as error:
+        raise cannot_be_written(folder, error) from None
+
+
+def _sums(obj):
+    """Of a document of an older version, none."""
+    try:
+        found = json.loads(getattr(obj, SUMS, "") or "{}")
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}

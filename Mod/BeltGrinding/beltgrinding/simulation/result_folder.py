@@ -1,0 +1,209 @@
+"""The files of a result in their folder: replaced as a whole, known by their SHA-256.
+
+summary.json holds under ``files`` the size and SHA-256 of every other file, under ``run_id`` what the run was
+made of (the same inputs and versions give the same) and under ``sha256`` its own, over the rest of it.
+"""
+
+import hashlib
+import json
+import os
+from pathlib import Path
+
+from ..base import folders, schemas
+from ..base.files import cannot_be_read, cannot_be_written, json_bytes
+from ..engine import InputError
+from ..job import inputs
+
+SUMMARY = "summary.json"
+FILES = (  # of a result
+    "deviation.ply",
+    "heightfield.h5",
+    "events.json",
+    "steps.csv",
+    "motions.csv",
+    "verdict.json",
+    "convergence.json",
+    SUMMARY,
+)
+SCAN = "scan.json"
+REPORT = "report.html"
+MADE_LATER = (SCAN, REPORT)  # of a result; a new one removes them
+CHUNK = 1 << 20  # bytes
+
+
+def run_id(summary):
+    """32 hex digits that tell results apart: of their inputs' hashes and of the versions."""
+    made_of = [(one["what"], one["sha256"]) for one in summary.get("inputs", ())]
+    return hashlib.sha256(inputs.canonical([made_of, summary["versions"]])).hexdigest()[:32]
+
+
+def check(folder, summary=None, used=(), force=False):
+    """Raises InputError where a result in ``folder`` would replace what is no run's: one of the
+    files that the run reads (those of ``summary["inputs"]`` and ``used``), or, unless ``force``, a file of
+    another origin under the name of one of a result's.
+    """
+    folder = Path(os.path.realpath(folder))
+    names = {*FILES, *MADE_LATER}
+    given = [one["file"] for one in (summary or {}).get("inputs", ()) if one["file"]]
+    for path in (*given, *used):
+        found = Path(os.path.realpath(path))
+        if found.parent == folder and found.name in names:
+            raise InputError(
+                "simulation.own_input",
+                "{file}: the result would replace it, and the run reads it; choose another folder "
+                "for the result",
+                file=path,
+            )
+    if force:
+        return
+    ours = _written_there(folder)
+    for name in sorted(names):
+        if os.path.lexists(folder / name) and name not in ours:
+            raise InputError(
+                "simulation.not_of_a_run",
+                "{file}: no run's result has written it, and it would be replaced; choose another "
+                "folder, or replace it by --force (in Python: force=True)",
+                file=folder / name,
+            )
+
+
+def write(folder, contents, summary, force=False, used=()):
+    """Writes a result's files (bytes by name) and its summary in place of what an older one has there.
+    ``summary`` gets ``files``. Raises InputError; the folder is then as it was.
+    """
+
+    def allowed(folder):
+        check(folder, summary, used, force)
+        for name, kept in _listed(folder).items():
+            if name not in FILES and _same(folder / name, kept):
+                gone.append(name)
+
+    summary["files"] = {name: _sum(data) for name, data in contents.items()}
+    # Found under the lock, and read only after ``allowed`` has filled it.
+    gone = [name for name in (*FILES, *MADE_LATER) if name not in contents and name != SUMMARY]
+    contents = {**contents, SUMMARY: _summary_bytes(summary)}
+    _replace(folder, contents, gone, allowed)
+
+
+def update(folder, summary, contents):
+    """Writes files that were made of a result beside it, such as its verdict or a report, and their
+    sums into its summary. Of an older version's result, which has none, the files alone. Raises InputError,
+    also where another result has taken its place meanwhile.
+    """
+
+    def unchanged(folder):
+        try:
+            now = read_summary(folder).get("files")
+        except InputError:
+            now = None
+        if now != before:
+            raise InputError(
+                "simulation.replaced",
+                "{file}: another result has taken the place of the one that was read; do it again",
+                file=folder,
+            )
+
+    before = summary.get("files")
+    if before is None:
+        _replace(folder, contents, (), None)
+        return
+    changed = {**summary, "files": {**before, **{n: _sum(data) for n, data in contents.items()}}}
+    _replace(folder, {**contents, SUMMARY: _summary_bytes(changed)}, (), unchanged)
+    summary["files"] = changed["files"]
+
+
+def read_summary(folder):
+    """summary.json of a folder, checked by its own sum if it has one. Raises InputError."""
+    path = Path(folder, SUMMARY)
+    if Path(folder).is_dir() and not path.exists():
+        raise InputError(
+            "simulation.no_result",
+            "{file}: holds no result: no run has ended there, or one was broken off while it "
+            "wrote; run the job again",
+            file=folder,
+        )
+    rules = schemas.schema("summary")
+    summary = schemas.checked(schemas.read_json(path), rules, str(path))
+    if "sha256" in summary and summary.pop("sha256") != _own_sum(summary):
+        raise _damaged(path)
+    return summary
+
+
+def check_sums(folder, summary):
+    """Raises InputError naming the first file that is missing or not as it was written."""
+    for name, kept in _sums_of(summary).items():
+        path = Path(folder, name)
+        try:
+            same = _same(path, kept)
+        except OSError as error:
+            raise cannot_be_read(path, error) from None
+        if not same:
+            raise _damaged(path)
+
+
+def _damaged(path):
+    return InputError(
+        "simulation.not_as_written",
+        "{file}: is not as the run wrote it: it is damaged, was changed, or is another run's; run the "
+        "job again",
+        file=path,
+    )
+
+
+def _replace(folder, contents, gone, allowed):
+    try:
+        folders.replace(folder, contents, gone, allowed)
+    except OSError as error:
+        raise cannot_be_written(folder, error) from None
+
+
+def _written_there(folder):
+    """Names of the files in ``folder`` that a run of this program has written."""
+    try:
+        summary = schemas.read_json(folder / SUMMARY)
+    except InputError:
+        return ()
+    if not isinstance(summary, dict) or not {"samples", "versions"} <= set(summary):
+        return ()
+    if "files" not in summary:  # an older version's
+        return {*FILES, *MADE_LATER}
+    return {SUMMARY, *_sums_of(summary)}
+
+
+def _listed(folder):
+    try:
+        summary = schemas.read_json(folder / SUMMARY)
+    except InputError:
+        return {}
+    return _sums_of(summary) if isinstance(summary, dict) else {}
+
+
+def _sums_of(summary):
+    """``files`` of a summary that may hold anything; names that lead elsewhere are left out."""
+    files = summary.get("files", {})
+    files = files if isinstance(files, dict) else {}
+    return {name: kept for name, kept in files.items() if name == Path(name).name}
+
+
+def _sum(data):
+    return {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+
+
+def _same(path, kept):
+    """Whether a file is what ``_sum`` told. Raises OSError where it cannot be read."""
+    if not isinstance(kept, dict) or path.stat().st_size != kept.get("bytes"):
+        return False
+    found = hashlib.sha256()
+    with open(path, "rb") as file:
+        while data := file.read(CHUNK):
+            found.update(data)
+    return found.hexdigest() == kept.get("sha256")
+
+
+def _own_sum(summary):
+    # As it comes back from its JSON: a tuple is a list then.
+    return hashlib.sha256(inputs.canonical(json.loads(json_bytes(summary)))).hexdigest()
+
+
+def _summary_bytes(summary):
+    return json_bytes({**summary, "sha256": _own_sum(summary)})

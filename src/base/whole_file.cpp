@@ -1,0 +1,95 @@
+#include "base/whole_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <utility>
+
+namespace beltgrinding {
+namespace {
+
+class File {
+  public:
+    File(const std::string& path, int flags) : number_(::open(path.c_str(), flags, 0666)) {}
+    ~File() {
+        if (number_ >= 0) ::close(number_);
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    operator int() const { return number_; }
+    /// A file system may keep what it could not write for the last call: this one.
+    bool close() { return ::close(std::exchange(number_, -1)) == 0; }
+
+  private:
+    int number_;
+};
+
+std::error_code last_error() {
+    return {errno, std::generic_category()};
+}
+
+std::string folder_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
+}
+
+std::error_code write_new(const std::string& path, std::string_view bytes) {
+    File file(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
+    if (file < 0) return last_error();
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(file, bytes.data(), bytes.size());
+        if (n < 0 && errno != EINTR) return last_error();
+        if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    if (::fsync(file) != 0 || !file.close()) return last_error();
+    return {};
+}
+
+}  // namespace
+
+std::error_code write_whole(const std::string& path, std::string_view bytes) {
+    static std::atomic<unsigned> writes{0};
+    const std::string folder = folder_of(path);
+    // Not `path` and more: that may be too long a name.
+    const std::string part =
+        folder + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(writes++);
+    ::unlink(part.c_str());  // of a killed process that had our number
+    std::error_code error = write_new(part, bytes);
+    if (!error && std::rename(part.c_str(), path.c_str()) != 0) error = last_error();
+    if (error) {
+        ::unlink(part.c_str());
+        return error;
+    }
+    // The name, too, or a power cut could bring the old one back. Some file systems know no such
+    // thing; the file is whole all the same.
+    const File entries(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (entries >= 0) ::fsync(entries);
+    return {};
+}
+
+std::error_code read_whole(const std::string& path, std::string& bytes) {
+    const File file(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // nobody may ever write into a pipe
+    if (file < 0) return last_error();
+    struct stat about {};
+    if (::fstat(file, &about) != 0) return last_error();
+    if (S_ISDIR(about.st_mode)) return std::make_error_code(std::errc::is_a_directory);
+    if (!S_ISREG(about.st_mode)) return std::make_error_code(std::errc::invalid_argument);
+    bytes.clear();
+    bytes.resize(static_cast<std::size_t>(about.st_size));
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t n = ::read(file, bytes.data() + done, bytes.size() - done);
+        if (n < 0 && errno != EINTR) return last_error();
+        if (n == 0) break;  // it was cut meanwhile
+        if (n > 0) done += static_cast<std::size_t>(n);
+    }
+    bytes.resize(done);
+    return {};
+}
+
+}  // namespace beltgrinding

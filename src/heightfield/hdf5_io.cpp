@@ -14,8 +14,8 @@
 namespace beltgrinding::hdf5 {
 namespace {
 
-constexpr hsize_t kChunkBytes = 1 << 20;       // of an array: a checksum each
-constexpr std::size_t kIncrement = 1 << 20;    // bytes by which a file in memory grows
+constexpr hsize_t kChunkBytes = 1 << 20;     // of an array: a checksum each
+constexpr std::size_t kIncrement = 1 << 20;  // bytes by which a file in memory grows
 
 /// What cannot be opened: the system's words.
 void require_read(const std::error_code& error) {
@@ -70,9 +70,10 @@ Handle open_array(const InputFile& file, const char* name) {
     require(H5Lget_info(file, name, &link, H5P_DEFAULT) >= 0, "hdf5.no_array",
             "has no array '{name}'", {{"name", name}});
     const auto inside = [name](bool ok) {
-        require(ok, "hdf5.leads_out",
-                "its array '{name}' lies in another file or needs a foreign filter; that is not read",
-                {{"name", name}});
+        require(
+            ok, "hdf5.leads_out",
+            "its array '{name}' lies in another file or needs a foreign filter; that is not read",
+            {{"name", name}});
     };
     inside(link.type == H5L_TYPE_HARD);
     Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
@@ -108,8 +109,8 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
 
 namespace {
 
-/// What HDF5 hands over when it closes a file in memory. (H5Fget_file_image of 1.10 changes a flag below the
-/// superblock's checksum: such a file cannot be opened.)
+/// What HDF5 hands over when it closes a file in memory. (H5Fget_file_image of 1.10 changes a flag
+/// below the superblock's checksum: such a file cannot be opened.)
 herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* bytes) {
     if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE && memory) {
         constexpr std::size_t kEndOfFile = 28, kSuperblock = 48;  // of version 3, in bytes
@@ -142,7 +143,7 @@ std::string image_of(const std::function<void(hid_t)>& write) {
     std::string image;
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     const Handle access = in_memory();
-    H5FD_file_image_callbacks_t calls{nullptr, nullptr, nullptr,        keep_image,
+    H5FD_file_image_callbacks_t calls{nullptr, nullptr,         nullptr, keep_image,
                                       same,    nothing_to_free, &image};
     // In the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
     // damaged ones lead it beyond its memory.

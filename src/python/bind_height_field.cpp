@@ -160,11 +160,12 @@ void bind_height_field(py::module_& m) {
     m.def(
         "apply_mesh",
         [](HeightField& field, const TriangleMesh& mesh, double above, double below,
-           const RunContext* context, double least_cosine) {
+           const RunContext* context, double least_cosine, double unit) {
             StockOptions options;
             options.search_above = above;
             options.search_below = below;
             options.least_cosine = least_cosine;
+            options.unit = unit;
             StockReport report;
             {
                 const py::gil_scoped_release release;
@@ -175,7 +176,10 @@ void bind_height_field(py::module_& m) {
         },
         py::arg("field"), py::arg("mesh"), py::arg("search_above") = 10.0,
         py::arg("search_below") = 2.0, py::arg("context") = nullptr, py::arg("least_cosine") = 0.0,
-        "Stock from a mesh, by rays; not surfaces met at a smaller cosine.");
+        py::arg("unit_mm") = 1.0,
+        "Stock from a mesh, by rays; not surfaces met at a smaller cosine. unit_mm: of the mesh's "
+        "file, "
+        "for messages.");
 }
 
 }  // namespace beltgrinding::python

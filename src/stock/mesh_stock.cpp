@@ -83,14 +83,15 @@ void validate(const HeightField& field, const TriangleMesh& mesh, const StockOpt
 }
 
 /// What is wrong when hardly a ray hits: a unit, or a frame.
-[[noreturn]] void explain_misses(const HeightField& field, const TriangleMesh& mesh) {
+[[noreturn]] void explain_misses(const HeightField& field, const TriangleMesh& mesh,
+                                 double present) {
     Box design, stock;
     for (const Vec3& p : field.point) design.extend(p);
     for (const Vec3f& v : mesh.vertices) stock.extend(v.cast<double>());
     const double across = design.diagonal().norm(), stock_across = stock.diagonal().norm();
     const double ratio = across / std::max(stock_across, 1e-12);
     const struct {
-        double factor;
+        double unit;  // mm
         const char* code;
         const char* form;
     } units[] = {
@@ -103,14 +104,19 @@ void validate(const HeightField& field, const TriangleMesh& mesh, const StockOpt
         {10.0, "stock.in_centimetres",
          "stock: no ray meets the mesh; it seems to be in centimetres (the design is {design:.4g} "
          "mm across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
+        {1.0, "stock.in_millimetres",
+         "stock: no ray meets the mesh; it seems to be in millimetres (the design is {design:.4g} "
+         "mm across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
         {0.001, "stock.in_micrometres",
          "stock: no ray meets the mesh; it seems to be in micrometres (the design is {design:.4g} "
          "mm across, the stock {stock:.4g} mm); set its unit to {unit:.4g} mm"},
     };
-    for (const auto& unit : units) {
-        if (ratio > unit.factor / 2.0 && ratio < unit.factor * 2.0) {
-            throw InputError(unit.code, unit.form,
-                             {{"design", across}, {"stock", stock_across}, {"unit", unit.factor}});
+    for (const auto& one : units) {
+        const double factor = one.unit / present;
+        if (std::abs(std::log(factor)) < std::log(2.0)) continue;  // the unit that it has
+        if (ratio > factor / 2.0 && ratio < factor * 2.0) {
+            throw InputError(one.code, one.form,
+                             {{"design", across}, {"stock", stock_across}, {"unit", one.unit}});
         }
     }
     throw InputError(
@@ -149,7 +155,7 @@ StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const Stock
     StockReport report;
     report.missed = static_cast<std::size_t>(
         std::count_if(found.begin(), found.end(), [](float h) { return std::isnan(h); }));
-    if (report.missed == field.size()) explain_misses(field, mesh);
+    if (report.missed == field.size()) explain_misses(field, mesh, options.unit);
     for (std::size_t i = 0; i < field.size(); ++i) {
         auto flags = static_cast<std::uint8_t>(field.flags[i] & ~(kMissed | kDefective));
         float height = found[i];

@@ -18,7 +18,7 @@ BUILD = Path(os.environ.get("BELTGRINDING_BUILD", ROOT / "build" / "release"))
 PACKAGES = [
     (r"[a-z_]+", None),
     (r"(Eigen|unsupported/Eigen)/\w+", None),
-    (r"(dlfcn|unistd|fcntl|poll|signal|setjmp|spawn|sys/\w+)\.h", None),
+    (r"(dlfcn|unistd|fcntl|malloc|poll|signal|setjmp|spawn|sys/\w+)\.h", None),
     (r"tbb/\w+\.h", "oneTBB"),
     (r"hdf5\.h", "HDF5"),
     (r"embree[34]/.*", "Embree"),

@@ -21,6 +21,7 @@ from beltgrinding.inspection import picture  # noqa: E402
 from beltgrinding.simulation import result as results  # noqa: E402
 from beltgrinding.base import schemas  # noqa: E402
 from test_job import plate_job  # noqa: E402
+from support.results import unseal  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
@@ -168,6 +169,7 @@ def test_the_report_shows_it_where_it_belongs(converged, tmp_path):
     html = beltgrinding.report(tmp_path / "out").read_text()
     assert "Yes: because of them no depth is off" in html and "twice as fine" in html
     assert "Ja: Keine Tiefe" in beltgrinding.report(tmp_path / "out", language="de").read_text()
+    unseal(tmp_path / "out")
     other = dict(read.convergence, job_sha256="0" * 64)
     (tmp_path / "out" / "convergence.json").write_text(json.dumps(other))
     assert results.Result.read(tmp_path / "out").convergence is None
@@ -200,7 +202,7 @@ def test_command_line_says_whether_the_settings_are_fine(tmp_path):
 
 # The same bytes.
 
-WALL_TIMES = ("wall_time_s",)
+WALL_TIMES = ("wall_time_s", "sha256")
 ONE_RUN = """
 import sys, json
 import beltgrinding

@@ -161,7 +161,9 @@ def test_a_flipped_bit_in_a_height_field_alone_is_told(tmp_path, results):
     image = results[0].field.hdf5("text")
     at = image.index(results[0].field.height.tobytes()[:64]) + 24
     damaged = image[:at] + bytes([image[at] ^ 1]) + image[at + 1 :]
-    with pytest.raises(InputError, match="field.h5: the height field its array 'height' is damaged"):
+    with pytest.raises(
+        InputError, match="field.h5: the height field its array 'height' is damaged"
+    ):
         core.HeightField.from_hdf5_bytes(damaged, "field.h5")
     path = tmp_path / "field.h5"
     path.write_bytes(damaged)
@@ -266,7 +268,9 @@ OUTPUTS = [
 
 
 @pytest.mark.parametrize("command", OUTPUTS, ids=lambda command: command[0])
-def test_no_command_writes_over_its_input_or_over_another_s_file(tmp_path, results, command, capsys):
+def test_no_command_writes_over_its_input_or_over_another_s_file(
+    tmp_path, results, command, capsys
+):
     out, job = tmp_path / "out", job_file(tmp_path)
     results[0].write(out)
     program = tmp_path / "program.csv"

@@ -18,6 +18,7 @@ from beltgrinding.base import messages, schemas
 from beltgrinding.inspection import verdict
 from beltgrinding.job import workpiece, load as jobs
 from beltgrinding.simulation.result import Result
+from support.results import unseal
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
@@ -243,6 +244,7 @@ def test_the_command_line_tells_and_recomputes_the_verdict(job, tmp_path):
 def test_an_older_result_without_trace_and_motions_is_judged_as_far_as_it_goes(job, tmp_path):
     result = beltgrinding.run(job)
     result.write(tmp_path / "out")
+    unseal(tmp_path / "out")
     # What an older version wrote: no trace, no motions.csv, no verdict.json, no zones in the job.
     old = json.loads(json.dumps(result.job))
     del old["inspection"]["zones"], old["programs"][0]["unresolved"]

@@ -81,12 +81,25 @@ def checked(data, rules, what):
     """
     for _, error in problems(data, rules, what):
         raise error
-    data = filled(data, rules)
+    data = _whole_numbers(filled(data, rules), rules)
     if not all(math.isfinite(value) for value in _numbers(data)):
         raise InputError(
             "base.not_finite", "the {what} holds a number that is not finite", what=what
         )
     return data
+
+
+def _whole_numbers(value, rule):
+    """JSON Schema takes 6.0 for an integer; the engine does not."""
+    if isinstance(value, float) and rule.get("type") == "integer":
+        return int(value)
+    if isinstance(value, list):
+        items = rule.get("items", {})
+        return [_whole_numbers(item, items) for item in value] if isinstance(items, dict) else value
+    if isinstance(value, dict):
+        known = rule.get("properties", {})
+        return {key: _whole_numbers(item, known.get(key, {})) for key, item in value.items()}
+    return value
 
 
 def filled(data, rules):

@@ -91,7 +91,9 @@ def _figure(width, height):
 
 def _saved(figure, kind, dpi):
     target = io.BytesIO()
-    figure.savefig(target, format=kind, dpi=dpi)
+    # Who made it: such a file may be written over.
+    made_by = {"Software" if kind == "png" else "Creator": "BeltGrinding"}
+    figure.savefig(target, format=kind, dpi=dpi, metadata=made_by)
     return target.getvalue()
 
 

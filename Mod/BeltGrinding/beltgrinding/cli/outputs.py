@@ -21,6 +21,7 @@ MARKS = (
     b"<title>Belt grinding:",  # report
     b'font-size="14">Section at',  # section, SVG
 )
+PICTURES = (b"\x89PNG", b"<?xml", b"%PDF")  # of calibrate
 KEYS = (  # of JSON files
     {"format", "overall", "faces"},  # verdict
     {"model", "coefficient_mm2_per_N"},  # a law
@@ -84,10 +85,14 @@ def _ours(path, result):
     try:
         with open(path, "rb") as file:
             head = file.read(HEAD)
+            file.seek(-min(HEAD, path.stat().st_size), os.SEEK_END)
+            tail = file.read()
     except OSError:
         return False
     if not head or head.startswith(BEGINNINGS) or any(mark in head for mark in MARKS):
         return True
+    if head.startswith(PICTURES):
+        return b"BeltGrinding" in head + tail  # as its creator, in a PDF at the end
     if head.startswith(b"PK"):
         return any(names <= _names(path) for names in ARCHIVES)
     return head.lstrip().startswith(b"{") and any(keys <= _keys(path) for keys in KEYS)

@@ -70,7 +70,12 @@ def apply_stock(field, stock, warnings, context):
             ]
             mesh = core.triangulate(shape, stock["deflection_mm"], context)
         report = core.apply_mesh(
-            field, mesh, stock["search_above_mm"], stock["search_below_mm"], context
+            field,
+            mesh,
+            stock["search_above_mm"],
+            stock["search_below_mm"],
+            context,
+            unit_mm=stock["unit_mm"] if stock["kind"] == "mesh" else 1.0,
         )
     warnings += report["warnings"]
 

@@ -5,6 +5,7 @@ import io
 
 import numpy as np
 
+from ..base.cells import cell
 from ..base.frames import to_quaternions
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
@@ -26,7 +27,8 @@ def poses_csv(program):
             place = [f"{value:.9g}" for value in values]
         speed = "" if motion.speed_mm_s is None else f"{motion.speed_mm_s:.9g}"
         kind = f"{motion.kind}-AUX" if motion.aux else motion.kind
-        row = [index, kind, *place, speed, motion.tool, motion.base, motion.file, motion.line]
+        names = [cell(name) for name in (motion.tool, motion.base, motion.file)]
+        row = [index, kind, *place, speed, *names, motion.line]
         writer.writerow(row)
     return text.getvalue()
 

@@ -1,6 +1,7 @@
 """How to repeat a result: versions, hashes of the inputs, and the job file itself."""
 
 import json
+import re
 from pathlib import Path
 
 from ..job import inputs
@@ -14,6 +15,7 @@ _NAMES = {
     "opencascade": "OpenCASCADE",
     "kdop_k": "k-DOP: k",
 }
+FORBIDDEN = re.compile(r"[^\w .,()+-]")  # in a file's name, also in a command line
 LONG = 400  # characters of a text, or items of a list, beyond which the shown job leaves it out
 
 
@@ -24,7 +26,8 @@ def repeat(content, words):
         for name, version in result.summary["versions"].items()
     )
     data = json.dumps(result.job, indent=1, ensure_ascii=False)
-    name = f"{content.title}.job.json"
+    # A title may hold what a shell runs.
+    name = FORBIDDEN.sub("_", content.title).lstrip("-.") + ".job.json"
     link = element(
         "a",
         words("the job file, {name}", name=name),

@@ -134,8 +134,6 @@ class Result:
         result.motions = motions.read(folder / motions.FILE)
         if (folder / cls.VERDICT).exists():
             result.verdict = schemas.read_json(folder / cls.VERDICT)
-            if isinstance(result.verdict, dict):
-                result.verdict.pop("run_id", None)
         return result
 
 

@@ -39,8 +39,11 @@ def run(job, context=None, recording=None):
     ``recording``: an empty core.Recording that is to follow it, program after program.
     """
     warnings = []
+    phases = _Phases()
     try:
-        return _run(job, context or core.RunContext(), warnings, recording)
+        return _run(job, context or core.RunContext(), warnings, recording, phases)
+    except MemoryError:
+        raise _out_of_memory(phases.seconds) from None
     except InputError as error:
         if not warnings:
             raise
@@ -50,8 +53,32 @@ def run(job, context=None, recording=None):
         raise error.followed_by("simulation.notes", ". Note: {notes}", notes=notes) from None
 
 
-def _run(job, context, warnings, recording):
-    phases = _Phases()
+def _out_of_memory(ended):
+    """The InputError that says what would need less; ``ended``: phases by name."""
+    advice = {
+        "programs": core.Fact("simulation.less_program", "split the programs"),
+        "reach": core.Fact("simulation.less_program", "split the programs"),
+        "read": core.Fact("simulation.less_design", "export the design with fewer faces or bodies"),
+        "sample": core.Fact("simulation.less_samples", "enlarge sampling.spacing_mm"),
+        "stock": core.Fact(
+            "simulation.less_stock", "enlarge sampling.spacing_mm, or thin the stock's mesh"
+        ),
+        "collisions": core.Fact("simulation.less_cell", "take simpler bodies in the cell"),
+        "build": core.Fact(
+            "simulation.less_contact",
+            "enlarge sampling.spacing_mm, or simulation.max_travel_mm",
+        ),
+    }
+    phase = next((name for name in advice if name not in ended), None)
+    return InputError(
+        "simulation.run_out_of_memory",
+        "out of memory; {advice}, or close other programs",
+        advice=advice.get(phase, advice["sample"]),
+    )
+
+
+def _run(job, context, warnings, recording, phases):
+    phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
     wheel, compliance, law, options = engine_arguments(job)

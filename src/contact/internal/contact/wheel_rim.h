@@ -52,6 +52,8 @@ class WheelRim final : public ElasticModel {
     /// The samples for a grid's cells: from the cache, or computed and put there.
     Samples sample(const ContactGrid& grid) const;
     RimSamples compute(const ContactGrid& grid, const std::vector<double>& waves) const;
+    bool holds(const ContactGrid& grid, const std::vector<double>& waves,
+               const RimSamples& kept) const;
     Spectrum build(const ContactGrid& grid, const Samples& samples, int length) const;
 
     WheelRimDesign design_;

@@ -16,6 +16,7 @@ struct StockOptions {
     double search_above = 10.0;  ///< mm outward from the design surface
     double search_below = 2.0;   ///< mm inward from it
     double least_cosine = 0.0;   ///< surfaces that the ray grazes more than this are not met
+    double unit = 1.0;  ///< mm of the mesh's file, by which it is already multiplied: for messages
 };
 
 /// What was found, for messages and for the summary.

@@ -1,5 +1,6 @@
 """Poses as CSV (docs/programs.md); arcs as chords, splines as lines."""
 
+from ...base.cells import comment_cells
 from ...base.frames import to_quaternions
 from ..patch.text import decimal
 from ..program import _arc
@@ -11,9 +12,9 @@ ROW = ",".join([f"%.{MM_DIGITS}f"] * 3 + [f"%.{UNIT_DIGITS}f"] * 4)
 
 def text(sheet):
     """The bytes of a .csv file."""
-    lines = [f"# {comment}" for comment in sheet.comments]
+    lines = [f"# {comment_cells(comment)}" for comment in sheet.comments]
     for what, frames in (("tool", sheet.tools), ("base", sheet.bases)):
-        lines += [f"# {what} {words}" for _, words in frames]
+        lines += [f"# {what} {comment_cells(words)}" for _, words in frames]
     lines.append(HEAD)
     positions = rounded(sheet.positions, MM_DIGITS).tolist()
     quaternions = rounded(sheet.quaternions, UNIT_DIGITS).tolist()
@@ -23,7 +24,7 @@ def text(sheet):
         force = "" if step.force is None else decimal(step.force, SPEED_DIGITS)
         tail = f",{speed},{force},{'PTP' if step.kind == 'PTP' else 'LIN'}"
         if step.note:
-            lines.append(f"# {step.note}")
+            lines.append(f"# {comment_cells(step.note)}")
         if step.kind == "CIRC" and before is not None:
             ends = _arc(*(sheet.frames[k] for k in (before, step.aux, step.pose)))
             for frame in ends[:-1]:

@@ -1,0 +1,16 @@
+"""Text in the cells of a CSV."""
+
+import re
+
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # as spreadsheets take them
+
+
+def cell(text):
+    """A name as a cell: not one that a spreadsheet would compute, such as a link. Numbers are written without
+    this."""
+    return "'" + text if text.startswith(FORMULA) else text
+
+
+def comment_cells(text):
+    """Likewise a comment, which has cells of its own wherever it has a separator."""
+    return re.sub(r"[,;\t](?=\s*[\"']?[=+@-])", " ", text)

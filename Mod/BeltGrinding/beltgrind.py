@@ -1,4 +1,7 @@
-"""The command line as a program: ``python3 beltgrind.py run job.json -o out/``."""
+"""The command line as a program: ``env --block-signal=INT python3 beltgrind.py run job.json -o out/``.
+
+Python takes Ctrl-C for a fault while it starts itself; blocked, it waits until somebody hears it.
+"""
 
 import os
 import signal
@@ -14,7 +17,7 @@ if __name__ == "__main__":
     before = signal.getsignal(signal.SIGINT)
     if before is signal.default_int_handler:
         signal.signal(signal.SIGINT, _stop)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
     from beltgrinding.cli import process
 
-    signal.signal(signal.SIGINT, before)
-    process()
+    process(before)

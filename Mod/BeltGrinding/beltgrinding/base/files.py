@@ -26,16 +26,17 @@ def write_whole(path, data):
         path.write_bytes(data)  # a pipe or a device, which nothing may take the place of
         return
     part = path.with_name(PART + uuid.uuid4().hex)
-    try:
-        write_new(part, data)
-        if path.exists():
-            with contextlib.suppress(OSError):
-                os.chmod(part, path.stat().st_mode & 0o7777)
-        with uninterrupted():
-            os.replace(part, path)
-            written(path)
-    finally:
-        part.unlink(missing_ok=True)
+    with interruptible():
+        try:
+            write_new(part, data)
+            if path.exists():
+                with contextlib.suppress(OSError):
+                    os.chmod(part, path.stat().st_mode & 0o7777)
+            with uninterrupted():
+                os.replace(part, path)
+                written(path)
+        finally:
+            part.unlink(missing_ok=True)
 
 
 def write_new(path, data):
@@ -58,9 +59,28 @@ def read_regular(path):
 
 
 @contextlib.contextmanager
+def interruptible():
+    """Makes Ctrl-C a KeyboardInterrupt where it would end the process at once (``cli.interrupts``): there
+    is something to be tidied up."""
+    before = signal.getsignal(signal.SIGINT)
+    if not getattr(before, "ends_process", False) or not _in_main_thread():
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _in_main_thread():
+    return threading.current_thread() is threading.main_thread()
+
+
+@contextlib.contextmanager
 def uninterrupted():
     """Lets Ctrl-C wait until its end; in other threads than the main one it never comes."""
-    if threading.current_thread() is not threading.main_thread():
+    if not _in_main_thread():
         yield
         return
     came = []

@@ -23,7 +23,7 @@ import uuid
 from pathlib import Path
 
 from ..engine import InputError
-from .files import uninterrupted, write_new, written
+from .files import interruptible, uninterrupted, write_new, written
 
 STAGE = ".beltgrind-part-"  # not whole yet: to be thrown away
 JOURNAL = ".beltgrind-ready-"  # whole, and decided: to be ended
@@ -41,6 +41,11 @@ def replace(folder, contents, gone=(), check=None):
     after it. Raises OSError, InputError.
     """
     folder = Path(os.path.realpath(folder))
+    with interruptible():
+        _replace(folder, contents, gone, check)
+
+
+def _replace(folder, contents, gone, check):
     made = _make(folder)
     try:
         with _locked(folder, fcntl.LOCK_EX):

@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 
-from . import calibrate, faults, grind, inspect, lists, measure, press, program, report
+from . import calibrate, faults, grind, interrupts, inspect, lists, measure, press, program, report
 from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
@@ -77,9 +77,10 @@ def main(argv=None):
     return status
 
 
-def process():
+def process(handler=None):
     """``main`` as a process of its own, which it ends: Ctrl-C may come at any moment, and a thread that
-    computes may still do so."""
+    computes may still do so. ``handler``: of Ctrl-C, if it was another one before."""
+    interrupts.install(handler)
     try:
         status = main()
     except SystemExit as error:  # argparse

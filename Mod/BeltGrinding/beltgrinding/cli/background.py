@@ -10,6 +10,7 @@ def run(work, quiet=False):
     """``work(context)``'s result. It runs in a thread of its own, so that Ctrl-C reaches the main
     thread while C++ computes; then the context is cancelled. Raises what the work raises.
     """
+    from ..base.files import interruptible
     from ..engine import core
 
     context, outcome, done = core.RunContext(), {}, threading.Event()
@@ -26,9 +27,10 @@ def run(work, quiet=False):
     if sys.stderr.isatty() and not quiet:
         threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
     try:
-        # Not join: Python 3.11's takes a thread for ended when Ctrl-C comes while it waits.
-        while not done.wait(0.1):
-            pass
+        with interruptible():
+            # Not join: Python 3.11's takes a thread for ended when Ctrl-C comes while it waits.
+            while not done.wait(0.1):
+                pass
     except KeyboardInterrupt:
         context.cancel()
         done.wait(CANCEL_TIME)  # what does not hear it ends with the process

@@ -1,0 +1,84 @@
+"""Ctrl-C at any moment: 130, and the old result or the new one, whole, as the message says."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+
+from beltgrinding.engine import core  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
+from test_job import plate_job  # noqa: E402
+
+MOMENTS = 200
+WORKERS = 4
+SPACINGS = (2.0, 2.5)  # mm: what was written says which
+START = ROOT / "Mod" / "BeltGrinding" / "beltgrind.py"
+
+
+def grind(folder, number, after=None):
+    """Status, standard error and seconds of a run of job ``number``, interrupted ``after`` s."""
+    begin = time.perf_counter()
+    process = subprocess.Popen(
+        ["env", "--block-signal=INT", sys.executable, str(START), "run", f"{number}.json", "-o", "out", "-q"],
+        cwd=folder,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(Path(core.__file__).parent)},
+    )
+    if after is not None:
+        time.sleep(after)
+        process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=120)[1]
+    return process.returncode, told, time.perf_counter() - begin
+
+
+def moments(worker, folder):
+    """(status, message, whether the new result was there) for the moments of one worker."""
+    folder.mkdir()
+    counts = []
+    for number, spacing in enumerate(SPACINGS):
+        job = plate_job()
+        job["sampling"]["spacing_mm"] = spacing
+        (folder / f"{number}.json").write_text(json.dumps(job))
+        status, told, seconds = grind(folder, number)
+        assert status == 0, told
+        counts.append(Result.read(folder / "out").summary["samples"])
+    there, dice, found = 1, random.Random(worker), []
+    for _ in range(MOMENTS // WORKERS):
+        wanted = 1 - there
+        status, told, _ = grind(folder, wanted, dice.uniform(0.0, 1.1 * seconds))
+        now = counts.index(Result.read(folder / "out").summary["samples"])
+        found.append((status, told.strip(), now == wanted))
+        there = now
+    left = [p.name for p in folder.iterdir() if p.name not in ("0.json", "1.json", "out")]
+    assert left == [], "what an interrupted run began is left"
+    return found
+
+
+def test_ctrl_c_at_two_hundred_moments(tmp_path):
+    with ThreadPoolExecutor(WORKERS) as pool:
+        work = [pool.submit(moments, k, tmp_path / str(k)) for k in range(WORKERS)]
+        found = [one for part in work for one in part.result()]
+    assert len(found) == MOMENTS
+    for status, told, new in found:
+        if status == -signal.SIGINT:  # not even env was up yet
+            assert not new
+        elif status == 0:  # too late
+            assert new and told == ""
+        else:
+            assert status == 130, told
+            assert told.startswith("beltgrind: interrupted; ") and "\n" not in told
+            assert new == ("was written" in told and "nothing" not in told)
+    early = sum(status == 130 for status, _, _ in found)
+    assert early > MOMENTS // 3

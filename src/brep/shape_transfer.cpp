@@ -131,6 +131,10 @@ class Walk {
     void curves(const Handle(BRep_TEdge) & edge) {
         for (BRep_ListIteratorOfListOfCurveRepresentation i(edge->Curves()); i.More(); i.Next()) {
             const Handle(BRep_CurveRepresentation)& one = i.Value();
+            // The format drops polygons of triangulations that no face has any more. Their places
+            // are looked up by them, never computed with.
+            if (one->IsPolygonOnTriangulation() || one->IsPolygon3D() || one->IsPolygonOnSurface())
+                continue;
             location(one->Location());
             if (one->IsCurve3D()) curve(one->Curve3D());
             if (one->IsCurveOnSurface()) {

@@ -173,7 +173,7 @@ std::string body_of(ChildAnswer answer, const std::string& program, double most)
     if (whole) {
         answer.output.erase(0, sizeof *head);
         if (head->kind == AnswerKind::kDone) return std::move(answer.output);
-        if (const auto error = unpack_error(answer.output)) throw InputError(*error);
+        if (const auto error = unpack_error(answer.output)) throw *error;
     }
     throw InputError("cad.no_answer",
                      "the program that reads CAD files, {program}, gave no answer that can be "

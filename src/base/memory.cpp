@@ -66,8 +66,9 @@ std::size_t usable_memory(const std::string& root) {
         const std::string_view group = whole.substr(second + 1);
         const bool version_2 = kinds.empty();
         if (!version_2 && kinds != "memory") continue;
-        least = std::min(least, limit_of_groups(version_2 ? mounted : mounted / "memory", group,
-                                                version_2 ? "memory.max" : "memory.limit_in_bytes"));
+        least =
+            std::min(least, limit_of_groups(version_2 ? mounted : mounted / "memory", group,
+                                            version_2 ? "memory.max" : "memory.limit_in_bytes"));
     }
     return least;
 }

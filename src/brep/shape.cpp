@@ -195,8 +195,8 @@ std::string Shape::surface_type(std::size_t face) const {
 Box Shape::extents() const {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     if (!impl_->extents)
-        impl_->extents = std::make_unique<Box>(
-            tight_extents(impl_->shape, impl_->name, impl_->foreign));
+        impl_->extents =
+            std::make_unique<Box>(tight_extents(impl_->shape, impl_->name, impl_->foreign));
     return *impl_->extents;
 }
 

@@ -35,8 +35,7 @@ bool take_all(std::string_view& bytes, std::uint64_t count, std::vector<T>& valu
     if (count > bytes.size() / sizeof(T)) return false;
     const auto size = static_cast<std::size_t>(count);
     values.resize(size);
-    if (size > 0)
-        std::memcpy(static_cast<void*>(values.data()), bytes.data(), sizeof(T) * size);
+    if (size > 0) std::memcpy(static_cast<void*>(values.data()), bytes.data(), sizeof(T) * size);
     bytes.remove_prefix(sizeof(T) * size);
     return true;
 }
@@ -44,22 +43,20 @@ bool take_all(std::string_view& bytes, std::uint64_t count, std::vector<T>& valu
 [[noreturn]] void refuse_meshing(const ReaderFault& fault, double deflection) {
     switch (fault.kind) {
         case ReaderFault::Kind::kTime:
-            throw InputError("brep.meshing_timeout",
-                             "triangulating it to {deflection:.3g} mm took more than {limit:.3g} s "
-                             "and was given up: the shape is damaged, or very large; repair or "
-                             "simplify it, or set {variable} higher",
-                             {{"deflection", deflection},
-                              {"limit", fault.limit},
-                              {"variable", fault.variable}});
+            throw InputError(
+                "brep.meshing_timeout",
+                "triangulating it to {deflection:.3g} mm took more than {limit:.3g} s "
+                "and was given up: the shape is damaged, or very large; repair or "
+                "simplify it, or set {variable} higher",
+                {{"deflection", deflection}, {"limit", fault.limit}, {"variable", fault.variable}});
         case ReaderFault::Kind::kMemory:
         case ReaderFault::Kind::kSize:
-            throw InputError("brep.meshing_memory",
-                             "triangulating it to {deflection:.3g} mm needs more memory than the "
-                             "{limit:.0f} MB allowed: the shape is damaged, or very large; repair "
-                             "or simplify it, or set {variable} higher",
-                             {{"deflection", deflection},
-                              {"limit", fault.limit},
-                              {"variable", fault.variable}});
+            throw InputError(
+                "brep.meshing_memory",
+                "triangulating it to {deflection:.3g} mm needs more memory than the "
+                "{limit:.0f} MB allowed: the shape is damaged, or very large; repair "
+                "or simplify it, or set {variable} higher",
+                {{"deflection", deflection}, {"limit", fault.limit}, {"variable", fault.variable}});
         default:
             throw InputError("brep.meshing_crash",
                              "it cannot be triangulated: OpenCASCADE ended with {signal}; repair "

@@ -16,8 +16,8 @@ constexpr double kNoArea = -1.0;  ///< of a face that OpenCASCADE cannot integra
 /// What the reader has asked of a shape.
 struct TriedShape {
     bool valid = false;
-    std::optional<Box> extents;  ///< mm; none if it could not be meshed
-    std::vector<double> areas;   ///< mm2, of each face
+    std::optional<Box> extents;      ///< mm; none if it could not be meshed
+    std::vector<double> areas;       ///< mm2, of each face
     std::vector<signed char> signs;  ///< of each solid's volume; 0: no face of it was met
 };
 

@@ -74,7 +74,8 @@ TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, const MeshingParameter
 
 /// The same, bit for bit, made by the reader's process: cancellable at any moment, within its
 /// limits of time and memory. Where there is no reader that works, made here, unless the shape is
-/// foreign. `name` stands for the shape in messages. Throws InputError, Standard_Failure, Cancelled.
+/// foreign. `name` stands for the shape in messages. Throws InputError, Standard_Failure,
+/// Cancelled.
 TopoDS_Shape mesh_in_reader(const TopoDS_Shape& shape, const MeshingParameters& parameters,
                             const std::string& name, bool foreign, const RunContext& context);
 

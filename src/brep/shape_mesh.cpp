@@ -31,7 +31,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kAngularDeflection = 0.5;   // rad, OpenCASCADE's customary value
-constexpr double kExtentsChord = 2e-3;        // chord error over the pole box's diagonal
+constexpr double kExtentsChord = 2e-3;       // chord error over the pole box's diagonal
 constexpr double kSoundSine = 1e-6;          // a triangle flatter than this has no plane
 constexpr std::size_t kMergeLimit = 20'000;  // faces; merging coplanar ones slows beyond
 constexpr double kCoplanarAngle = 1e-5;      // rad, between facets that are merged
@@ -174,9 +174,8 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
     }
     TriangleMesh mesh;
     try {
-        mesh = triangles_of(
-            mesh_in_reader(whole, {deflection, kAngularDeflection, false}, impl.name, impl.foreign,
-                           context));
+        mesh = triangles_of(mesh_in_reader(whole, {deflection, kAngularDeflection, false},
+                                           impl.name, impl.foreign, context));
     } catch (const Standard_Failure& failure) {
         refuse(failure);
     }

@@ -156,9 +156,8 @@ SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
         AssembledMesh assembly;
         std::vector<std::uint32_t> spoilt;
         for (int attempt = 0; attempt < kAttempts; ++attempt, deflection *= 0.5) {
-            const TopoDS_Shape copy =
-                mesh_in_reader(impl.shape, {deflection, kAngle, false}, impl.name, impl.foreign,
-                               context);
+            const TopoDS_Shape copy = mesh_in_reader(impl.shape, {deflection, kAngle, false},
+                                                     impl.name, impl.foreign, context);
             context.report(0.4);
             assembly = assemble(copy, reverse);
             spoilt = spoilt_faces(shape, assembly.mesh);

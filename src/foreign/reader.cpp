@@ -32,10 +32,10 @@ constexpr const char* kProgramVariable = "BELTGRINDING_CAD_READER";
 constexpr const char* kTimeVariable = "BELTGRINDING_CAD_TIME_LIMIT_S";
 constexpr const char* kMemoryVariable = "BELTGRINDING_CAD_MEMORY_LIMIT_MB";
 constexpr const char* kAnswerVariable = "BELTGRINDING_CAD_ANSWER_LIMIT_MB";
-constexpr double kTimeLimit = 900;     // s; the largest real assemblies take a few minutes
-constexpr double kMemoryShare = 0.5;   // of what this process may use
-constexpr double kAnswerShare = 0.5;   // of that: the host holds the answer and what it is made into
-constexpr double kMegabyte = 1e6;      // bytes
+constexpr double kTimeLimit = 900;    // s; the largest real assemblies take a few minutes
+constexpr double kMemoryShare = 0.5;  // of what this process may use
+constexpr double kAnswerShare = 0.5;  // of that: the host holds the answer and what it is made into
+constexpr double kMegabyte = 1e6;     // bytes
 constexpr double kMostMegabytes = 1e9;
 constexpr double kMostSeconds = 1e9;
 
@@ -163,13 +163,16 @@ std::string body_of(ChildAnswer answer, const std::string& program, double most)
     const std::optional<AnswerHead> head = head_of(answer.output);
     if (head && double(head->size) > most)
         throw ReaderFault{ReaderFault::Kind::kSize, most / kMegabyte, kAnswerVariable, {}, false};
-    const bool whole = head && answer.output.size() == sizeof *head + head->size &&
-                       answer_check(std::string_view(answer.output).substr(sizeof *head)) ==
-                           head->check;
+    const bool whole =
+        head && answer.output.size() == sizeof *head + head->size &&
+        answer_check(std::string_view(answer.output).substr(sizeof *head)) == head->check;
     const bool fault = whole ? head->kind == AnswerKind::kSignal : answer.signal != 0;
     if (fault)
-        throw ReaderFault{ReaderFault::Kind::kSignal, 0, {},
-                          signal_name(whole ? head->signal : answer.signal), whole};
+        throw ReaderFault{ReaderFault::Kind::kSignal,
+                          0,
+                          {},
+                          signal_name(whole ? head->signal : answer.signal),
+                          whole};
     if (whole) {
         answer.output.erase(0, sizeof *head);
         if (head->kind == AnswerKind::kDone) return std::move(answer.output);

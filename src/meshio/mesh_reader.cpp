@@ -48,10 +48,11 @@ RawMesh read_foreign(const std::string& path, const RunContext& context) {
         }
     }
     if (!mesh)
-        throw InputError("mesh.not_a_mesh",
-                         "{file}: what was read of it is no mesh: a triangle names a vertex that is "
-                         "not there; export it again",
-                         {{"file", path}});
+        throw InputError(
+            "mesh.not_a_mesh",
+            "{file}: what was read of it is no mesh: a triangle names a vertex that is "
+            "not there; export it again",
+            {{"file", path}});
     RawMesh raw;
     raw.triangles = std::move(mesh->triangles);
     raw.vertices.reserve(mesh->vertices.size());

@@ -4,8 +4,7 @@
 
 namespace beltgrinding {
 
-std::optional<std::string> do_shape_task(std::string_view, const std::string&,
-                                         const std::string&) {
+std::optional<std::string> do_shape_task(std::string_view, const std::string&, const std::string&) {
     return std::nullopt;
 }
 
@@ -50,8 +49,7 @@ TopoDS_Shape read_exchange(const std::string& format, const std::string& path) {
 TopoDS_Shape read_brep(const std::string& path, const std::string& input) {
     if (path.empty()) {
         const TopoDS_Shape shape = read_brep_text(input);
-        if (shape.IsNull())
-            throw InputError("cad.not_brep_text", "not the text of a BREP shape");
+        if (shape.IsNull()) throw InputError("cad.not_brep_text", "not the text of a BREP shape");
         return shape;
     }
     std::ifstream file(path, std::ios::binary);

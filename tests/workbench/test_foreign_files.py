@@ -224,7 +224,7 @@ def real():
 
 
 # Does what it is asked for but a task.
-SLOW = "#!/bin/sh\ncase $3 in {task}) exec sleep 1000 ;; esac\nexec {real} \"$@\"\n"
+SLOW = '#!/bin/sh\ncase $3 in {task}) exec sleep 1000 ;; esac\nexec {real} "$@"\n'
 LATER = {
     "TRIANGULATE": lambda path, context: core.triangulate(core.Shape.read(path), 0.1, context),
     "FACES": lambda path, context: core.shape_from_mesh(cube(), context),
@@ -355,7 +355,11 @@ def results(path):
     read_in = read(path)
     if isinstance(read_in, core.TriangleMesh):
         shape = core.shape_from_mesh(read_in)
-        return [read_in.vertices, read_in.triangles, np.frombuffer(shape.write_brep().encode(), "u1")]
+        return [
+            read_in.vertices,
+            read_in.triangles,
+            np.frombuffer(shape.write_brep().encode(), "u1"),
+        ]
     size = float(np.linalg.norm(np.subtract(*read_in.extents())))
     field, _ = core.sample_faces(read_in, [0], size / 30)
     mesh = core.triangulate(read_in, size / 100)
@@ -365,7 +369,9 @@ def results(path):
 
 
 def digest(path):
-    return hashlib.sha256(b"".join(np.ascontiguousarray(a).tobytes() for a in results(path))).hexdigest()
+    return hashlib.sha256(
+        b"".join(np.ascontiguousarray(a).tobytes() for a in results(path))
+    ).hexdigest()
 
 
 def german(folder):

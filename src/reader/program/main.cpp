@@ -1,7 +1,7 @@
 // beltgrinding-cad-reader PARENT MEMORY TASK [PATH]: does a task (tasks.h) on a file, or on the
-// standard input, with MEMORY bytes at most, and answers on descriptor 3 with what was made of it, or
-// with what stands against it (foreign/answer.h). Started by foreign/reader.cpp; its faults are its
-// own.
+// standard input, with MEMORY bytes at most, and answers on descriptor 3 with what was made of it,
+// or with what stands against it (foreign/answer.h). Started by foreign/reader.cpp; its faults are
+// its own.
 
 #include <fcntl.h>
 #include <sys/prctl.h>

@@ -1,17 +1,17 @@
 // What the host makes of the reader's answer (src/foreign/answer.cpp, src/meshio/mesh_bytes.cpp,
-// src/brep/shape_answer.cpp, shape_transfer.cpp), from any bytes. Of a shape's answer only OpenCASCADE's
-// own part is given: a checksum stands before it, and the reader has read it.
+// src/brep/shape_answer.cpp, shape_transfer.cpp), from any bytes. Of a shape's answer only
+// OpenCASCADE's own part is given: a checksum stands before it, and the reader has read it.
 
 #include <Standard_Failure.hxx>
 #include <algorithm>
 #include <cstring>
 
+#include <TopoDS_Shape.hxx>
+#include "brep/shape_tasks.h"
 #include "foreign/answer.h"
 #include "meshio/mesh_bytes.h"
 #include "shape_answer.h"
 #include "shape_transfer.h"
-#include "brep/shape_tasks.h"
-#include <TopoDS_Shape.hxx>
 #include "target.h"
 
 namespace {

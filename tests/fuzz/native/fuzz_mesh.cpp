@@ -1,6 +1,6 @@
-// What the reader's process does with OFF, OBJ, STL and 3MF (src/reader/mesh_tasks.cpp), in this one: the
-// first byte says which. The faults of assimp and lib3mf are that process's business: libFuzzer is told
-// to go on after a crash, and replay.cpp does so.
+// What the reader's process does with OFF, OBJ, STL and 3MF (src/reader/mesh_tasks.cpp), in this
+// one: the first byte says which. The faults of assimp and lib3mf are that process's business:
+// libFuzzer is told to go on after a crash, and replay.cpp does so.
 
 #include <array>
 #include <cstdio>

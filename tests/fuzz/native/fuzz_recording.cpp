@@ -14,7 +14,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         const std::size_t last = recording.last();
         for (const std::size_t frame : {std::size_t{0}, last / 2, last})
             must(recording.heights_at(frame).size() == recording.samples());
-        for (const auto& [from, to] : {std::pair{std::size_t{0}, last}, std::pair{last, last / 2}}) {
+        for (const auto& [from, to] :
+             {std::pair{std::size_t{0}, last}, std::pair{last, last / 2}}) {
             const Recording::Changes changes = recording.advance(from, to);
             must(changes.sample.size() == changes.height.size());
             for (const std::uint32_t sample : changes.sample) must(sample < recording.samples());

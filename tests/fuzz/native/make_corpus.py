@@ -55,7 +55,9 @@ def main():
 
     text = lambda s: struct.pack("<Q", len(s)) + s.encode()
     argument = text("limit") + struct.pack("<Id", 1, 2.5) + text("what") + struct.pack("<I", 2)
-    fact = text("a.code") + text("{limit:.3g} {what}") + struct.pack("<I", 2) + argument + text("it")
+    fact = (
+        text("a.code") + text("{limit:.3g} {what}") + struct.pack("<I", 2) + argument + text("it")
+    )
     put("answer", "error", fact + struct.pack("<I", 1) + fact)
     points, triangles = np.array(CUBE, "<f4"), np.array(TRIANGLES, "<u4")
     mesh = struct.pack("<Q", len(points)) + points.tobytes()
@@ -85,7 +87,11 @@ def main():
     }
     recording = core.Recording()
     result = run(load.validate(job), recording=recording)
-    put("height_field", "ground.h5", (result.field.write_hdf5(str(path), json.dumps({})), path.read_bytes())[1])
+    put(
+        "height_field",
+        "ground.h5",
+        (result.field.write_hdf5(str(path), json.dumps({})), path.read_bytes())[1],
+    )
     recording.write_hdf5(str(path), "{}")
     put("recording", "recording.h5", path.read_bytes())
     path.unlink()

@@ -1,7 +1,9 @@
-// replay FOLDER MUTATIONS [SECONDS]: runs a fuzz target on each file of a folder and on MUTATIONS copies that
-// are damaged at random, the same in every run, without libFuzzer. Each hundred in a process of its own: in
-// builds with TARGET_LIBRARY a fault there is counted and passed over, unless it is one of `must`.
+// replay FOLDER MUTATIONS: runs a fuzz target on each file of a folder and on MUTATIONS copies that
+// are damaged at random, the same in every run, without libFuzzer. Each hundred in a process of its
+// own: in builds with TARGET_LIBRARY a fault there is counted and passed over, unless it is one of
+// `must`.
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -15,8 +17,6 @@
 #include <iterator>
 #include <random>
 #include <vector>
-
-#include <sys/mman.h>
 
 #include "target.h"
 
@@ -88,8 +88,8 @@ int main(int count, char** arguments) {
     }
     if (corpus.empty()) return 2;
     const std::size_t total = corpus.size() + std::strtoull(arguments[2], nullptr, 10);
-    auto* done = static_cast<std::size_t*>(
-        mmap(nullptr, sizeof(std::size_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+    auto* done = static_cast<std::size_t*>(mmap(
+        nullptr, sizeof(std::size_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
     must(done != MAP_FAILED);
     std::size_t faults = 0;
     for (std::size_t at = 0; at < total;) {
@@ -99,6 +99,7 @@ int main(int count, char** arguments) {
 #ifdef TARGET_LIBRARY
             const rlimit memory{kMemory, kMemory};
             setrlimit(RLIMIT_DATA, &memory);
+            must(std::freopen("/dev/null", "w", stderr) != nullptr);  // what assertions say
 #endif
             const rlimit none{0, 0};
             setrlimit(RLIMIT_CORE, &none);

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the fuzz targets share. Each defines LLVMFuzzerTestOneInput, which libFuzzer calls (the preset
-// `fuzz`), or replay.cpp (every build).
+// What the fuzz targets share. Each defines LLVMFuzzerTestOneInput, which libFuzzer calls (the
+// preset `fuzz`), or replay.cpp (every build).
 
 #include <fcntl.h>
 #include <unistd.h>

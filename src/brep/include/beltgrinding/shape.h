@@ -22,8 +22,8 @@ class Shape {
 
     /// Reads STEP (.step .stp), IGES (.iges .igs) or BREP (.brep .brp), in a process of its own
     /// (`set_cad_reader`): no damaged file takes this one down. Throws InputError naming the file:
-    /// missing, no file, unreadable, damaged, null shape, no faces; more than the environment allows
-    /// of time (BELTGRINDING_CAD_TIME_LIMIT_S, 900 s if unset), of memory
+    /// missing, no file, unreadable, damaged, null shape, no faces; more than the environment
+    /// allows of time (BELTGRINDING_CAD_TIME_LIMIT_S, 900 s if unset), of memory
     /// (BELTGRINDING_CAD_MEMORY_LIMIT_MB, half of what this process may use), or of what the reader
     /// hands over (BELTGRINDING_CAD_ANSWER_LIMIT_MB, half of that); Cancelled within 0.1 s.
     static Shape read(const std::string& path, const RunContext& context = {});
@@ -61,9 +61,10 @@ class Shape {
     std::shared_ptr<const Impl> impl_;
 };
 
-/// The program that reads foreign files and triangulates, in a process of its own for each call: the path of `beltgrinding-cad-reader`. Empty: what the
-/// environment's BELTGRINDING_CAD_READER says, else the one beside the library or program that
-/// holds this code, else the one where the library was installed. Thread-safe.
+/// The program that reads foreign files and triangulates, in a process of its own for each call:
+/// the path of `beltgrinding-cad-reader`. Empty: what the environment's BELTGRINDING_CAD_READER
+/// says, else the one beside the library or program that holds this code, else the one where the
+/// library was installed. Thread-safe.
 void set_cad_reader(const std::string& program);
 
 /// How faces are sampled.
@@ -101,8 +102,8 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
                          const std::vector<std::size_t>& faces = {});
 
 /// A faceted shell of planar faces from a mesh that came without a B-rep (an STL design), sewn,
-/// coplanar neighbours merged. By the reader's process, as `triangulate`. Throws InputError for a mesh
-/// without a sound triangle.
+/// coplanar neighbours merged. By the reader's process, as `triangulate`. Throws InputError for a
+/// mesh without a sound triangle.
 Shape shape_from_mesh(const TriangleMesh& mesh, const RunContext& context = {});
 
 }  // namespace beltgrinding

@@ -21,9 +21,9 @@ struct RawMesh {
 RawMesh read_ply(const std::string& path);
 
 /// Reads STL, OBJ or OFF by assimp, 3MF by lib3mf, both in a process of its own as `Shape::read`
-/// (beltgrinding/shape.h), and PLY by `read_ply`; scaled by `unit_mm` (1: millimetres, 1000: metres)
-/// and moved by `work_from_mesh`. Throws InputError naming the file; Cancelled within 0.1 s while a
-/// library reads.
+/// (beltgrinding/shape.h), and PLY by `read_ply`; scaled by `unit_mm` (1: millimetres, 1000:
+/// metres) and moved by `work_from_mesh`. Throws InputError naming the file; Cancelled within 0.1 s
+/// while a library reads.
 TriangleMesh read_mesh(const std::string& path, double unit_mm = 1.0,
                        const Frame& work_from_mesh = Frame::Identity(),
                        const RunContext& context = {});

@@ -55,20 +55,19 @@ function(beltgrinding_library name)
 endfunction()
 
 beltgrinding_library(core
-  ROOMS base mesh heightfield contact removal toolpath events simulation inspection
-  PUBLIC Eigen3::Eigen TBB::tbb PRIVATE hdf5::hdf5)
+  ROOMS base foreign mesh heightfield contact removal toolpath events simulation inspection
+  PUBLIC Eigen3::Eigen TBB::tbb PRIVATE hdf5::hdf5 ${CMAKE_DL_LIBS})
 if(BELTGRINDING_HAS_BREP)
   get_target_property(toolkits bg_brep BELTGRINDING_PACKAGES)
   beltgrinding_library(brep ROOMS brep PUBLIC beltgrinding::core PRIVATE ${toolkits})
-  if(BELTGRINDING_INSTALL)
-    install(PROGRAMS $<TARGET_FILE:beltgrinding_cad_reader> RENAME beltgrinding-cad-reader
-            DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/beltgrinding ${as_library})
-  endif()
+endif()
+if(BELTGRINDING_INSTALL AND TARGET beltgrinding_cad_reader)
+  install(PROGRAMS $<TARGET_FILE:beltgrinding_cad_reader> RENAME beltgrinding-cad-reader
+          DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/beltgrinding ${as_library})
 endif()
 if(BELTGRINDING_HAS_STOCK)
-  get_target_property(mesh_packages bg_meshio BELTGRINDING_PACKAGES)
   beltgrinding_library(stock ROOMS meshio rays stock thickness
-    PUBLIC beltgrinding::core PRIVATE embree ${mesh_packages})
+    PUBLIC beltgrinding::core PRIVATE embree)
 endif()
 if(BELTGRINDING_HAS_SCAN)
   get_target_property(packages bg_scan BELTGRINDING_PACKAGES)

@@ -76,7 +76,7 @@ apt_install() {
     rm -f "$log"
 }
 
-build_sources=(CMakeLists.txt CMakePresets.json package.xml cmake include src tests/core tests/benchmark
+build_sources=(CMakeLists.txt CMakePresets.json package.xml cmake include src tests/core tests/benchmark tests/fuzz/native
     Resources/translations) # what a build reads; folders tell of files that are gone
 
 # build_stale STAMP: whether a build that began when STAMP was made is missing or too old. By the time

@@ -1,4 +1,3 @@
-#include <unistd.h>
 #include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
@@ -10,6 +9,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
@@ -27,10 +27,6 @@ constexpr double kFitMargin = 1.02;        // the spacing that is proposed must 
 constexpr double kAreaDisagreement = 0.1;  // between integration and samples: worth a warning
 constexpr std::size_t kEnoughSamples = 200;
 
-double machine_bytes() {
-    return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-}
-
 double perimeter(const TopoDS_Face& face) {
     try {
         GProp_GProps p;
@@ -42,7 +38,7 @@ double perimeter(const TopoDS_Face& face) {
 }
 
 void refuse_if_too_large(double area, double length, double spacing, std::size_t max_bytes) {
-    const double limit = max_bytes > 0 ? double(max_bytes) : 0.5 * machine_bytes();
+    const double limit = max_bytes > 0 ? double(max_bytes) : 0.5 * double(usable_memory());
     const auto bytes = [&](double h) {
         return (area / (h * h) + 2 * length / h) * kBytesPerSample;
     };

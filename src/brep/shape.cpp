@@ -23,7 +23,6 @@ namespace {
 constexpr double kLargestExtent = 10e3;   // mm; beyond it a wrong unit is likelier than a part
 constexpr double kSmallestExtent = 0.1;   // mm
 constexpr double kZeroArea = 1e-9;        // mm2
-constexpr double kExtentsChord = 2e-3;    // chord error over the pole box's diagonal
 constexpr double kAreaTolerance = 1e-5;   // asked of the adaptive rule, which misses it tenfold
 constexpr double kAreasAgree = 2e-4;      // relative difference of two rules that are both right
 constexpr double kJudgeSamples = 150;     // samples along a square face's side
@@ -195,16 +194,9 @@ std::string Shape::surface_type(std::size_t face) const {
 
 Box Shape::extents() const {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
-    if (!impl_->extents) {
-        Bnd_Box poles;  // may be several times too large: only sets the chord error
-        BRepBndLib::Add(impl_->shape, poles, false);
-        const double diagonal = poles.IsVoid() ? 1.0 : std::sqrt(poles.SquareExtent());
-        Box box;
-        for (const Vec3f& v :
-             mesh_of(impl_->shape, kExtentsChord * diagonal, false, RunContext()).vertices)
-            box.extend(v.cast<double>());
-        impl_->extents = std::make_unique<Box>(box);
-    }
+    if (!impl_->extents)
+        impl_->extents =
+            std::make_unique<Box>(tight_extents(impl_->shape, impl_->name, impl_->foreign));
     return *impl_->extents;
 }
 

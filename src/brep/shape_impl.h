@@ -10,10 +10,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "beltgrinding/shape.h"
+#include "brep/shape_tasks.h"
 
 namespace beltgrinding {
 
@@ -31,6 +33,9 @@ struct Shape::Impl {
     /// True if the face's solid has a negative volume: its normals all point inwards.
     bool inside_out(std::size_t face) const;
 
+    // Set before anybody else has it.
+    mutable bool foreign = false;  ///< the reader's process has read it, and tried it
+
     // Costly facts, found once when first asked for.
     mutable std::mutex mutex;
     mutable std::vector<signed char> solid_sign;            ///< 0: not yet known
@@ -46,9 +51,6 @@ struct Shape::Impl {
 /// never end.
 void add_missing_curves(const TopoDS_Shape& shape);
 
-/// The shape that `BRepTools::Write` wrote; null if the text is no BREP.
-TopoDS_Shape read_brep_text(const std::string& text);
-
 enum class MissingCurves {
     kAdd,     ///< a shape of FreeCAD's or of our own
     kAreDone  ///< the reader of CAD files has added them
@@ -59,13 +61,35 @@ enum class MissingCurves {
 Shape make_shape(const TopoDS_Shape& shape, const std::string& name,
                  MissingCurves curves = MissingCurves::kAdd);
 
-/// A copy of `shape` (the original is shared with other threads) that carries a triangulation by
-/// OpenCASCADE; `angle` in rad between facets. Cancellable.
-TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, double deflection, double angle,
-                               bool relative, const RunContext& context);
+/// How a shape is triangulated.
+struct MeshingParameters {
+    double deflection = 0;  ///< mm, or a share of each edge's size if `relative`
+    double angle = 0;       ///< rad between facets
+    bool relative = false;
+};
 
-/// Triangulates `shape` (a copy: the original is shared with other threads); cancellable.
-TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative,
-                     const RunContext& context);
+/// A copy of `shape` (the original is shared with other threads) that carries a triangulation by
+/// OpenCASCADE, made here: it may never end. Throws Standard_Failure.
+TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, const MeshingParameters& parameters);
+
+/// The same, bit for bit, made by the reader's process: cancellable at any moment, within its
+/// limits of time and memory. Where there is no reader that works, made here, unless the shape is
+/// foreign. `name` stands for the shape in messages. Throws InputError, Standard_Failure,
+/// Cancelled.
+TopoDS_Shape mesh_in_reader(const TopoDS_Shape& shape, const MeshingParameters& parameters,
+                            const std::string& name, bool foreign, const RunContext& context);
+
+/// The triangles that the faces of `shape` carry.
+TriangleMesh triangles_of(const TopoDS_Shape& shape);
+
+/// `Shape::extents`, by triangles made here or by the reader.
+Box tight_extents(const TopoDS_Shape& shape, const std::string& name, bool by_reader);
+
+/// `shape_from_mesh`, in this process.
+Shape faces_of_mesh(const TriangleMesh& mesh);
+
+/// What `shape_answer` and `faces_answer` packed; `name` stands for it in messages. Throws
+/// Standard_Failure if the bytes are no such answer's, InputError as make_shape.
+Shape unpack_shape_answer(std::string_view bytes, const std::string& name);
 
 }  // namespace beltgrinding

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <locale>
 #include <mutex>
 #include <sstream>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
-#include "cad_reader.h"
+#include "foreign/file_check.h"
+#include "foreign/reader.h"
 #include "shape_impl.h"
 
 namespace beltgrinding {
@@ -36,11 +38,28 @@ class QuietMessenger {
     Message_SequenceOfPrinters printers_;
 };
 
-Shape shape_of(const CadShape& read, const std::string& name) {
-    Shape shape = make_shape(read.shape, name, MissingCurves::kAreDone);
-    shape.impl().valid = read.valid;
-    if (read.extents) shape.impl().extents = std::make_unique<Box>(*read.extents);
-    return shape;
+/// What the reader's process makes of a file, or of a text in `input`.
+std::string answer_to(const std::string& format, const std::string& path, const std::string& input,
+                      const RunContext& context, const Fact& outer) {
+    try {
+        try {
+            return ask_reader({format, path, input}, context);
+        } catch (const ReaderFault& fault) {
+            refuse_file(fault, format, "OpenCASCADE");
+        }
+    } catch (const InputError& error) {
+        throw error.within(outer);
+    }
+}
+
+Shape shape_of(const std::string& answer, const std::string& name, const Fact& outer) {
+    try {
+        return unpack_shape_answer(answer, name);
+    } catch (const Standard_Failure& failure) {
+        throw InputError("cad.failure", "OpenCASCADE cannot read it: {reason}",
+                         {{"reason", failure.GetMessageString()}})
+            .within(outer);
+    }
 }
 
 std::string lower_suffix(const std::string& path) {
@@ -52,11 +71,16 @@ std::string lower_suffix(const std::string& path) {
 
 }  // namespace
 
+void set_cad_reader(const std::string& program) {
+    set_reader(program);
+}
+
 TopoDS_Shape read_brep_text(const std::string& text) {
     TopoDS_Shape shape;
     // OpenCASCADE itself complains of that on the standard output.
     if (text.find("CASCADE Topology V") == std::string::npos) return shape;
     std::istringstream stream(text);
+    stream.imbue(std::locale::classic());  // whatever the host's programs have set
     // Where the text ends before its own counts do, OpenCASCADE would read on for hours or for
     // ever.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
@@ -70,28 +94,29 @@ TopoDS_Shape read_brep_text(const std::string& text) {
 }
 
 Shape Shape::read(const std::string& path, const RunContext& context) {
-    const std::string suffix = lower_suffix(path);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
+    if (!is_readable_file(path))
         throw InputError("cad.no_such_file", "{file}: there is no such file", {{"file", path}});
-    CadFormat format = CadFormat::kBrep;
+    const std::string suffix = lower_suffix(path);
+    std::string format = "BREP";
     if (suffix == ".step" || suffix == ".stp") {
-        format = CadFormat::kStep;
+        format = "STEP";
     } else if (suffix == ".iges" || suffix == ".igs") {
-        format = CadFormat::kIges;
+        format = "IGES";
     } else if (suffix != ".brep" && suffix != ".brp") {
         throw InputError("cad.unknown_suffix",
                          "{file}: unknown kind of file '{suffix}'; .step, .stp, .iges, .igs, .brep "
                          "and .brp are read",
                          {{"file", path}, {"suffix", suffix}});
     }
-    return shape_of(read_in_child(format, path, nullptr, path, context),
-                    std::filesystem::path(path).filename().string());
+    const Fact outer{"cad.file", "{file}: ", {{"file", path}}};
+    return shape_of(answer_to(format, path, "", context, outer),
+                    std::filesystem::path(path).filename().string(), outer);
 }
 
 Shape Shape::read_brep(const std::string& text, const std::string& name,
                        const RunContext& context) {
-    return shape_of(read_in_child(CadFormat::kBrep, "", &text, name, context), name);
+    const Fact outer{"cad.shape", "{shape}: ", {{"shape", name}}};
+    return shape_of(answer_to("BREP", "", text, context, outer), name, outer);
 }
 
 Shape Shape::from_brep(const std::string& text, const std::string& name) {
@@ -112,6 +137,7 @@ Shape Shape::from_brep(const std::string& text, const std::string& name) {
 
 std::string Shape::write_brep() const {
     std::ostringstream stream;
+    stream.imbue(std::locale::classic());
     BRepTools::Write(impl_->shape, stream, false, false, TopTools_FormatVersion_VERSION_1);
     return stream.str();
 }

@@ -1,3 +1,4 @@
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -5,8 +6,8 @@
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
-#include <Message_ProgressIndicator.hxx>
 #include <Poly_Triangulation.hxx>
 #include <ShapeUpgrade_UnifySameDomain.hxx>
 #include <Standard_Failure.hxx>
@@ -30,21 +31,10 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kAngularDeflection = 0.5;   // rad, OpenCASCADE's customary value
+constexpr double kExtentsChord = 2e-3;       // chord error over the pole box's diagonal
 constexpr double kSoundSine = 1e-6;          // a triangle flatter than this has no plane
 constexpr std::size_t kMergeLimit = 20'000;  // faces; merging coplanar ones slows beyond
 constexpr double kCoplanarAngle = 1e-5;      // rad, between facets that are merged
-
-class ContextProgress : public Message_ProgressIndicator {
-  public:
-    explicit ContextProgress(const RunContext& context) : context_(context) {}
-    Standard_Boolean UserBreak() override { return context_.cancelled(); }
-    void Show(const Message_ProgressScope&, const Standard_Boolean) override {
-        context_.report(GetPosition());
-    }
-
-  private:
-    RunContext context_;
-};
 
 void append_face(const TopoDS_Face& face, TriangleMesh& mesh) {
     TopLoc_Location location;
@@ -66,6 +56,11 @@ void append_face(const TopoDS_Face& face, TriangleMesh& mesh) {
                                   base + static_cast<std::uint32_t>(b - 1),
                                   base + static_cast<std::uint32_t>(c - 1)});
     }
+}
+
+[[noreturn]] void refuse(const Standard_Failure& failure) {
+    throw InputError("brep.not_triangulated", "the shape cannot be triangulated: {reason}",
+                     {{"reason", failure.GetMessageString()}});
 }
 
 /// Vertices of a triangle soup welded where they are equal.
@@ -122,33 +117,39 @@ void orient_alike(std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, double deflection, double angle,
-                               bool relative, const RunContext& context) {
+TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, const MeshingParameters& wanted) {
     const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape, false, false).Shape();
     IMeshTools_Parameters parameters;
-    parameters.Deflection = deflection;
-    parameters.Angle = angle;
-    parameters.Relative = relative;
+    parameters.Deflection = wanted.deflection;
+    parameters.Angle = wanted.angle;
+    parameters.Relative = wanted.relative;
     parameters.InParallel = true;
-    const Handle(ContextProgress) progress = new ContextProgress(context);
-    BRepMesh_IncrementalMesh mesher(copy, parameters, progress->Start());
-    context.throw_if_cancelled();
+    BRepMesh_IncrementalMesh mesher(copy, parameters);
     return copy;
 }
 
-TriangleMesh mesh_of(const TopoDS_Shape& shape, double deflection, bool relative,
-                     const RunContext& context) {
+TriangleMesh triangles_of(const TopoDS_Shape& shape) {
+    TriangleMesh mesh;
+    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next())
+        append_face(TopoDS::Face(e.Current()), mesh);
+    return mesh;
+}
+
+Box tight_extents(const TopoDS_Shape& shape, const std::string& name, bool by_reader) {
+    Bnd_Box poles;  // may be several times too large: only sets the chord error
+    BRepBndLib::Add(shape, poles, false);
+    const double diagonal = poles.IsVoid() ? 1.0 : std::sqrt(poles.SquareExtent());
+    const MeshingParameters parameters{kExtentsChord * diagonal, kAngularDeflection, false};
+    Box box;
     try {
-        const TopoDS_Shape copy =
-            triangulated_copy(shape, deflection, kAngularDeflection, relative, context);
-        TriangleMesh mesh;
-        for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next())
-            append_face(TopoDS::Face(e.Current()), mesh);
-        return mesh;
+        const TriangleMesh mesh =
+            triangles_of(by_reader ? mesh_in_reader(shape, parameters, name, true, RunContext())
+                                   : triangulated_copy(shape, parameters));
+        for (const Vec3f& v : mesh.vertices) box.extend(v.cast<double>());
     } catch (const Standard_Failure& failure) {
-        throw InputError("brep.not_triangulated", "the shape cannot be triangulated: {reason}",
-                         {{"reason", failure.GetMessageString()}});
+        refuse(failure);
     }
+    return box;
 }
 
 TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context,
@@ -171,7 +172,13 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
         }
         whole = some;
     }
-    TriangleMesh mesh = mesh_of(whole, deflection, false, context);
+    TriangleMesh mesh;
+    try {
+        mesh = triangles_of(mesh_in_reader(whole, {deflection, kAngularDeflection, false},
+                                           impl.name, impl.foreign, context));
+    } catch (const Standard_Failure& failure) {
+        refuse(failure);
+    }
     if (mesh.triangles.empty())
         throw InputError("brep.no_triangles",
                          "{shape}: triangulation gives no triangle; repair the shape",
@@ -179,7 +186,7 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
     return mesh;
 }
 
-Shape shape_from_mesh(const TriangleMesh& mesh) {
+Shape faces_of_mesh(const TriangleMesh& mesh) {
     std::vector<Vec3f> points;
     const std::vector<std::uint32_t> welded = weld_vertices(mesh, points);
     std::vector<Triangle> sound;

@@ -29,9 +29,12 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <type_traits>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace beltgrinding {
 namespace {
@@ -131,6 +134,10 @@ class Walk {
     void curves(const Handle(BRep_TEdge) & edge) {
         for (BRep_ListIteratorOfListOfCurveRepresentation i(edge->Curves()); i.More(); i.Next()) {
             const Handle(BRep_CurveRepresentation)& one = i.Value();
+            // The format drops polygons of triangulations that no face has any more. Their places
+            // are looked up by them, never computed with.
+            if (one->IsPolygonOnTriangulation() || one->IsPolygon3D() || one->IsPolygonOnSurface())
+                continue;
             location(one->Location());
             if (one->IsCurve3D()) curve(one->Curve3D());
             if (one->IsCurveOnSurface()) {
@@ -148,15 +155,32 @@ class Walk {
 
     void location(const TopLoc_Location& whole) {
         for (TopLoc_Location rest = whole; !rest.IsIdentity(); rest = rest.NextLocation()) {
-            transformation(rest.FirstDatum()->Transformation());
-            transformation(rest.Transformation());  // the product that it keeps
+            const gp_Trsf& datum = rest.FirstDatum()->Transformation();
+            if (seen_.insert(&datum).second) transformation(datum);
+            product(rest);
+        }
+    }
+
+    /// The product that a location keeps. Copies of shapes have it many times over, which reading
+    /// makes one of: it stands in the numbers once for each chain of data and their powers.
+    void product(const TopLoc_Location& location) {
+        std::vector<std::pair<const void*, int>> chain;
+        for (TopLoc_Location rest = location; !rest.IsIdentity(); rest = rest.NextLocation())
+            chain.emplace_back(rest.FirstDatum().get(), rest.FirstPower());
+        const gp_Trsf& kept = location.Transformation();
+        const auto [known, first] = products_.try_emplace(std::move(chain), nullptr);
+        if (first) {
+            transformation(kept);
+            known->second = &kept;
+        } else if (known->second != &kept) {
+            if constexpr (std::is_same_v<Numbers, Reader>)
+                const_cast<gp_Trsf&>(kept) = *known->second;
         }
     }
 
     // A location offers no way to change it, and none to be made of raw numbers; the object itself
     // is not const.
     void transformation(const gp_Trsf& kept) {
-        if (!seen_.insert(&kept).second) return;
         auto raw = std::bit_cast<RawTransformation>(kept);
         numbers_.value(raw.scale);
         numbers_.value(raw.form);
@@ -242,6 +266,7 @@ class Walk {
 
     Numbers& numbers_;
     std::unordered_set<const void*> seen_;
+    std::map<std::vector<std::pair<const void*, int>>, const gp_Trsf*> products_;
 };
 
 }  // namespace

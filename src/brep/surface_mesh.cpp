@@ -156,8 +156,9 @@ SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
         AssembledMesh assembly;
         std::vector<std::uint32_t> spoilt;
         for (int attempt = 0; attempt < kAttempts; ++attempt, deflection *= 0.5) {
-            const TopoDS_Shape copy =
-                triangulated_copy(impl.shape, deflection, kAngle, false, context.part(0.0, 0.4));
+            const TopoDS_Shape copy = mesh_in_reader(impl.shape, {deflection, kAngle, false},
+                                                     impl.name, impl.foreign, context);
+            context.report(0.4);
             assembly = assemble(copy, reverse);
             spoilt = spoilt_faces(shape, assembly.mesh);
             if (spoilt.empty()) break;

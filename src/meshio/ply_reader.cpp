@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -15,6 +14,7 @@
 #include <string_view>
 
 #include "beltgrinding/error.h"
+#include "foreign/file_check.h"
 
 namespace beltgrinding {
 namespace {
@@ -281,7 +281,7 @@ RawMesh parse(std::string_view data) {
 }  // namespace
 
 RawMesh read_ply(const std::string& path) {
-    if (!std::filesystem::is_regular_file(path))
+    if (!is_readable_file(path))
         throw InputError("mesh.no_such_file", "{file}: there is no such file", {{"file", path}});
     std::ifstream file(path, std::ios::binary);
     const std::string data{std::istreambuf_iterator<char>(file), {}};

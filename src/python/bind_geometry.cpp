@@ -56,18 +56,20 @@ void bind_geometry(py::module_& m) {
         py::arg("path"), "(vertices (n, 3), triangles (m, 3)) of a PLY, as the file has them.");
     m.def(
         "read_mesh",
-        [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement) {
+        [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement,
+           const RunContext* context) {
             const Frame frame =
                 frame_from(placement, "placement", Fact{"mesh.file", "{file}: ", {{"file", path}}});
             const py::gil_scoped_release release;
-            return read_mesh(path, unit_mm, frame);
+            return read_mesh(path, unit_mm, frame, context != nullptr ? *context : RunContext());
         },
         py::arg("path"), py::arg("unit_mm") = 1.0,
         py::arg("work_from_mesh") = Eigen::Matrix4d::Identity().eval(),
+        py::arg("context") = nullptr,
         "Reads STL, PLY, OBJ, OFF, 3MF; unit_mm: millimetres per unit of the file.");
 
     m.def("set_cad_reader", &set_cad_reader, py::arg("program"),
-          "Path of the beltgrinding-cad-reader that Shape.read runs; '': look for it.");
+          "Path of the beltgrinding-cad-reader that reads foreign files; '': look for it.");
     py::class_<Shape>(m, "Shape", "A boundary representation; faces are numbered from 0.")
         .def_static(
             "read",
@@ -102,8 +104,13 @@ void bind_geometry(py::module_& m) {
         .def(
             "warnings", [](const Shape& shape) { return to_list(shape.warnings()); },
             "What is odd about it, a `Fact` each.");
-    m.def("shape_from_mesh", &shape_from_mesh, py::arg("mesh"),
-          py::call_guard<py::gil_scoped_release>(), "A faceted shell from a mesh.");
+    m.def(
+        "shape_from_mesh",
+        [](const TriangleMesh& mesh, const RunContext* context) {
+            const py::gil_scoped_release release;
+            return shape_from_mesh(mesh, context != nullptr ? *context : RunContext());
+        },
+        py::arg("mesh"), py::arg("context") = nullptr, "A faceted shell from a mesh.");
     m.def(
         "triangulate",
         [](const Shape& shape, double deflection, const RunContext* context,

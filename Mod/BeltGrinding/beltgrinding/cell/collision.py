@@ -85,7 +85,7 @@ def read_body(body, name, warnings, context=None):
     except InputError as error:
         raise error.within("cell.placement", "{body}: placement: ", body=name) from None
     if "file" in body and Path(body["file"]).suffix.lower() in MESH_SUFFIXES:
-        return core.read_mesh(body["file"], body["unit_mm"], placement)
+        return core.read_mesh(body["file"], body["unit_mm"], placement, context)
     shape = read_shape(body, name, context)
     warnings += [
         core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=text)

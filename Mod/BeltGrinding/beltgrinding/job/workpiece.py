@@ -17,7 +17,8 @@ class OwnBrep(str):
 def read_design(design, context=None):
     """The design's core.Shape; a mesh becomes a faceted B-rep. Raises InputError, Cancelled."""
     if "file" in design and Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
-        return core.shape_from_mesh(core.read_mesh(design["file"], design["unit_mm"]))
+        mesh = core.read_mesh(design["file"], design["unit_mm"], context=context)
+        return core.shape_from_mesh(mesh, context)
     return read_shape(design, "design", context)
 
 
@@ -61,7 +62,7 @@ def apply_stock(field, stock, warnings, context):
     else:
         if stock["kind"] == "mesh":
             placement = frame_of(stock.get("placement"), "stock.placement")
-            mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement)
+            mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement, context)
         else:
             shape = read_design(stock, context)
             warnings += [

@@ -22,8 +22,10 @@ class Shape {
 
     /// Reads STEP (.step .stp), IGES (.iges .igs) or BREP (.brep .brp), in a process of its own
     /// (`set_cad_reader`): no damaged file takes this one down. Throws InputError naming the file:
-    /// missing, unreadable, damaged, null shape, no faces, longer at it than the environment's
-    /// BELTGRINDING_CAD_TIME_LIMIT_S allows (900 s if unset); Cancelled within 0.1 s.
+    /// missing, no file, unreadable, damaged, null shape, no faces; more than the environment
+    /// allows of time (BELTGRINDING_CAD_TIME_LIMIT_S, 900 s if unset), of memory
+    /// (BELTGRINDING_CAD_MEMORY_LIMIT_MB, half of what this process may use), or of what the reader
+    /// hands over (BELTGRINDING_CAD_ANSWER_LIMIT_MB, half of that); Cancelled within 0.1 s.
     static Shape read(const std::string& path, const RunContext& context = {});
     /// The same for the text of a BREP file that came from elsewhere. `name` stands for the shape
     /// in messages.
@@ -59,9 +61,10 @@ class Shape {
     std::shared_ptr<const Impl> impl_;
 };
 
-/// The program that `Shape::read` runs: the path of `beltgrinding-cad-reader`. Empty: what the
-/// environment's BELTGRINDING_CAD_READER says, else the one beside the library or program that
-/// holds this code, else the one where the library was installed. Thread-safe.
+/// The program that reads foreign files and triangulates, in a process of its own for each call:
+/// the path of `beltgrinding-cad-reader`. Empty: what the environment's BELTGRINDING_CAD_READER
+/// says, else the one beside the library or program that holds this code, else the one where the
+/// library was installed. Thread-safe.
 void set_cad_reader(const std::string& program);
 
 /// How faces are sampled.
@@ -69,7 +72,7 @@ struct SamplingOptions {
     double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions
     bool flip_normals = false;  ///< for loose faces: reverse their normals
     double depth = 1.0;         ///< mm, HeightField::depth
-    std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of the machine's memory
+    std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of what may be used
     bool parameters = false;    ///< fill SamplingReport::parameters
 };
 
@@ -93,12 +96,14 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                          SamplingReport* report = nullptr);
 
 /// Triangulates `faces` (from 0; the whole shape if empty) to a chord error of `deflection` mm;
-/// outward orientation. Throws InputError naming the face that does not exist.
+/// outward orientation. By the reader's process, under its limits, where there is a reader. Throws
+/// InputError naming the face that does not exist, or the limit; Cancelled within 0.1 s.
 TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext& context = {},
                          const std::vector<std::size_t>& faces = {});
 
 /// A faceted shell of planar faces from a mesh that came without a B-rep (an STL design), sewn,
-/// optionally merging coplanar neighbours. Throws InputError for a mesh without a sound triangle.
-Shape shape_from_mesh(const TriangleMesh& mesh);
+/// coplanar neighbours merged. By the reader's process, as `triangulate`. Throws InputError for a
+/// mesh without a sound triangle.
+Shape shape_from_mesh(const TriangleMesh& mesh, const RunContext& context = {});
 
 }  // namespace beltgrinding

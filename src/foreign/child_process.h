@@ -11,14 +11,12 @@
 
 namespace beltgrinding {
 
-/// The file descriptor on which a child gives its answer.
-constexpr int kAnswerDescriptor = 3;
-
 struct ChildRequest {
     std::string program;                 ///< path
     std::vector<std::string> arguments;  ///< after the program's name
     std::string input;                   ///< its standard input
     double time_limit = 0;               ///< s
+    std::size_t memory_limit = 0;        ///< bytes of its own that it may hold
     /// Told all that came so far; how many bytes there will be, 0: no more is wanted.
     std::function<std::size_t(const std::string& so_far)> expected;
 };
@@ -27,6 +25,7 @@ struct ChildAnswer {
     std::string output;      ///< what it wrote to kAnswerDescriptor
     int signal = 0;          ///< that ended it; 0: none, or the host reaps its children by itself
     bool timed_out = false;  ///< it was killed at the time limit
+    bool out_of_memory = false;  ///< it was killed at the memory limit
 };
 
 /// Runs a program until it has written its answer, then ends it. Its output goes nowhere, it

@@ -4,8 +4,12 @@ import hashlib
 import json
 from pathlib import Path
 
+from ..base.regular_files import open_regular
+from ..engine import InputError
+
 BESIDE = (".dat", ".dtx", ".pgx", ".pjx")  # files of a robot program's name that are read with it
 CHUNK = 1 << 20  # bytes
+LARGEST = 1 << 40  # bytes
 
 
 def digests(job):
@@ -16,22 +20,24 @@ def digests(job):
     found = [_held("job", job)]
     for key in ("design", "stock"):
         if "file" in job[key]:
-            found.append(_file(key, Path(job[key]["file"])))
+            found.append(file_digest(key, Path(job[key]["file"])))
         elif "brep" in job[key]:
             found.append(_text(f"{key}.brep", job[key]["brep"]))
     for i, body in enumerate(job["cell"].get("bodies", [])):
         if "file" in body:
-            found.append(_file(f"cell.bodies[{i}]", Path(body["file"])))
+            found.append(file_digest(f"cell.bodies[{i}]", Path(body["file"])))
         else:
             found.append(_text(f"cell.bodies[{i}].brep", body["brep"]))
     for i, program in enumerate(job["programs"]):
         if "file" in program:
-            found += [_file(f"programs[{i}]", path) for path in _program_files(program["file"])]
+            found += [
+                file_digest(f"programs[{i}]", path) for path in _program_files(program["file"])
+            ]
         else:
             found.append(_held(f"programs[{i}].poses", program["poses"]))
     surrogate = job["belt_machine"]["compliance"]["surrogate_file"]
     if surrogate:
-        found.append(_file("belt_machine.compliance.surrogate_file", Path(surrogate)))
+        found.append(file_digest("belt_machine.compliance.surrogate_file", Path(surrogate)))
     return found
 
 
@@ -71,14 +77,15 @@ def _digest(what, file, data):
     }
 
 
-def _file(what, path):
+def file_digest(what, path):
+    """The dict of one file; of what is none (a device would never end) bytes and sha256 are None."""
     found = hashlib.sha256()
     size = 0
     try:
-        with open(path, "rb") as file:
+        with open_regular(path, LARGEST) as file:
             while data := file.read(CHUNK):
                 found.update(data)
                 size += len(data)
-    except OSError:
+    except (OSError, InputError):
         return {"what": what, "file": str(path), "bytes": None, "sha256": None}
     return {"what": what, "file": str(path), "bytes": size, "sha256": found.hexdigest()}

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.frames import to_quaternions
 from ..base.regular_files import read_regular, shown
+from ..base.stopping import check
 from ..engine import Fact, InputError
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
@@ -148,6 +149,7 @@ class Program:
             ]
         rows, previous, aux, lost = [], None, None, False
         for motion, following in zip(motions, [*motions[1:], None]):
+            check()
             if motion.pose is None:
                 lost = True  # where the joint target is, only the robot's geometry tells
                 if rows:  # nor in which direction a corner before it would be rounded

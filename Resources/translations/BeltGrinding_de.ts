@@ -1151,6 +1151,10 @@
         <translation>Genutzte Punkte</translation>
     </message>
     <message>
+        <source>Reading {}</source>
+        <translation>{} wird gelesen</translation>
+    </message>
+    <message>
         <source>Same verdict</source>
         <translation>Gleiches Urteil</translation>
     </message>
@@ -1177,6 +1181,10 @@
     <message>
         <source>as it lies</source>
         <translation>wie er liegt</translation>
+    </message>
+    <message>
+        <source>cancelled</source>
+        <translation>abgebrochen</translation>
     </message>
     <message>
         <source>matrix from a file</source>

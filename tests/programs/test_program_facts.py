@@ -90,7 +90,10 @@ def test_an_error_as_a_reason_keeps_its_place():
     error = ProgramError.at("a.script", 3, "programs.too_long", "the program is too long")
     fact = error.fact
     assert fact == str(error) == "a.script:3: the program is too long"
-    assert sentence(fact, "de") == "a.script:3: das Programm ist zu lang"
+    assert (
+        sentence(fact, "de")
+        == "a.script:3: das Programm ist zu lang oder endet nicht; es aufteilen oder seine Schleifen kürzen"
+    )
 
 
 def test_reasons_that_hang_on_each_other_stay_short():

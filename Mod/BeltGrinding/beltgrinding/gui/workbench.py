@@ -4,10 +4,13 @@ Nothing here needs the compiled core before the workbench is chosen: where that 
 starts all the same, and ``start`` says so.
 """
 
+import threading
+
 import FreeCAD
 import FreeCADGui as Gui
 
 from ..base.resources import resources
+from ..objects import waiting
 from . import languages
 from .common.compat import QtGui
 from .common.icons import icon
@@ -44,8 +47,17 @@ def fill(workbench):
 
 def at_start():
     """Offers the preferences, without what they need: everyone's FreeCAD starts through here."""
+    waiting.wait_in_window = _wait
     Gui.addIconPath(str(resources() / "icons"))
     Gui.addPreferencePage(Preferences, QT_TRANSLATE_NOOP("QObject", "Belt grinding"))
+
+
+def _wait(work, text):
+    if threading.current_thread() is not threading.main_thread():
+        return work(None)  # a macro's own thread holds nothing up, and may show no dialog
+    from .common.waiting import wait  # not above: it needs the core
+
+    return wait(work, text)
 
 
 class Preferences:

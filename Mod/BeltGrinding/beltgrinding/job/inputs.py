@@ -4,8 +4,12 @@ import hashlib
 import json
 from pathlib import Path
 
+from ..base.regular_files import open_regular
+from ..engine import InputError
+
 BESIDE = (".dat", ".dtx", ".pgx", ".pjx")  # files of a robot program's name that are read with it
 CHUNK = 1 << 20  # bytes
+LARGEST = 1 << 40  # bytes
 
 
 def digests(job):
@@ -16,7 +20,7 @@ def digests(job):
     found = [_held("job", job)]
     for what, path, data in _inputs(job):
         if path is not None:
-            found.append(_file(what, path))
+            found.append(file_digest(what, path))
         else:
             found.append(_text(what, data) if isinstance(data, str) else _held(what, data))
     return found
@@ -86,14 +90,15 @@ def _digest(what, file, data):
     }
 
 
-def _file(what, path):
+def file_digest(what, path):
+    """The dict of one file; of what is none (a device would never end) bytes and sha256 are None."""
     found = hashlib.sha256()
     size = 0
     try:
-        with open(path, "rb") as file:
+        with open_regular(path, LARGEST) as file:
             while data := file.read(CHUNK):
                 found.update(data)
                 size += len(data)
-    except OSError:
+    except (OSError, InputError):
         return {"what": what, "file": str(path), "bytes": None, "sha256": None}
     return {"what": what, "file": str(path), "bytes": size, "sha256": found.hexdigest()}

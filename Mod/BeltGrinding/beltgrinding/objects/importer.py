@@ -4,6 +4,7 @@ from pathlib import Path
 
 import FreeCAD
 
+from ..engine import Cancelled
 from . import api
 
 # Suffixes that FreeCAD's spreadsheets and CAM read too: with the workbench open it asks who shall.
@@ -14,9 +15,16 @@ SHARED_TYPE = (
 
 
 def open(path):
-    """Opens a robot program as a new document."""
+    """Opens a robot program as a new document; None where a person cancels it."""
     document = FreeCAD.newDocument(Path(path).stem)
-    api.import_program(document, path)
+    try:
+        api.import_program(document, path)
+    except Cancelled:
+        FreeCAD.closeDocument(document.Name)
+        return None
+    except Exception:
+        FreeCAD.closeDocument(document.Name)
+        raise
     document.recompute()
     return document
 
@@ -25,5 +33,14 @@ def insert(path, name):
     """Imports a robot program into the document ``name``: into its job, if it has just one."""
     document = FreeCAD.getDocument(name)
     jobs = [obj for obj in document.Objects if api.is_job(obj)]
-    api.import_program(jobs[0] if len(jobs) == 1 else document, path)
+    document.openTransaction(FreeCAD.Qt.translate("BeltGrinding", "Import robot program"))
+    try:
+        api.import_program(jobs[0] if len(jobs) == 1 else document, path)
+    except Cancelled:
+        document.abortTransaction()
+        return
+    except Exception:
+        document.abortTransaction()
+        raise
     document.recompute()
+    document.commitTransaction()

@@ -8,6 +8,7 @@ import numpy as np
 import Path
 
 from ..base import frames
+from ..base.stopping import stoppable
 from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
@@ -17,6 +18,7 @@ from . import freecad_path, stored_facts
 from .geometry import matrix
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
+from .waiting import wait
 
 OUTPUTS = (
     Output("Language", "String", "Program", "language of the source"),
@@ -160,9 +162,17 @@ def set_arrays(obj, arrays):
 
 
 def read_arrays(path):
-    """(Program, arrays) of a robot program's file. Raises InputError."""
-    program = read_program(path)
-    arrays = program.path_arrays(DEFAULT_FEED)
+    """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
+    and Cancelled where a person cancels it.
+    """
+
+    def work(context):
+        with stoppable(context):
+            program = read_program(path)
+            return program, program.path_arrays(DEFAULT_FEED)
+
+    text = FreeCAD.Qt.translate("BeltGrinding", "Reading {}").format(os.path.basename(path))
+    program, arrays = wait(work, text)
     count = len(arrays["frames"])
     if count < 2:
         why = ""

@@ -7,8 +7,9 @@ from typing import List, Optional
 
 import numpy as np
 
-from ..base.files import reason_of
 from ..base.frames import to_quaternions
+from ..base.regular_files import read_regular, shown
+from ..base.stopping import check
 from ..engine import Fact, InputError
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
@@ -16,7 +17,11 @@ PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points
 MAX_CHORDS = 10_000
 MAX_ANGLE = 1e6  # of a joint; more is no angle
 MAX_COORDINATE = 1e7  # mm; beyond, a file is damaged
+MAX_FILE = 256 << 20  # bytes of a program's file
+MAX_LINE = 1_000_000  # characters
+MAX_POSES = 2_000_000  # of a program's path, chords of arcs among them
 MAX_UNROLLED = 60_000  # units of work in loops, beyond what the files allow: about a second
+SKIPPED = 8  # statements that are only looked through cost as much as one that is followed
 LOOPED = 4  # a file allows so many times its own work: loops over its points are as long as it
 
 
@@ -39,16 +44,6 @@ class ProgramError(InputError):
     def in_line(self, file, line):
         """The error with its place before it."""
         return self.within("programs.at", "{file}:{line}: ", file=file, line=line)
-
-
-def cannot_be_read(path, error):
-    """The ProgramError of an OSError."""
-    return ProgramError(
-        "files.cannot_be_read",
-        "{file}: cannot be read: {reason}",
-        file=path,
-        reason=reason_of(error),
-    )
 
 
 class Problem(Fact):
@@ -154,6 +149,7 @@ class Program:
             ]
         rows, previous, aux, lost = [], None, None, False
         for motion, following in zip(motions, [*motions[1:], None]):
+            check()
             if motion.pose is None:
                 lost = True  # where the joint target is, only the robot's geometry tells
                 if rows:  # nor in which direction a corner before it would be rounded
@@ -170,6 +166,15 @@ class Program:
             force = -1.0 if motion.force_N is None else motion.force_N
             joints = motion.joints_deg or (math.nan,) * 6
             rows += [[pose, speed, force, rapid, motion.line, joints, math.inf] for pose in poses]
+            if len(rows) > MAX_POSES:
+                raise ProgramError.at(
+                    motion.file,
+                    motion.line,
+                    "programs.too_many_poses",
+                    "the path has more than {limit} poses, chords of its arcs among them; split "
+                    "the program, or give smaller arcs",
+                    limit=MAX_POSES,
+                )
             rows[-1][-1] = _zone(motion, following)
             previous, aux, lost = motion.pose, None, False
         columns = list(zip(*rows)) if rows else [[] for _ in range(7)]
@@ -230,22 +235,40 @@ def _finite(zones, frames):
 def bytes_of(path, language):
     """The bytes of a program's text. Raises ProgramError where there are none, or it is no text."""
     try:
-        raw = Path(path).read_bytes()
-    except OSError as error:
-        raise cannot_be_read(path, error) from None
+        raw = read_regular(path, MAX_FILE)
+    except InputError as error:
+        raise ProgramError.of(error) from None
     if b"\0" in raw:
         raise ProgramError(
             "programs.zero_bytes",
             "{file}: is no {language} text (it holds zero bytes); save it as text",
-            file=str(path),
+            file=shown(path),
             language=language,
         )
     return raw
 
 
+def lines_of(text, file):
+    """The lines of a program's text, whatever ends them. Raises ProgramError for one without end:
+    what looks at a line must not take long, so that reading can be cancelled.
+    """
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    if len(text) > MAX_LINE:
+        for line, one in enumerate(lines, 1):
+            if len(one) > MAX_LINE:
+                raise ProgramError.at(
+                    file,
+                    line,
+                    "programs.long_line",
+                    "the line has more than {limit} characters; break it into several",
+                    limit=MAX_LINE,
+                )
+    return lines
+
+
 def name_of(path):
     """How a program's file is named in messages."""
-    return Path(path).name
+    return shown(Path(path).name)
 
 
 def _arc(start, through, end):

@@ -6,7 +6,9 @@ import contextlib
 import gc
 from pathlib import Path
 
-from .program import ProgramError
+from ..base.regular_files import open_regular, shown
+from ..engine import InputError
+from .program import MAX_FILE, ProgramError
 
 
 def _krl(path):
@@ -120,10 +122,14 @@ def read_program(path):
         raise ProgramError(
             "programs.unknown_suffix",
             "{file}: no robot language is known by '{suffix}'; known: {known}",
-            file=str(path),
-            suffix=path.suffix,
+            file=shown(path),
+            suffix=shown(path.suffix),
             known=known,
         )
+    try:
+        open_regular(path, MAX_FILE).close()  # before anything looks at what lies beside it
+    except InputError as error:
+        raise ProgramError.of(error) from None
     with _no_collection():
         program = reader(path)
     if not program.motions and not program.problems:

@@ -4,8 +4,8 @@ from .messages import report
 
 
 class transaction:
-    """One undo step; aborted, and the error reported, if the block fails. ``panel``: the step stays
-    open for the panel that follows, whose Cancel takes it back.
+    """One undo step; aborted, and the error reported, if the block fails or is cancelled. ``panel``: the
+    step stays open for the panel that follows, whose Cancel takes it back.
     """
 
     def __init__(self, document, name, panel=False):
@@ -22,7 +22,11 @@ class transaction:
                 self.document.commitTransaction()
             return False
         self.failed = True
+        from ...engine import Cancelled  # not above, as in messages
+
         self.document.abortTransaction()
+        if issubclass(kind, Cancelled):
+            return True  # whoever cancels knows
         if issubclass(kind, Exception):
             report(error)
             return True

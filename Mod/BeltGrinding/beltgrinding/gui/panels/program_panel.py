@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...engine import InputError
+from ...engine import Cancelled, InputError
 from ...objects import robot_path, stored_facts
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
@@ -74,6 +74,9 @@ class ProgramPanel(Panel):
             robot_path.load_program(self.obj, self.obj.Source)
             self.source = self.obj.Source
             self.obj.Label = Path(self.obj.Source).stem
+        except Cancelled:
+            self.obj.Source = self.source
+            return
         except InputError as error:
             self.obj.Source = self.source
             self.tell(error_text(error), True)

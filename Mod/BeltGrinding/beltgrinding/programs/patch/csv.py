@@ -40,13 +40,13 @@ def edit(source, work):
                     "the table has no column {column}; add one, empty or not",
                     column=column,
                 )
-            begin, end = _cell(source, line, delimiter, columns[column])
+            begin, end = _cell(source, work, line, delimiter, columns[column])
             had = decimals(source.text[begin:end])
             source.replace(begin, end, decimal(value, max(had, 6), had))
     for line, _, shift in work.targets():
         for column, step in zip(("x_mm", "y_mm", "z_mm"), work.in_base(shift)):
             if step:
-                begin, end = _cell(source, line, delimiter, columns[column])
+                begin, end = _cell(source, work, line, delimiter, columns[column])
                 source.replace(begin, end, moved(source.text[begin:end], step))
 
 
@@ -55,7 +55,7 @@ def _counts(text):
     return text and not text.startswith("#")
 
 
-def _cell(source, line, delimiter, number):
+def _cell(source, work, line, delimiter, number):
     """The span of a value, without blanks and quotes."""
     begin, end = source.span(line)
     quoted, count, first = False, 0, begin
@@ -71,4 +71,4 @@ def _cell(source, line, delimiter, number):
                     last -= 1
                 return first, last
             count, first = count + 1, at + 1
-    raise ValueError("a value is missing")
+    raise work.refuse(line, "programs.patch.value_missing", "a value is missing; change it by hand")

@@ -8,7 +8,8 @@ import re
 
 import numpy as np
 
-from ..readers.krl.reader import ASSIGN, HARMLESS, MOTION, OPENING, SPEED
+from ..readers.krl.blocks import MOTION, OPENING
+from ..readers.krl.reader import ASSIGN, HARMLESS, SPEED
 from .text import SMALL, decimal, moved, plan
 
 ROUNDING_MM = 6e-5

@@ -14,7 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..program import Fact, ProgramError, cannot_be_read
+from ...base.files import cannot_be_written, write_whole
+from ...base.regular_files import shown
+from ..program import Fact, ProgramError, bytes_of, name_of
 from ..registry import read_program
 from .text import SMALL, Overlap, Shift, Source, Work
 
@@ -66,15 +68,13 @@ def _language(name, suffix):
 def read_changes(path):
     """List of changes, a dict each, from a CSV with the columns ``index`` or ``line``, and any of
     ``COLUMNS``; an empty field changes nothing. Raises ProgramError naming the line."""
-    name = Path(path).name
+    name = name_of(path)
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = bytes_of(path, "CSV").decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise ProgramError(
-            "programs.patch.not_utf8", "{file}: is not UTF-8 text", file=str(path)
+            "programs.patch.not_utf8", "{file}: is not UTF-8 text", file=shown(path)
         ) from None
-    except OSError as error:
-        raise cannot_be_read(path, error) from None
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), 1)
@@ -169,7 +169,7 @@ def patch(path, changes, output):
         raise ProgramError(
             "programs.patch.one_by_one",
             "{file}: two changes of the same place; give the changes one by one",
-            file=path.name,
+            file=program.file,
         ) from None
     beside = _data_file(path) if program.language == "KUKA KRL" else None
     with tempfile.TemporaryDirectory() as folder:
@@ -190,27 +190,33 @@ def _data_file(path):
 
 
 def _write(output, written, beside, path):
-    from ...base.files import write_whole
-
     if output.suffix.lower() != path.suffix.lower():
         raise ProgramError(
             "programs.patch.suffix",
             "{file}: the written program must end in {suffix}",
-            file=str(output),
+            file=shown(output),
             suffix=path.suffix,
         )
     if beside:  # a module's poses lie in its data list: one without the other is worth nothing
         copy = output.with_suffix(beside.suffix)
+        data = bytes_of(beside, "KRL")
         if not copy.exists():
-            write_whole(copy, beside.read_bytes())
-        elif copy.read_bytes() != beside.read_bytes():
+            _write_whole(copy, data)
+        elif bytes_of(copy, "KRL") != data:
             raise ProgramError(
                 "programs.patch.beside_differs",
                 "{file}: is there already and differs from {name}",
-                file=str(copy),
-                name=beside.name,
+                file=shown(copy),
+                name=name_of(beside),
             )
-    write_whole(output, written)
+    _write_whole(output, written)
+
+
+def _write_whole(path, data):
+    try:
+        write_whole(path, data)
+    except OSError as error:
+        raise ProgramError.of(cannot_be_written(shown(path), error)) from None
 
 
 def _work(program, changes, source, module):

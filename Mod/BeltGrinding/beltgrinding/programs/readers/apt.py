@@ -9,16 +9,25 @@ GOHOME, feeds per revolution) is a Problem. A FEDRAT without unit is one per min
 
 import math
 import re
-from pathlib import Path
 
-from ..program import MAX_COORDINATE, Fact, Program, ProgramError, Unknown, bytes_of, name_of
+from ...base.stopping import check
+from ..program import (
+    MAX_COORDINATE,
+    Fact,
+    Program,
+    ProgramError,
+    Unknown,
+    bytes_of,
+    lines_of,
+    name_of,
+)
 from .tool_axis import Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
 MAX_CONTINUED = 200  # lines of one statement
 INCH = 25.4  # mm
 RADIUS_ERROR = 0.05  # mm, between an arc's radius at its start and at its end
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?")
 FEED_UNITS = {
     "MMPM": 1.0 / 60.0,
     "IPM": INCH / 60.0,
@@ -40,12 +49,17 @@ MOVING = set("GOHOME HOME CALLSUB CALL COPY INDEX TRACUT ROTATE ROTABL ORIGIN TR
 
 def read(path):
     """The Program of an APT file. Raises ProgramError when it cannot be read at all."""
-    path = Path(path)
-    raw = bytes_of(path, "APT")
+    text = bytes_of(path, "APT").decode("latin-1")
     reader = _Reader(name_of(path))
-    for line, text in reader.statements(re.split(r"\r\n|\n|\r", raw.decode("latin-1"))):
+    for line, text in reader.statements(lines_of(text, reader.file)):
+        check()
         if len(reader.program.motions) > MAX_MOTIONS:
-            raise ProgramError.at(path.name, line, "programs.too_long", "the program is too long")
+            raise ProgramError.at(
+                reader.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
         if not reader.statement(line, text):
             break
     reader.finish()

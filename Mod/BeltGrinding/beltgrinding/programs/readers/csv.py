@@ -2,13 +2,14 @@
 
 import csv
 import math
-from pathlib import Path
 
 import numpy as np
 
 from ...base import frames
+from ...base.regular_files import shown
+from ...base.stopping import check
 from ...engine import InputError
-from ..program import MAX_COORDINATE, Fact, Motion, Program, ProgramError, cannot_be_read, name_of
+from ..program import MAX_COORDINATE, Fact, Motion, Program, ProgramError, bytes_of, name_of
 
 POSITION = ("x_mm", "y_mm", "z_mm")
 QUATERNION = ("qw", "qx", "qy", "qz")
@@ -21,15 +22,13 @@ def read(path):
     """The Program in a CSV file. Raises ProgramError naming file and line."""
     name = name_of(path)
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = bytes_of(path, "CSV").decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise ProgramError(
             "programs.csv.not_utf8",
             "{file}: is not UTF-8 text; save the table as CSV, UTF-8",
-            file=str(path),
+            file=shown(path),
         ) from None
-    except OSError as error:
-        raise cannot_be_read(path, error) from None
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), 1)
@@ -69,6 +68,7 @@ def read(path):
                 count=len(row),
                 columns=len(columns),
             )
+        check()
         program.motions.append(_motion(dict(zip(columns, row)), name, number))
     if not text.endswith(("\n", "\r")):
         program.problem(
@@ -139,7 +139,7 @@ def _motion(row, name, line):
                 "programs.csv.no_number",
                 "{column} is '{text}', no number",
                 column=column,
-                text=row[column].strip(),
+                text=row[column].strip()[:40],
             ) from None
         if not math.isfinite(value):
             raise ProgramError.at(

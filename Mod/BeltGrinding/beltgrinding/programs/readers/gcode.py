@@ -11,17 +11,28 @@ A file that does not say G20 or G21, G90 or G91, is taken in mm and as absolute.
 
 import math
 import re
-from pathlib import Path
 
-from ..program import MAX_COORDINATE, Fact, Program, ProgramError, Unknown, bytes_of, name_of
+from ...base.stopping import check
+from ..program import (
+    MAX_COORDINATE,
+    Fact,
+    Program,
+    ProgramError,
+    Unknown,
+    bytes_of,
+    lines_of,
+    name_of,
+)
 from .tool_axis import Tracer, arc_through, unit
 
 MAX_MOTIONS = 1_000_000
 INCH = 25.4  # mm
 RADIUS_ERROR = 0.05  # mm, between an arc's radius at its start and at its end
 COMMENT = re.compile(r"\([^()]*\)|;.*")
-WORD = re.compile(r"\s*([A-Z])\s*=?\s*([-+]?(?:\d+\.?\d*|\.\d+))(?![\d.]|[A-Z]\w*\s*\()")
-VECTOR = re.compile(r"(?<![A-Z0-9])([ABC])3\s*=\s*([-+]?(?:\d+\.?\d*|\.\d+))(?![\w.])")
+NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
+# What follows a number may be a function's name; without a limit, each word would look at all after it.
+WORD = re.compile(rf"\s*([A-Z])\s*(?:=\s*)?({NUMBER})(?![\d.]|[A-Z]\w{{0,40}}\s{{0,40}}\()")
+VECTOR = re.compile(rf"(?<![A-Z0-9])([ABC])3\s*=\s*({NUMBER})(?![\w.])")
 MACRO = re.compile(r"#|\[|\b(?:IF|WHILE|GOTO|GOTOF|GOTOB|FOR|REPEAT|DEF|R\d+\s*=|Q\d+|CALL)\b|\$")
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 OFFSETS = {54, 55, 56, 57, 58, 59, 500, *range(505, 600), 54.1, 59.1, 59.2, 59.3}
@@ -30,7 +41,7 @@ HARMLESS = {4, 9, 40, 60, 61, 61.1, 62, 63, 64, 80, 94, 99, 98, 601, 602, 603, 6
 HARMLESS |= {5.1, 8, 15, 22, 23, 25, 26, 45, 50, 50.1, 69, 67, 97, 450, 451, 710, 700}
 NAMED = re.compile(
     r"^(?:ORI\w+|CUT2D\w*|SOFT|BRISK|COMP\w+|FFWO[NF]|FIFOCTRL|UPATH|SPATH|MSG|STOPRE|"
-    r"WORKPIECE|T\s*=?\s*\"[^\"]*\"|D\d+|CYCLE832)$"
+    r"WORKPIECE|T\s*(?:=\s*)?\"[^\"]*\"|D\d+|CYCLE832)$"
 )
 # Reasons that hold for many motions of a file, made once.
 MACHINE_COORDINATES = Fact(
@@ -45,12 +56,17 @@ FRAMES = re.compile(r"A?(?:TRANS|ROT|SCALE|MIRROR)S?\b|CYCLE800\b")
 
 def read(path):
     """The Program of a G-code file. Raises ProgramError when it cannot be read at all."""
-    path = Path(path)
-    raw = bytes_of(path, "G-code")
+    text = bytes_of(path, "G-code").decode("latin-1")
     reader = _Reader(name_of(path))
-    for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
+    for line, text in enumerate(lines_of(text, reader.file), 1):
+        check()
         if len(reader.program.motions) > MAX_MOTIONS:
-            raise ProgramError.at(path.name, line, "programs.too_long", "the program is too long")
+            raise ProgramError.at(
+                reader.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
         if not reader.block(line, text):
             break
     else:

@@ -6,19 +6,18 @@ import re
 import numpy as np
 
 from ...base import frames
-from ..program import Fact, Motion, Program, ProgramError, bytes_of, name_of
+from ..program import Fact, Motion, Program, ProgramError, bytes_of, lines_of, name_of
 
 MAX_MOTIONS = 1_000_000
 LARGEST = 1e6  # mm or degrees; beyond it a number is damaged, not taught
-DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+DIGITS = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 NUMBER = DIGITS + r"(?![\w.])"
 
 
-def lines_of(path, language):
+def lines_in(path, language):
     """Lines of a text file, whatever ends them. Raises ProgramError."""
-    raw = bytes_of(path, language)
     # No more than ASCII has meaning; comments come in any code page.
-    return re.split(r"\r\n|\n|\r", raw.decode("latin-1"))
+    return lines_of(bytes_of(path, language).decode("latin-1"), name_of(path))
 
 
 def sound_number(text, limit=LARGEST):
@@ -90,7 +89,10 @@ class TaughtPath:
     def _append(self, motion):
         if len(self.program.motions) >= MAX_MOTIONS:
             raise ProgramError.at(
-                self.file, motion.line, "programs.too_long", "the program is too long"
+                self.file,
+                motion.line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
             )
         if motion.pose is not None:
             frame = (motion.base, motion.tool)

@@ -4,15 +4,22 @@ Namespaces are dropped. Text is kept only where it is asked for; programs have l
 """
 
 import zlib
-from pathlib import Path
 from xml.parsers import expat
 
-from ..program import ProgramError, cannot_be_read, name_of
+from ...base.files import cannot_be_read
+from ...base.regular_files import open_regular, shown
+from ...base.stopping import check
+from ...engine import InputError
+from ..program import MAX_FILE, ProgramError, name_of
 
-MAX_BYTES = 256 * 2**20  # of XML, unpacked
+MAX_UNPACKED = 64 << 20  # bytes that any packed file may unpack to; beyond, MAX_RATIO times its own
+MAX_RATIO = 300  # even programs that say the same again and again are packed to no less
+MAX_BYTES = MAX_FILE  # of XML, unpacked
 MAX_ELEMENTS = 2_000_000
 MAX_DEPTH = 200
-CHUNK = 2**16
+MAX_TOKEN = 1 << 20  # bytes of a tag or a comment: the parser begins each anew with every chunk
+CHUNK = 1 << 20  # bytes
+INDEXED = 8  # children, from which on they are found by their tags
 GZIP = b"\x1f\x8b"
 
 
@@ -20,17 +27,22 @@ class Element:
     """An element: ``tag`` without prefix, ``attributes``, ``line`` in the XML, ``children``,
     ``parent`` and, where asked for, ``text`` that begins in the line ``text_line``."""
 
-    __slots__ = ("tag", "attributes", "line", "children", "parent", "text", "text_line")
+    __slots__ = ("tag", "attributes", "line", "children", "parent", "text", "text_line", "first")
 
     def __init__(self, tag, attributes, line, parent):
         self.tag, self.attributes, self.line, self.parent = tag, attributes, line, parent
         self.children, self.text, self.text_line = (), None, line
+        self.first = None  # child of each tag, once asked for
 
     def get(self, name, default=None):
         return self.attributes.get(name, default)
 
     def find(self, tag):
         """The first child of that tag, or None."""
+        if len(self.children) >= INDEXED:
+            if self.first is None:
+                self.first = {child.tag: child for child in reversed(self.children)}
+            return self.first.get(tag)
         for child in self.children:
             if child.tag == tag:
                 return child
@@ -40,6 +52,7 @@ class Element:
 class _Builder:
     def __init__(self, name, text_of, finished, shared):
         self.name, self.text_of, self.finished = name, text_of, finished
+        self.most = MAX_BYTES
         self.shared, self.kept = shared, {}
         self.root = self.at = None
         self.count = self.depth = self.bytes = 0
@@ -103,13 +116,14 @@ class _Builder:
             self.finished[element.tag](element)
 
     def feed(self, data, last=False):
+        check()
         self.bytes += len(data)
-        if self.bytes > MAX_BYTES:
+        if self.bytes > self.most:
             raise ProgramError(
                 "programs.xml.too_large",
                 "{file}: the XML is larger than {limit} MB",
                 file=self.name,
-                limit=MAX_BYTES // 2**20,
+                limit=self.most >> 20,
             )
         try:
             self.parser.Parse(data, last)
@@ -127,6 +141,11 @@ class _Builder:
             raise ProgramError(
                 "programs.xml.encoding", "{file}: the XML's encoding cannot be read", file=self.name
             ) from None
+        if not last and self.bytes - self.parser.CurrentByteIndex > MAX_TOKEN:
+            raise self.error(
+                "programs.xml.token",
+                "a tag or a comment of the XML does not end within 1 MB; is the file damaged?",
+            )
 
 
 def read_xml(path, text_of=(), finished=None, shared=()):
@@ -136,18 +155,25 @@ def read_xml(path, text_of=(), finished=None, shared=()):
     each such element when it is complete. ``shared``: tags whose attributes often are the same and
     are kept once. Raises ProgramError naming file and line.
     """
-    path = Path(path)
     builder = _Builder(name_of(path), frozenset(text_of), finished or {}, frozenset(shared))
     try:
-        with path.open("rb") as file:
+        with open_regular(path, MAX_FILE) as file:
             packed = file.read(2) == GZIP
+            size = file.seek(0, 2)
             file.seek(0)
-            for data in (
-                _unpacked(file, builder.name) if packed else iter(lambda: file.read(CHUNK), b"")
-            ):
+            if packed:
+                builder.most = min(MAX_BYTES, max(MAX_UNPACKED, MAX_RATIO * size))
+                chunks = _unpacked(file, builder.name)
+            else:
+                chunks = iter(lambda: file.read(CHUNK), b"")
+            for data in chunks:
                 builder.feed(data)
+    except ProgramError:
+        raise
+    except InputError as error:
+        raise ProgramError.of(error) from None
     except OSError as error:
-        raise cannot_be_read(path, error) from None
+        raise ProgramError.of(cannot_be_read(shown(path), error)) from None
     builder.feed(b"", True)
     return builder.root
 

@@ -8,11 +8,13 @@ import re
 
 import numpy as np
 
-from ...program import LOOPED, MAX_UNROLLED, Fact, Motion, ProgramError, Unknown, work_of
-from ..taught import DIGITS, lines_of, pose_of
+from ....base.stopping import check
+from ...program import LOOPED, MAX_UNROLLED, SKIPPED, Fact, Motion, ProgramError, Unknown, work_of
+from ..taught import DIGITS, lines_in, pose_of
 from .positions import positions_of
 from .registers import INDEX, Registers
 
+MAX_CONTINUED = 200  # lines of one statement
 KINDS = {"J": "PTP", "L": "LIN", "C": "CIRC", "A": "A", "S": "SPL"}
 MOTION = re.compile(rf"([JLCAS])\s+(PR|P)\s*{INDEX}\s*(.*)$")
 TARGET = re.compile(rf"\s*(PR|P)\s*{INDEX}\s*(.*)$")
@@ -30,7 +32,9 @@ HARMLESS = re.compile(
     re.IGNORECASE,
 )
 JUMP = re.compile(rf"JMP\s+LBL\s*{INDEX}$")
-FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(.+?)\s+(TO|DOWNTO)\s+(.+)$")
+FOR = re.compile(r"FOR\s+R\[([^\[\]]*)\]\s*=\s*(\S.*?)\s(TO|DOWNTO)\s+(.+)$")
+THEN = re.compile(r"IF(.*)\bTHEN$")
+COMMA = re.compile(r"IF((?:[^,\[(]|\[[^\]]*\]|\((?:[^()]|\([^()]*\))*\))*),(.*)$")
 
 
 def zeither(rest):
@@ -47,7 +51,7 @@ def zeither(rest):
 def read(path):
     """The Program of a .ls file. Raises ProgramError when it cannot be read."""
     reader = _Reader(path)
-    reader.load(lines_of(path, "TP"))
+    reader.load(lines_in(path, "TP"))
     reader.follow()
     reader.close_arc()
     return reader.program
@@ -58,7 +62,10 @@ class _Reader(Registers):
 
     def __init__(self, path):
         super().__init__("Fanuc TP", path)
-        self.statements = []  # (line, text)
+        self.statements = []  # (line, text, whether it ended)
+        self.continued = 0  # lines of the last one after its first
+        self.rounds = 0  # units of work; below 0: what the file allows
+        self.work = [0]  # of the statements before each
         self.positions = {}
         self.uframe = self.utool = None
         self.here = None  # (components, base) of the current pose, None: unknown
@@ -116,8 +123,14 @@ class _Reader(Registers):
         text = text[:-1].rstrip() if ended else text
         if not match.group(1) and self.statements and not self.statements[-1][2]:
             line, before, _ = self.statements[-1]
+            self.continued += 1
+            if self.continued > MAX_CONTINUED:
+                raise self.error(
+                    line, "programs.fanuc.endless_statement", "the statement does not end"
+                )
             self.statements[-1] = (line, f"{before} {text}", ended)
             return
+        self.continued = 0
         if self.statements and not self.statements[-1][2]:
             self.unended(self.statements[-1])
         self.statements.append((number, text, ended))
@@ -155,15 +168,15 @@ class _Reader(Registers):
             int(n) for s in self.statements for n in re.findall(r"JMP\s+LBL\[(\d{1,6})\b", s[1])
         }
         targets = {k for n, k in labels.items() if n in jumps}
-        work = sum(work_of(text) for _, text, _ in self.statements) + 5 * len(self.positions)
-        seen, rounds, at = set(), -LOOPED * work, 0
+        for _, text, _ in self.statements:
+            self.work.append(self.work[-1] + work_of(text))
+        self.rounds = -LOOPED * (self.work[-1] + 5 * len(self.positions))
+        seen, at = set(), 0
         while at is not None and at < len(self.statements):
             line, text, _ = self.statements[at]
-            rounds += work_of(text)
-            if rounds > MAX_UNROLLED:
-                raise self.error(line, "programs.too_long", "the program is too long")
+            self.tick(line, work_of(text))
             if at in targets:
-                rounds += len(self.registers) // 10
+                self.tick(line, len(self.registers) // 10)
                 state = (at, frozenset(self.registers.items()))
                 if state in seen:
                     self.problem(
@@ -184,6 +197,16 @@ class _Reader(Registers):
                 self.here = None
                 self.gap(line)
                 at += 1
+
+    def tick(self, line, work):
+        check()
+        self.rounds += work
+        if self.rounds > MAX_UNROLLED:
+            raise self.error(
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
 
     def statement(self, at, line, text):
         """Executes one statement; the index of the next, None at the end."""
@@ -282,6 +305,8 @@ class _Reader(Registers):
 
     def leave_out(self, line, begin, end, message):
         """Passes over statements that may or may not run."""
+        if begin < end:
+            self.tick(line, (self.work[end] - self.work[begin]) // SKIPPED)
         body = self.statements[begin:end]
         self.forget(body)
         if any(MOTION.match(text) for _, text, _ in body):
@@ -297,8 +322,7 @@ class _Reader(Registers):
         return end
 
     def do_if(self, at, line, text):
-        then = re.match(r"IF\s*(.*?)\s*\bTHEN$", text)
-        split = re.match(r"IF\s*((?:[^,\[(]|\[[^\]]*\]|\((?:[^()]|\([^()]*\))*\))*),(.*)$", text)
+        then, split = THEN.match(text), COMMA.match(text)
         if not then and (not split or split.group(2).lstrip().startswith("IF")):
             raise Unknown("programs.it_is_not_understood", "it is not understood")
         end = self.after_if(at) if then else at + 1
@@ -332,9 +356,11 @@ class _Reader(Registers):
 
     def do_select(self, at, line, text):
         branches = [text]
-        for _, other, _ in self.statements[at + 1 :]:
+        for k in range(at + 1, len(self.statements)):
+            other = self.statements[k][1]
             if not re.match(r"=|ELSE,", other):
                 break
+            self.tick(line, work_of(other))
             branches.append(other)
         actions = [branch.partition(",")[2].strip() for branch in branches]
         return max(self.maybe(at, line, actions), at + len(branches))

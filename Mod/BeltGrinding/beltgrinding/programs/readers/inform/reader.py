@@ -13,8 +13,9 @@ import re
 
 import numpy as np
 
+from ....base.stopping import check
 from ...program import MAX_UNROLLED, Fact, Motion, ProgramError, Reason, Unknown, work_of
-from ..taught import NUMBER, TaughtPath, lines_of, pose_of
+from ..taught import NUMBER, TaughtPath, lines_in, pose_of
 from .positions import positions_of
 
 MOVE = re.compile(r"(MOV[JLCS]|IMOV)(?=\s|$)\s*(.*)$")
@@ -59,7 +60,7 @@ def zeither(rest):
 def read(path):
     """The Program of a .jbi file. Raises ProgramError when it cannot be read."""
     reader = _Reader(path)
-    reader.load(lines_of(path, "INFORM"))
+    reader.load(lines_in(path, "INFORM"))
     reader.follow()
     reader.close_arc()
     return reader.program
@@ -125,10 +126,14 @@ class _Reader(TaughtPath):
         rounds = -sum(work_of(text) for _, text in self.statements)
         while at is not None and at < len(self.statements):
             line, text = self.statements[at]
+            check()
             rounds += work_of(text)
             if rounds > MAX_UNROLLED:
                 raise ProgramError.at(
-                    self.file, line, "programs.too_long", "the program is too long"
+                    self.file,
+                    line,
+                    "programs.too_long",
+                    "the program is too long or does not end; split it, or shorten its loops",
                 )
             word = re.match(r"\w*", text).group(0)
             if word == "JUMP":

@@ -7,7 +7,7 @@ from ....base.frames import from_abc, to_abc
 from ...program import Fact, Unknown
 
 TOKEN = re.compile(
-    r"""\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
+    r"""\s*(?:(?P<number>(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
         |(?P<string>"[^"]*")
         |(?P<enum>\#\w+)
         |(?P<name>\$?[A-Za-z_][\w$]*(?:\.[A-Za-z_]\w*)*)
@@ -25,6 +25,7 @@ FUNCTIONS = {
     "abs": abs,
 }
 MAX_DEPTH = 50
+MAX_COMPONENTS = 100  # of an aggregate
 MAX_LENGTH = 1e12  # mm; products of frames stay finite
 
 
@@ -107,6 +108,8 @@ class Reader:
         if operator in ("==", "<>", "<", ">", "<=", ">="):
             self.at += 1
             right = self.sum()
+            if isinstance(left, dict) or isinstance(right, dict):
+                raise Unknown("programs.krl.not_compared", "aggregates are not compared")
             same = {"==": left == right, "<>": left != right}
             if operator in same:
                 left = same[operator]
@@ -168,7 +171,7 @@ class Reader:
             value = float(text)
             if not math.isfinite(value):
                 raise Unknown(
-                    "programs.number_too_large", "{text} is too large a number", text=text
+                    "programs.number_too_large", "{text} is too large a number", text=text[:20]
                 )
             return value
         if kind in ("string", "enum"):
@@ -245,6 +248,12 @@ class Reader:
                     name=name.upper(),
                 )
             result[name] = self.expression()
+            if len(result) > MAX_COMPONENTS:
+                raise Unknown(
+                    "programs.krl.components",
+                    "the aggregate has more than {limit} components",
+                    limit=MAX_COMPONENTS,
+                )
             if self.accept("}"):
                 return result
             self.expect(",")

@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ....base.stopping import check
 from ...program import (
     LOOPED,
     MAX_COORDINATE,
     MAX_UNROLLED,
+    SKIPPED,
     Fact,
     Motion,
     Program,
@@ -21,35 +23,26 @@ from ...program import (
     Unknown,
     bytes_of,
     joint_angles,
+    lines_of,
     name_of,
     work_of,
 )
-from .expression import FRAME, Reader, components_of, frame_of, number
+from .blocks import MOTION, OPENING, Routine, word_of
+from .expression import FRAME, MAX_COMPONENTS, Reader, components_of, frame_of, number
+from .values import Values
 
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
 MAX_NESTING = 60
 MAX_SPEED = 1e6  # m/s; beyond, the file is damaged
-MOTION = re.compile(
-    r"^(PTP_REL|LIN_REL|CIRC_REL|SPTP_REL|SLIN_REL|SPTP|SLIN|SCIRC|SPL|PTP|LIN|CIRC)\b\s*(.*)$",
-    re.IGNORECASE,
-)
 ASSIGN = re.compile(
-    r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:(\w+)\s+)?([$\w.]+)\s*(\[[^\]]*\])?\s*=(?!=)(.*)$", re.I
+    r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:(\w+)\s+)?([$\w.]+)\s*(?:(\[[^\]]*\])\s*)?=(?!=)(.*)$", re.I
 )
-FOR = re.compile(r"^FOR\s+(\w+)\s*=\s*(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE)
+FOR = re.compile(r"^FOR\s+(\w+)\s*=\s*(\S.*?)\sTO\s+(.+?)(?:\sSTEP\s+(.+))?$", re.IGNORECASE)
 CALL = re.compile(r"^([A-Za-z_]\w*)\s*\((.*)\)$")
 SPEED = re.compile(r"(?:\$VEL\.CP\s*=|SVEL_CP\s*\()\s*([^,)\s]+)", re.IGNORECASE)
 SETS_SPEED = re.compile(r"\$VEL(?:\.CP)?\s*=|BAS\s*\(\s*#(?:CP_PARAMS|VEL_CP)\b", re.IGNORECASE)
 APPROXIMATION = re.compile(r"\bC_(?:DIS|SPL|VEL|ORI|PTP)\b", re.IGNORECASE)
-OPENING = {
-    "for": "endfor",
-    "if": "endif",
-    "while": "endwhile",
-    "loop": "endloop",
-    "repeat": "until",
-    "switch": "endswitch",
-}
 # Words that begin a statement without a motion and without a value that a path depends on.
 QUIET = set(
     "decl int real bool char frame pos e3pos e6pos axis e3axis e6axis fdat ldat pdat struc enum "
@@ -83,7 +76,9 @@ def read(path):
         interpreter.run(_statements(path))
     except RecursionError:
         raise ProgramError(
-            "programs.krl.nested", "{file}: calls and blocks are nested too deeply", file=path.name
+            "programs.krl.nested",
+            "{file}: calls and blocks are nested too deeply",
+            file=interpreter.file,
         ) from None
     return interpreter.program
 
@@ -92,16 +87,12 @@ def _statements(path):
     """(line number, statement) without comments, folds and header lines."""
     raw = bytes_of(path, "KRL")
     result = []
-    for line, text in enumerate(re.split(r"\r\n|\n|\r", raw.decode("latin-1")), 1):
+    for line, text in enumerate(lines_of(raw.decode("latin-1"), name_of(path)), 1):
+        check()
         text = re.sub(r'("[^"]*")|;.*', lambda m: m.group(1) or "", text).strip()
         if text and not text.startswith("&"):
             result.append((line, text))
     return result
-
-
-def _word(text):
-    match = re.match(r"\w+", text)
-    return match.group(0).lower() if match else ""
 
 
 class _Leave(Exception):
@@ -114,7 +105,7 @@ class _Interpreter:
     def __init__(self, name):
         self.program = Program("KUKA KRL", name)
         self.file = name
-        self.values = {}
+        self.values = Values()
         self.here = None  # components of the current pose, None: unknown
         self.speed = self.around = None  # around: before the spline block
         self.spline = False  # within a SPLINE block
@@ -125,6 +116,11 @@ class _Interpreter:
 
     def problem(self, line, told, text=None, /, **arguments):
         self.program.problem(self.file, line, told, text, **arguments)
+
+    def component(self, name, component):
+        """The component's value; None where it, or the aggregate, is not known."""
+        value = self.values.get((name, ()))
+        return value.get(component) if isinstance(value, dict) else None
 
     def lookup(self, name, indices):
         if name == "$nullframe":
@@ -187,8 +183,9 @@ class _Interpreter:
             return
         self.values[name, indices] = value
         head, _, component = name.rpartition(".")
-        if head and isinstance(self.values.get((head, ())), dict):
-            self.values[head, ()][component] = value
+        inner = self.values.get((head, ())) if head else None
+        if isinstance(inner, dict) and (component in inner or len(inner) < MAX_COMPONENTS):
+            inner[component] = value
         if name == "$vel.cp":
             self.set_speed(value, line)
         elif name == "$vel" and isinstance(value, dict) and "cp" in value:
@@ -218,7 +215,7 @@ class _Interpreter:
         order = []
         for line, text in statements:
             self.rounds -= LOOPED * work_of(text)
-            word = _word(text)
+            word = word_of(text)
             if word in ("def", "deffct") or text.lower().startswith("global def"):
                 match = re.search(r"(\w+)\s*\(", text)
                 name, body = (match.group(1).lower() if match else f"?{line}"), []
@@ -231,8 +228,10 @@ class _Interpreter:
             elif not order:  # an excerpt without its DEF
                 name, body = "", [(line, text)]
                 order.append(body)
+        self.routines = {key: Routine(body) for key, body in self.routines.items()}
         if order:
-            self.routine(order[0])
+            first = next((r for r in self.routines.values() if r.statements is order[0]), None)
+            self.routine(first or Routine(order[0]))
         if name:
             self.problem(
                 statements[-1][0],
@@ -240,9 +239,9 @@ class _Interpreter:
                 "the routine has no END; the file may be cut off",
             )
 
-    def routine(self, statements):
+    def routine(self, routine):
         try:
-            self.block(statements)
+            self.block(routine, 0, len(routine.statements))
         except _Leave as leave:
             if leave.args[0] != "return":
                 self.problem(
@@ -252,52 +251,49 @@ class _Interpreter:
                 )
 
     def tick(self, line, work):
+        check()
         self.rounds += work
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError.at(self.file, line, "programs.too_long", "the program is too long")
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
 
-    def block(self, statements):
-        at = 0
-        while at < len(statements):
-            line, text = statements[at]
+    def block(self, routine, at, end):
+        """Runs a routine's statements from ``at`` to before ``end``."""
+        while at < end:
+            line, text = routine.statements[at]
             self.tick(line, work_of(text))
-            word = _word(text)
-            if word in OPENING:
-                end = self.closing(statements, at, word)
-                if end is None:
-                    self.problem(
-                        line,
-                        "programs.krl.no_block_end",
-                        "{word} has no {end}",
-                        word=word.upper(),
-                        end=OPENING[word].upper(),
-                    )
-                    return
-                if self.depth >= MAX_NESTING:
-                    raise ProgramError.at(
-                        self.file, line, "programs.nested_blocks", "blocks are nested too deeply"
-                    )
-                self.depth += 1
-                try:
-                    self.structure(word, line, text, statements[at + 1 : end])
-                finally:
-                    self.depth -= 1
-                at = end + 1
+            word = word_of(text)
+            if word not in OPENING:
+                self.statement(line, text, word)
+                at += 1
                 continue
-            self.statement(line, text, word)
-            at += 1
-
-    @staticmethod
-    def closing(statements, at, word):
-        depth = 0
-        for k in range(at, len(statements)):
-            other = _word(statements[k][1])
-            depth += (other == word) - (other == OPENING[word])
-            if depth == 0:
-                return k
-        return None
+            last = routine.closing.get(at, end)
+            if last >= end:
+                self.problem(
+                    line,
+                    "programs.krl.no_block_end",
+                    "{word} has no {end}",
+                    word=word.upper(),
+                    end=OPENING[word].upper(),
+                )
+                return
+            if self.depth >= MAX_NESTING:
+                raise ProgramError.at(
+                    self.file, line, "programs.nested_blocks", "blocks are nested too deeply"
+                )
+            self.depth += 1
+            try:
+                self.structure(word, line, text, (routine, at + 1, last))
+            finally:
+                self.depth -= 1
+            at = last + 1
 
     def structure(self, word, line, text, body):
+        """``body``: the routine, the first statement in the block, the one that ends it."""
         if word == "for":
             self.loop(line, text, body)
         elif word == "if":
@@ -324,7 +320,7 @@ class _Interpreter:
     def within(self, body):
         """Runs a loop's statements; False after EXIT."""
         try:
-            self.block(body)
+            self.block(*body)
         except _Leave as leave:
             if leave.args[0] != "exit":
                 raise
@@ -332,17 +328,19 @@ class _Interpreter:
         return True
 
     def skipped(self, line, message, body):
-        if any(MOTION.match(text) for _, text in body):
+        routine, begin, end = body
+        if routine.moves(begin, end):
             self.problem(line, message)
 
     def forget(self, body):
         """What a block assigns that may or may not run is unknown afterwards."""
-        for line, text in body:
+        routine, begin, end = body
+        self.tick(routine.statements[begin - 1][0], routine.work(begin, end) // SKIPPED)
+        for k in range(begin, end):
+            line, text = routine.statements[k]
             match = ASSIGN.match(text)
             if match:
-                name = match.group(2).lower()
-                for key in [k for k in self.values if k[0] == name]:
-                    del self.values[key]
+                self.values.forget(match.group(2).lower())
             if SETS_SPEED.match(text) and self.speed is not None:
                 self.problem(
                     line,
@@ -354,12 +352,8 @@ class _Interpreter:
                 self.here = None
 
     def branch(self, line, text, body):
-        depth, split = 0, len(body)
-        for k, (_, other) in enumerate(body):
-            word = _word(other)
-            depth += (word == "if") - (word == "endif")
-            if word == "else" and depth == 0:
-                split = k
+        routine, begin, end = body
+        split = routine.elses.get(begin - 1, end)
         condition = re.sub(r"(?i)^IF\b|\bTHEN\s*$", "", text)
         try:
             known = self.evaluate(condition)
@@ -378,7 +372,10 @@ class _Interpreter:
             )
             self.forget(body)
             return
-        self.block(body[:split] if known else body[split + 1 :])
+        if known:
+            self.block(routine, begin, split)
+        else:
+            self.block(routine, split + 1, end)
 
     def loop(self, line, text, body):
         match = FOR.match(text)
@@ -464,7 +461,7 @@ class _Interpreter:
             what, _, value = arguments.partition(",")
             if what.strip().lower() in ("#cp_params", "#vel_cp"):
                 self.speed_text(value, line)
-                distance = self.values.get(("ldat_act", ()), {}).get("apo_dist")
+                distance = self.component("ldat_act", "apo_dist")
                 if isinstance(distance, float):  # what BAS makes of an inline form's CONT
                     self.values["$apo.cdis", ()] = distance
         elif name in self.routines and not arguments.strip():
@@ -575,8 +572,8 @@ class _Interpreter:
             return 0.0
         if words & {"c_dis", "c_spl"} and "$apo" not in text.lower():  # WITH $APO: not followed
             distance = self.values.get(("$apo.cdis", ()))
-            if distance is None and isinstance(self.values.get(("$apo", ())), dict):
-                distance = self.values["$apo", ()].get("cdis")
+            if distance is None:
+                distance = self.component("$apo", "cdis")
             known = isinstance(distance, float) and math.isfinite(distance)
             return max(0.0, distance) if known else None
         return None

@@ -2,7 +2,8 @@
 
 import re
 
-from ...program import MAX_UNROLLED, Fact, ProgramError, Unknown, work_of
+from ....base.stopping import check
+from ...program import MAX_UNROLLED, SKIPPED, Fact, ProgramError, Unknown, work_of
 from . import data
 from .calls import HARMLESS, Jump
 from .data import number
@@ -12,7 +13,7 @@ from .text import Node
 
 MAX_MOTIONS = 1_000_000
 FOR = re.compile(
-    r"FOR\s+(\w+)\s+FROM\s+(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
+    r"FOR\s+(\w+)\s+FROM\s+(\S.*?)\sTO\s+(.+?)(?:\sSTEP\s+(.+))?$", re.IGNORECASE | re.DOTALL
 )
 TARGET = re.compile(r"\s*(\w+)\s*(?:\{[^}]*\}\s*|\.\s*\w+\s*)*:=")
 
@@ -23,14 +24,21 @@ class Control(MotionRunner):
     def __init__(self, path):
         super().__init__(path)
         self.routines = {}  # (node, parameters, body) by name
+        self.labels = {}  # places of labels in a block, by the id of its list
         self.rounds = 0  # units of work; below 0: what the file allows
         self.line = 1
 
     def tick(self, line, rounds=1):
+        check()
         self.line = line
         self.rounds += rounds
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-            raise ProgramError.at(self.file, line, "programs.too_long", "the program is too long")
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
 
     def block(self, nodes):
         at = 0
@@ -41,10 +49,7 @@ class Control(MotionRunner):
             try:
                 self.statement(node)
             except Jump as jump:
-                label = next(
-                    (k for k, n in enumerate(nodes) if n.word == "label" and n.text == jump.label),
-                    None,
-                )
+                label = self.labels_of(nodes).get(jump.label)
                 if label is None:
                     raise
                 if label >= at:
@@ -57,22 +62,31 @@ class Control(MotionRunner):
                         label=jump.label,
                     )
 
+    def labels_of(self, nodes):
+        """{label: its place} in a block."""
+        if id(nodes) not in self.labels:
+            found = {}
+            for k, node in enumerate(nodes):
+                if node.word == "label":
+                    found.setdefault(node.text, k)
+            self.labels[id(nodes)] = (found, nodes)  # the list is kept, for its id to stay its own
+        return self.labels[id(nodes)][0]
+
     def copy(self, value, line):
-        """A copy of data; large data counts as many statements."""
-        result = data.copied(value)
-        if isinstance(value, list):
-            self.tick(line, len(value) // 8)
-            for part in value:
-                if isinstance(part, list):
-                    self.tick(line, len(part) // 8)
-        return result
+        """A copy of data; large data counts as many statements. Raises Unknown beyond reason."""
+        size = data.bounded_size(value, data.MAX_ARRAY)
+        if size > data.MAX_ARRAY:
+            raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
+        if size > data.MAX_RECORD:
+            self.tick(line, size // 8)
+        return data.copied(value)
 
     def skip(self, nodes, line, message):
         """Leaves out statements that may or may not run: what they change is unknown then."""
         moves, stack, entered = False, list(nodes), set()
         while stack:
             node = stack.pop()
-            self.tick(line)
+            self.tick(line, 1 + work_of(node.text) // SKIPPED)
             stack += node.body or []
             words = [w.lower() for w in re.findall(r"\w+", node.text)]
             target = TARGET.match(node.text)
@@ -94,14 +108,11 @@ class Control(MotionRunner):
             self.gap(line)
 
     def if_(self, node):
-        branches = [(node.line, re.sub(r"(?i)^IF\b", "", node.text), [])]
-        for inner in node.body:
-            if inner.word in ("elseif", "else"):
-                condition = "TRUE" if inner.word == "else" else inner.text[6:]
-                branches.append((inner.line, condition, []))
-            else:
-                branches[-1][2].append(inner)
-        for k, (line, condition, body) in enumerate(branches):
+        branches = node.divided(("elseif", "else"))
+        for k, (inner, body) in enumerate(branches):
+            line, condition = inner.line, re.sub(r"(?i)^(?:ELSE)?IF\b", "", inner.text)
+            condition = "TRUE" if inner.word == "else" else condition
+            self.tick(line, work_of(condition) if k else 0)
             try:
                 known = truth(self.value(tokens(condition)))
             except Unknown as unknown:
@@ -111,7 +122,7 @@ class Control(MotionRunner):
                     reason=unknown.fact,
                     word="IF",
                 )
-                self.skip([n for b in branches[k:] for n in b[2]], line, message)
+                self.skip([n for b in branches[k:] for n in b[1]], line, message)
                 return
             if known:
                 self.block(body)
@@ -133,6 +144,7 @@ class Control(MotionRunner):
             return
         rest = text_after(node.text, reader.at + 1)
         word = re.match(r"\w+", rest)
+        self.tick(node.line, work_of(rest))
         if known and word:
             self.statement(Node(node.line, word.group().lower(), rest))
         elif not word:
@@ -183,7 +195,7 @@ class Control(MotionRunner):
             return
         try:
             while truth(self.value(tokens(condition))):
-                self.tick(node.line)
+                self.tick(node.line, work_of(condition))
                 self.block(node.body)
         except Unknown as unknown:
             message = Fact(
@@ -195,23 +207,18 @@ class Control(MotionRunner):
             self.skip(node.body, node.line, message)
 
     def test_(self, node):
-        cases, otherwise, bodies = [], None, []
-        for inner in node.body:
-            if inner.word in ("case", "default"):
-                bodies.append([])
-                if inner.word == "case":
-                    cases.append((inner, bodies[-1]))
-                else:
-                    otherwise = bodies[-1]
-            elif bodies:
-                bodies[-1].append(inner)
+        otherwise = []
         try:
             value = self.value(tokens(re.sub(r"(?i)^TEST\b", "", node.text)))
-            for inner, body in cases:
+            for inner, body in node.divided(("case", "default"))[1:]:
+                if inner.word == "default":
+                    otherwise = body
+                    continue
+                self.tick(inner.line, work_of(inner.text))
                 if any(value == self.value(row) for row in arguments(tokens(inner.text[4:]))[0]):
                     break
             else:
-                body = otherwise or []
+                body = otherwise
         except Unknown as unknown:
             message = Fact(
                 "programs.decided_at_run_time",

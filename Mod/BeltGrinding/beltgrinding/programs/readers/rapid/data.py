@@ -10,7 +10,10 @@ from ....base.frames import QUATERNION_TOLERANCE, from_quaternion, to_abc
 from ...program import Fact, Unknown
 
 MAX_MM = 1e6  # a robot's world ends before; RAPID writes 9E9 for 'not given'
-MAX_ARRAY = 1_000_000
+MAX_ARRAY = 1_000_000  # values in one variable
+MAX_RECORD = 200  # lists and values in a record; what has more is an array
+MAX_DIMENSIONS = 3  # RAPID has no more
+MAX_RECORDS = 10  # records in each other
 A_POSITION = Fact("programs.rapid.position", "a position")
 AN_ORIENTATION = Fact("programs.rapid.orientation", "an orientation")
 A_POS = Fact("programs.rapid.pos", "a pos")
@@ -85,9 +88,11 @@ PREDEFINED = {
 
 def initial(kind, records, depth=0):
     """The value of declared data without one. Raises Unknown for the controller's own types."""
+    if depth == 0 and _size_of(kind, records, {}) > MAX_ARRAY:
+        raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
     if kind in SIMPLE:
         return SIMPLE[kind]
-    if kind not in records or depth > 10:
+    if kind not in records or depth > MAX_RECORDS:
         raise Unknown(
             "programs.type_of_controller",
             "data of the type {kind} is known to the controller only",
@@ -96,9 +101,22 @@ def initial(kind, records, depth=0):
     return [initial(inner, records, depth + 1) for inner in records[kind].values()]
 
 
+def _size_of(kind, records, known, depth=0):
+    """How many values a type holds: each type is looked at once, or they would be counted for ever."""
+    if kind not in records or depth > MAX_RECORDS:
+        return 1
+    if kind not in known:
+        known[kind] = 1  # one that holds itself: ``initial`` refuses it
+        inner = (_size_of(one, records, known, depth + 1) for one in records[kind].values())
+        known[kind] = min(sum(inner), 2 * MAX_ARRAY)
+    return known[kind]
+
+
 def array(dimensions, value):
     """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
-    if min(dimensions) < 1 or math.prod(dimensions) * size(value) > MAX_ARRAY:
+    if min(dimensions) < 1 or len(dimensions) > MAX_DIMENSIONS:
+        raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
+    if math.prod(dimensions) * size(value) > MAX_ARRAY:
         raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
     if len(dimensions) == 1:
         return [copied(value) for _ in range(dimensions[0])]
@@ -108,6 +126,20 @@ def array(dimensions, value):
 def size(value):
     """How many numbers, strings and truth values data holds."""
     return sum(map(size, value)) if isinstance(value, list) else 1
+
+
+def bounded_size(value, most):
+    """How many lists and values data are made of, counted to beyond ``most``: what holds the same list
+    many times over has no end otherwise."""
+    count, stack = 0, [value]
+    while stack and count <= most:
+        one = stack.pop()
+        count += 1
+        if isinstance(one, list):
+            if len(one) > most:
+                return most + 1
+            stack += one
+    return count
 
 
 def copied(value):

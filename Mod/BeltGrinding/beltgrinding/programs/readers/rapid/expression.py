@@ -6,12 +6,12 @@ import math
 import re
 
 from ...program import Fact, Unknown
-from .data import A_POS, AN_ORIENT, cross, number, numbers, turn
+from .data import A_POS, AN_ORIENT, MAX_RECORD, bounded_size, cross, number, numbers, turn
 from .functions import FUNCTIONS
 
 TOKEN = re.compile(
     r"""\s*(?:(?P<number>(?:0[xX][0-9a-fA-F]+|0[bB][01]+|0[oO][0-7]+
-            |(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![\w.]))
+            |(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![\w.]))
         |(?P<string>"(?:[^"\n]|"")*")
         |(?P<name>[^\W\d]\w*)
         |(?P<op>:=|<=|>=|<>|[-+*/:(){}\[\],.=<>\\]))""",
@@ -19,12 +19,13 @@ TOKEN = re.compile(
 )
 # Brackets with nothing but decimal numbers: nearly all of a long program.
 LITERAL = re.compile(r"[-+.0-9eE,\s\[\]]*")
+NUMBERS = re.compile(r"(?:\[\s{0,80}){1,6}[-+.0-9]")
+MAX_FAILURES = 20
 DECODER = json.JSONDecoder(parse_int=float)
 BASES = {"x": 16, "b": 2, "o": 8}
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
 END = Fact("programs.end_of_statement", "the end of the statement")
 MAX_DEPTH = 50
-MAX_COMPARED = 16  # components of a record
 
 
 @functools.lru_cache(maxsize=4096)
@@ -43,7 +44,7 @@ def text_after(text, count):
 
 
 def _scan(text):
-    at = 0
+    at = failed = failures = 0
     text = text.rstrip()
     while at < len(text):
         match = TOKEN.match(text, at)
@@ -53,21 +54,29 @@ def _scan(text):
             )
         kind = match.lastgroup
         if kind == "op" and match.group(kind) == "[":
-            literal = _literal(text, match.end() - 1)
-            if literal:
-                at = literal[1]
-                yield ("value", literal[0]), at
-                continue
+            # Brackets within one that is no literal are read one by one, and so are all after some
+            # failures: each costs what is before it.
+            begin = match.end() - 1
+            if begin >= failed and failures < MAX_FAILURES and NUMBERS.match(text, begin):
+                literal, end = _literal(text, begin)
+                if literal is not None:
+                    at = end
+                    yield ("value", literal), at
+                    continue
+                failed, failures = end, failures + 1
         at = match.end()
         yield (kind, match.group(kind)), at
 
 
 def _literal(text, at):
+    """(value, its end), or (None, where it cannot be one)."""
     try:
         value, end = DECODER.raw_decode(text, at)
+    except json.JSONDecodeError as error:
+        return None, error.pos
     except (ValueError, RecursionError):
-        return None
-    return (value, end) if LITERAL.fullmatch(text, at, end) else None
+        return None, len(text)
+    return (value if LITERAL.fullmatch(text, at, end) else None), end
 
 
 def arguments(row):
@@ -200,7 +209,7 @@ class Reader:
         self.at += 1
         right = self.sum()
         if operator in ("=", "<>"):
-            if isinstance(left, list) and len(left) > MAX_COMPARED:
+            if bounded_size(left, MAX_RECORD) > MAX_RECORD:
                 raise Unknown("programs.rapid.arrays_not_compared", "arrays are not compared")
             return (left == right) == (operator == "=")
         left, right = number(left), number(right)

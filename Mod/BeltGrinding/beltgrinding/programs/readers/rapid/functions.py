@@ -5,6 +5,7 @@ They raise Unknown, or what a wrong number or kind of arguments raises in Python
 
 import math
 
+from ...program import Unknown
 from .data import (
     A_POS,
     A_POSITION,
@@ -20,6 +21,8 @@ from .data import (
 
 
 def _offs(point, x, y, z):
+    if not isinstance(point, list) or len(point) > 4:
+        raise Unknown("programs.rapid.no_position", "it is no position with an orientation")
     position = numbers(point[0], 3, A_POSITION)
     return [[p + number(d) for p, d in zip(position, (x, y, z))], *point[1:]]
 

@@ -9,7 +9,7 @@ import numpy as np
 from ....base.frames import from_quaternions
 from ...program import Fact, Motion, Program, Unknown, joint_angles, name_of, shortened
 from . import data
-from .data import PREDEFINED, copied, inverse, number, pose_of, product
+from .data import PREDEFINED, inverse, number, pose_of, product
 from .expression import Reader, arguments, tokens
 
 TOOL = Fact("programs.rapid.tool", "tool")
@@ -40,12 +40,16 @@ def spec_of(word):
 
 
 class State:
-    """Data by name: [type, value (None: not known), the text of a value not asked for yet]."""
+    """Data by name: [type, value (None: not known), line and text of a value not asked for yet].
+
+    ``copy(value, line)`` is what ``Control`` adds.
+    """
 
     def __init__(self):
         self.globals = {}
         self.locals = None  # of the running routine
         self.records = dict(data.RECORDS)
+        self.components = {}  # {type: {component: (place, type)}}, of those asked for
         self.resolving = 0
         self.constants = set()
         self.reasons = {}  # why a value is not known
@@ -92,10 +96,10 @@ class State:
                 "{name} is defined by too many constants",
                 name=name,
             )
-        text = entry.pop()
+        line, text = entry.pop()
         self.resolving += 1
         try:
-            entry[1] = copied(self.value(tokens(text)))
+            entry[1] = self.copy(self.value(tokens(text)), line)
         except Unknown as unknown:
             self.reasons[name] = unknown.fact
         finally:
@@ -103,7 +107,10 @@ class State:
 
     def component(self, kind, name):
         """(index, type) of a record's component. Raises Unknown."""
-        names = self.records.get(kind, {})
+        if kind not in self.components:
+            names = self.records.get(kind, {})
+            self.components[kind] = {one: (k, names[one]) for k, one in enumerate(names)}
+        names = self.components[kind]
         if str(name).lower() not in names:
             raise Unknown(
                 "programs.rapid.no_component_of_type",
@@ -111,7 +118,7 @@ class State:
                 kind=kind,
                 name=name,
             )
-        return list(names).index(name.lower()), names[name.lower()]
+        return names[name.lower()]
 
     def store(self, name, value):
         entry = self.entry(name)

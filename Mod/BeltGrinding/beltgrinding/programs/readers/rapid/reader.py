@@ -17,7 +17,7 @@ from .text import tree
 
 MAX_CALLS = 20
 DECLARATION = re.compile(
-    r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(\{[^}]*\})?\s*(?::=(.*))?$",
+    r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(?:(\{[^}]*\})\s*)?(?::=(.*))?$",
     re.IGNORECASE | re.DOTALL,
 )
 ROUTINE = re.compile(r"(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
@@ -154,7 +154,7 @@ class _Interpreter(Control):
                     "{name} is given no value",
                     name=name,
                 )
-            scope[name].append(text)
+            scope[name].append((node.line, text))
             return
         try:
             value = data.initial(kind, self.records)

@@ -7,7 +7,7 @@ Statements end in ';' or a keyword, not at a line's end. A module the controller
 import re
 from pathlib import Path
 
-from ...program import Fact, ProgramError, bytes_of, name_of
+from ...program import Fact, ProgramError, bytes_of, lines_of, name_of
 
 MAX_NESTING = 60
 CLOSED_BY = {
@@ -58,10 +58,24 @@ NO_CONTINUATION = re.compile(
 class Node:
     """A statement: its line, its first word in lower case, its text, what a block encloses."""
 
-    __slots__ = ("line", "word", "text", "body")
+    __slots__ = ("line", "word", "text", "body", "parts")
 
     def __init__(self, line, word, text, body=None):
         self.line, self.word, self.text, self.body = line, word, text, body
+        self.parts = None  # what a reader finds in the body, once
+
+    def divided(self, words):
+        """List of (node, statements) of the body: what follows each node whose word is among
+        ``words``; what stands before the first has the node itself.
+        """
+        if self.parts is None:
+            self.parts = [(self, [])]
+            for inner in self.body:
+                if inner.word in words:
+                    self.parts.append((inner, []))
+                else:
+                    self.parts[-1][1].append(inner)
+        return self.parts
 
 
 def tree(path):
@@ -126,7 +140,7 @@ def _text(path):
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return "\n".join(lines_of(text, name_of(path)))
 
 
 def _without_comments(text, name):

@@ -8,9 +8,20 @@ kinematics) is a Problem.
 """
 
 import re
-from pathlib import Path
 
-from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, name_of
+from ....base.stopping import check
+from ...program import (
+    MAX_UNROLLED,
+    SKIPPED,
+    Fact,
+    Motion,
+    Program,
+    ProgramError,
+    Unknown,
+    lines_of,
+    name_of,
+    work_of,
+)
 from ..urscript.expression import Pose
 from ..urscript.reader import MOVE
 from ..xml_tree import read_xml
@@ -18,6 +29,7 @@ from .motion import Waypoints
 from .position import Positions, keep_kinematics
 
 MAX_MOTIONS = 1_000_000
+ASSIGNED = re.compile(r"\b([A-Za-z_]\w*)\s*(?:\[[^\]\n]{0,200}\]\s*)?=(?!=)")
 MAX_CALLS = 20
 MAX_LOOP = 100_000
 THE_BASE = Fact("programs.urp.base", "the base")
@@ -30,7 +42,7 @@ MOVING = frozenset("Move Waypoint CircleMove CallSubProgram Contributed Directio
 
 def read(path):
     """The Program of a .urp. Raises ProgramError when it cannot be read at all."""
-    path, keep = Path(path), keep_kinematics()
+    keep = keep_kinematics()
     root = read_xml(
         path,
         text_of=("cachedContents", "loopCount", "count", "numberOfLoops"),
@@ -50,7 +62,7 @@ def read(path):
         reader.run()
     except RecursionError:
         raise ProgramError.at(
-            path.name, reader.line, "programs.nested_calls", "calls are nested too deeply"
+            reader.file, reader.line, "programs.nested_calls", "calls are nested too deeply"
         ) from None
     return reader.finish()
 
@@ -67,6 +79,21 @@ class _Reader(Waypoints):
         self.named = False  # whether the script knows the waypoints
         self.rounds = self.calls = 0
         self.seen = set()
+        self.trees = {}  # (text, statements) of script nodes by their ids
+        self.names = {}  # variables that script nodes may assign, likewise
+        self.moving = {}  # what ``moves`` found, likewise
+        self.lost, self.passed = set(), 0  # nodes that were left out, and how often again
+
+    def tick(self, line, work=1):
+        check()
+        self.line, self.rounds = line, self.rounds + work
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
 
     def finish(self):
         for motion in self.positions.finish():
@@ -125,11 +152,7 @@ class _Reader(Waypoints):
             self.rounds -= len(holder.children)  # what the file has is no work beyond it
         taken = None  # of a chain of If nodes: True, False, or None
         for node in holder.children if holder is not None else ():
-            self.rounds, self.line = self.rounds + 1, node.line
-            if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-                raise ProgramError.at(
-                    self.file, node.line, "programs.too_long", "the program is too long"
-                )
+            self.tick(node.line)
             if node.tag == "If":
                 taken = self.branch(node, move, taken)
                 continue
@@ -198,6 +221,12 @@ class _Reader(Waypoints):
             )
 
     def moves(self, element):
+        """Whether anything in a node may move the robot."""
+        if id(element) not in self.moving:
+            self.moving[id(element)] = self.any_moves(element)
+        return self.moving[id(element)]
+
+    def any_moves(self, element):
         stack = [element]
         while stack:
             at = stack.pop()
@@ -218,6 +247,11 @@ class _Reader(Waypoints):
         while stack:
             at = stack.pop()
             stack += at.children
+            if id(at) not in self.lost:  # the first time is no work beyond the file's own
+                self.lost.add(id(at))
+            else:
+                self.passed += 1
+                self.tick(at.line, self.passed % SKIPPED == 0)
             if at.tag == "variable":
                 try:
                     name = self.target(at).get("name", "")
@@ -226,10 +260,14 @@ class _Reader(Waypoints):
                 for scope in self.script.scopes:
                     scope.pop(name, None)
             elif at.tag == "Script":
-                for name in re.findall(
-                    r"([A-Za-z_]\w*)\s*(?:\[[^\]\n]*\])?\s*=(?!=)", self.raw(at)
-                ):
+                for name in self.assigned(at):
                     self.script.scopes[0].pop(name, None)
+
+    def assigned(self, node):
+        """The variables that a script node may assign."""
+        if id(node) not in self.names:
+            self.names[id(node)] = set(ASSIGNED.findall(self.raw(node)))
+        return self.names[id(node)]
 
     def branch(self, node, move, taken):
         """If, ElseIf and Else follow each other; whether one of the chain was taken."""
@@ -290,13 +328,13 @@ class _Reader(Waypoints):
             for _ in range(MAX_LOOP):
                 if not self.truth(node):
                     return
-                self.rounds += 1
+                self.tick(node.line)
                 self.inside(node, move)
             raise ProgramError.at(
                 self.file, node.line, "programs.endless_program", "the loop does not end"
             )
         for _ in range(self.count(node)):
-            self.rounds += 1
+            self.tick(node.line)
             self.inside(node, move)
 
     def count(self, node):
@@ -381,7 +419,10 @@ class _Reader(Waypoints):
         script.program = Program("URScript", self.file)
         end = None
         try:
-            end = script.block(script.tree(re.split(r"\r\n|\n|\r", text)))
+            if self.trees.get(id(node), ("",))[0] != text:
+                self.trees[id(node)] = (text, script.tree(lines_of(text, self.file)))
+            self.tick(node.line, work_of(text) // SKIPPED)
+            end = script.block(self.trees[id(node)][1])
         except ProgramError as error:
             raise Unknown(
                 "programs.urp.script",

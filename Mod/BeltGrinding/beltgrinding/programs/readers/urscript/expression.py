@@ -14,12 +14,15 @@ import numpy as np
 from ....base.frames import to_quaternions
 from ...program import Unknown
 
+MAX_TEXT = 200_000  # characters: Python's parser holds everything up while it reads
+MAX_BRACKETS = 50  # in each other: Python's parser may take ever longer for more
 MAX_WHOLE = 2**53  # beyond, a whole number is no longer exact
 # What Python reads as a number or two, but the controller does not.
 FOREIGN_NUMBER = re.compile(
     r"(?<![\w.])\.?\d[\d.]*(?:[eE][-+]?\d+[A-Za-z_]|(?![eE][-+]?\d)[A-Za-z_])"
 )
 STRING = re.compile(r'"[^"]*"')
+BRACKET = re.compile(r"[(\[]|[)\]]")
 FUNCTIONS = {
     "sin": math.sin,
     "cos": math.cos,
@@ -120,8 +123,20 @@ def a_pose(value):
 @functools.lru_cache(maxsize=4096)  # for loops
 def parse(text):
     """Syntax tree of an expression. Raises Unknown."""
+    if len(text) > MAX_TEXT:
+        raise Unknown(
+            "programs.urscript.long_statement",
+            "the statement has more than {limit} characters",
+            limit=MAX_TEXT,
+        )
+    if len(text) > MAX_TEXT:
+        raise Unknown(
+            "programs.urscript.long_statement",
+            "the statement has more than {limit} characters",
+            limit=MAX_TEXT,
+        )
     bare = STRING.sub('""', text)
-    if FOREIGN_NUMBER.search(bare) or "'" in bare:
+    if FOREIGN_NUMBER.search(bare) or "'" in bare or _depth(bare) > MAX_BRACKETS:
         raise Unknown("programs.cannot_be_parsed", "cannot read '{text}'", text=text.strip()[:40])
     try:
         return ast.parse(text.strip(), mode="eval").body
@@ -129,6 +144,15 @@ def parse(text):
         raise Unknown(
             "programs.cannot_be_parsed", "cannot read '{text}'", text=text.strip()[:40]
         ) from None
+
+
+def _depth(text):
+    """How deeply brackets are nested."""
+    depth = deepest = 0
+    for bracket in BRACKET.findall(text):
+        depth += 1 if bracket in "([" else -1
+        deepest = max(deepest, depth)
+    return deepest
 
 
 def evaluate(node, lookup, call):

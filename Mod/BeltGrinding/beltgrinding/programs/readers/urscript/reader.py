@@ -13,11 +13,12 @@ import contextlib
 import math
 import re
 import warnings
-from pathlib import Path
 
+from ....base.stopping import check
 from ...program import (
     LOOPED,
     MAX_UNROLLED,
+    SKIPPED,
     Fact,
     Motion,
     Program,
@@ -25,6 +26,7 @@ from ...program import (
     Unknown,
     bytes_of,
     joint_angles,
+    lines_of,
     name_of,
     work_of,
 )
@@ -34,9 +36,10 @@ MAX_MOTIONS = 1_000_000
 MAX_IDLE = 25_000  # units of work since the last motion, in a loop
 MAX_CALLS = 20
 MAX_NESTING = 20
+ELEMENTS = 50  # of a list, which are copied in a unit of work
 DEFAULT_SPEED = 0.25  # m/s, without v
 MOVE = re.compile(r"\b(?:move[jlpc]|optimove[jl]|servo[jc]|speed[jl])\s*\(")
-ASSIGN = re.compile(r"^(?:(global|local)\s+)?([A-Za-z_]\w*)\s*(\[.*?\])?\s*=(?!=)\s*(.+)$")
+ASSIGN = re.compile(r"^(?:(global|local)\s+)?([A-Za-z_]\w*)\s*(?:(\[.*?\])\s*)?=(?!=)\s*(.+)$")
 DEFINE = re.compile(r"^def\s+([A-Za-z_]\w*)\s*\((.*)\)\s*:?$")
 COMMENT = re.compile(r'("[^"]*")|#.*')
 PARAMETERS = {
@@ -58,17 +61,19 @@ HARMLESS = re.compile(
 
 def read(path):
     """The Program of a .script file. Raises ProgramError when it cannot be read at all."""
-    path = Path(path)
     raw = bytes_of(path, "URScript")
     text = raw.decode("utf-8-sig", errors="replace")
     interpreter = Interpreter(name_of(path))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Python's own advice on the expressions
-            interpreter.run(interpreter.tree(re.split(r"\r\n|\n|\r", text)))
+            interpreter.run(interpreter.tree(lines_of(text, interpreter.file)))
     except RecursionError:
         raise ProgramError.at(
-            path.name, interpreter.line, "programs.nested_calls", "calls are nested too deeply"
+            interpreter.file,
+            interpreter.line,
+            "programs.nested_calls",
+            "calls are nested too deeply",
         ) from None
     return interpreter.program
 
@@ -91,6 +96,7 @@ class Interpreter:
         self.routines = {}
         self.rounds = self.line = 0  # rounds: units of work; below 0: what the file allows
         self.called = False
+        self.calls = 0  # of routines in each other
         self.missing = set()
         self.inverse = None  # of the frame all poses are given in, 4 x 4 in metres
         self.base = self.tool = ""
@@ -108,6 +114,7 @@ class Interpreter:
         """List of _Block. A block without its end, or the other way round, is a Problem."""
         root, open_blocks = [], []
         for line, text in enumerate(lines, 1):
+            check()
             text = COMMENT.sub(lambda m: m.group(1) or "", text).strip()
             if not text:
                 continue
@@ -155,11 +162,7 @@ class Interpreter:
     def block(self, blocks):
         """Runs statements; how they end: None, break, continue, return or halt."""
         for block in blocks:
-            self.rounds, self.line = self.rounds + work_of(block.text), block.line
-            if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
-                raise ProgramError.at(
-                    self.file, block.line, "programs.too_long", "the program is too long"
-                )
+            self.tick(block.line, work_of(block.text))
             end = None
             if block.kind == "statement":
                 end = self.statement(block.line, block.text)
@@ -181,6 +184,17 @@ class Interpreter:
             if end:
                 return end
         return None
+
+    def tick(self, line, work):
+        check()
+        self.rounds, self.line = self.rounds + work, line
+        if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:
+            raise ProgramError.at(
+                self.file,
+                line,
+                "programs.too_long",
+                "the program is too long or does not end; split it, or shorten its loops",
+            )
 
     def define(self, block):
         match = DEFINE.match(block.text)
@@ -204,7 +218,8 @@ class Interpreter:
 
     def forget(self, block):
         moves = False
-        for _, _, blocks in block.parts:
+        for line, _, blocks in block.parts:
+            self.tick(line, 1 + sum(work_of(b.text) for b in blocks) // SKIPPED)
             for inner in blocks:
                 if inner.kind != "statement":
                     moves |= self.forget(inner)
@@ -220,8 +235,9 @@ class Interpreter:
         return moves
 
     def branch(self, block):
-        for _, condition, blocks in block.parts:
+        for k, (line, condition, blocks) in enumerate(block.parts):
             if condition is not None:
+                self.tick(line, work_of(condition) if k else 0)
                 try:
                     known = self.truth(condition)
                 except Unknown as unknown:
@@ -259,7 +275,7 @@ class Interpreter:
                     ),
                 )
                 return None
-            self.rounds += 1
+            self.tick(block.line, work_of(condition))
             if len(self.program.motions) > count:
                 count, start = len(self.program.motions), self.rounds
             if self.rounds > min(MAX_UNROLLED, start + MAX_IDLE):
@@ -322,10 +338,11 @@ class Interpreter:
     def invoke(self, name, arguments, keywords=()):
         """Runs a routine of this file; its value, None where it has none."""
         self.called = True
-        if len(self.scopes) > MAX_CALLS:
+        if self.calls >= MAX_CALLS:
             raise Unknown(
                 "programs.urscript.calls_itself", "{name} calls itself too deeply", name=name
             )
+        self.tick(self.line, 1)
         parameters, blocks = self.routines[name]
         if len(arguments) > len(parameters) or keywords:
             raise Unknown(
@@ -334,17 +351,21 @@ class Interpreter:
                 name=name,
             )
         scope = {}
-        for k, (parameter, default) in enumerate(parameters):
-            with contextlib.suppress(Unknown):  # whoever uses it reports it
-                scope[parameter] = (
-                    self.node(arguments[k]) if k < len(arguments) else self.evaluate(default)
-                )
-        self.scopes.append(scope)
-        self.returned = None
+        self.calls += 1  # a default may call the routine itself
         try:
-            self.block(blocks)
+            for k, (parameter, default) in enumerate(parameters):
+                with contextlib.suppress(Unknown):  # whoever uses it reports it
+                    scope[parameter] = (
+                        self.node(arguments[k]) if k < len(arguments) else self.evaluate(default)
+                    )
+            self.scopes.append(scope)
+            self.returned = None
+            try:
+                self.block(blocks)
+            finally:
+                self.scopes.pop()
         finally:
-            self.scopes.pop()
+            self.calls -= 1
         value, self.returned = self.returned, None
         return value
 
@@ -355,11 +376,13 @@ class Interpreter:
         try:
             value = self.evaluate(text)
             if isinstance(value, list):
+                self.tick(line, len(value) // ELEMENTS)
                 value = list(value)
             if index:
                 at, inside = self.evaluate(index[1:-1]), self.lookup(name)
                 values = inside.components() if isinstance(inside, Pose) else inside
                 values = list(values) if isinstance(values, list) else []
+                self.tick(line, len(values) // ELEMENTS)
                 if type(at) is not int or not 0 <= at < len(values):
                     raise Unknown(
                         "programs.no_element",

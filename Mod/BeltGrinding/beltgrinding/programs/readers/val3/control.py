@@ -2,18 +2,18 @@
 
 import re
 
-from ...program import Fact, ProgramError, Unknown, work_of
+from ...program import SKIPPED, Fact, ProgramError, Unknown, work_of
 from .data import Missing, number
 from .expression import place, split, truth
 from .state import ASSIGNED, State
 
-MOTION = re.compile(r"(?:([^=\"(]*?)\s*=(?!=)\s*)?((?:move|alterMove|alter)\w*)\s*\((.*)\)$")
+MOTION = re.compile(r"(?:([^=\"(]*)=(?!=)\s*)?((?:move|alterMove|alter)\w*)\s*\((.*)\)$")
 MOVES = re.compile(r"(?<![\w.])(?:move|alter)\w*\s*\(")
 ASSIGN = re.compile(r"([^\W\d]\w*(?:\[[^=]*\])?(?:\.\w+)*)\s*=(?!=)\s*(.+)$")
 CALL = re.compile(r"call\s+(\w+(?::\w+)?)\s*(?:\((.*)\))?$", re.IGNORECASE)
 INSTRUCTION = re.compile(r"(\w+(?::\w+)?)\s*\((.*)\)$")
 FOR = re.compile(
-    r"for\s+([^\W\d]\w*(?:\[[^=]*\])?)\s*=\s*(.+?)\s+to\s+(.+?)(?:\s+step\s+(.+?))?(?:\s+do)?$",
+    r"for\s+([^\W\d]\w*(?:\[[^=]*\])?)\s*=\s*(\S.*?)\sto\s+(.+?)(?:\sstep\s+(.+?))?(?:\sdo)?$",
     re.IGNORECASE,
 )
 NAME = re.compile(r"[^\W\d]\w*")
@@ -74,7 +74,7 @@ class Control(State):
         moves, stack, entered = False, list(nodes), set()
         while stack:
             node = stack.pop()
-            self.tick(line)
+            self.tick(line, 1 + work_of(node.text) // SKIPPED)
             stack += node.body or []
             match = ASSIGN.match(node.text) if node.body is None else None
             if MOTION.match(node.text) and not match:
@@ -106,14 +106,11 @@ class Control(State):
             self.gap(line)
 
     def if_(self, node):
-        branches = [(node.line, node.text[2:], [])]
-        for inner in node.body:
-            if inner.word in ("elseif", "else"):
-                condition = "true" if inner.word == "else" else inner.text[6:]
-                branches.append((inner.line, condition, []))
-            else:
-                branches[-1][2].append(inner)
-        for k, (line, condition, body) in enumerate(branches):
+        branches = node.divided(("elseif", "else"))
+        for k, (inner, body) in enumerate(branches):
+            line, condition = inner.line, re.sub(r"(?i)^(?:else)?if", "", inner.text)
+            condition = "true" if inner.word == "else" else condition
+            self.tick(line, work_of(condition) if k else 0)
             try:
                 known = truth(self.value(re.sub(r"(?i)\bthen\s*$", "", condition)))
             except Unknown as unknown:
@@ -123,7 +120,7 @@ class Control(State):
                     reason=unknown.fact,
                     word="if",
                 )
-                self.skip([n for b in branches[k:] for n in b[2]], line, message)
+                self.skip([n for b in branches[k:] for n in b[1]], line, message)
                 return
             if known:
                 self.block(body)
@@ -175,7 +172,7 @@ class Control(State):
             return
         try:
             while truth(self.value(condition)):
-                self.tick(node.line)
+                self.tick(node.line, work_of(condition))
                 self.block(node.body)
         except Unknown as unknown:
             message = Fact(
@@ -197,7 +194,7 @@ class Control(State):
     def do_(self, node):
         """do .. until; the body runs at least once."""
         while True:
-            self.tick(node.line)
+            self.tick(node.line, work_of(node.text))
             if re.fullmatch(r"[\s(]*false[\s)]*", node.text):
                 self.once(node)
                 return
@@ -215,20 +212,16 @@ class Control(State):
                 return
 
     def switch_(self, node):
-        bodies, otherwise = [], None
-        for inner in node.body:
-            if inner.word == "case":
-                bodies.append((inner.text[4:].strip().rstrip(":"), []))
-            elif inner.word == "default":
-                otherwise = []
-                bodies.append((None, otherwise))
-            elif bodies:
-                bodies[-1][1].append(inner)
+        body = []
         try:
             value = self.value(node.text[6:])
-            body = otherwise or []
-            for text, statements in bodies:
-                if text is not None and any(self.value(part) == value for part in split(text)):
+            for inner, statements in node.divided(("case", "default"))[1:]:
+                if inner.word == "default":
+                    body = statements
+                    continue
+                self.tick(inner.line, work_of(inner.text))
+                text = inner.text[4:].strip().rstrip(":")
+                if any(self.value(part) == value for part in split(text)):
                     body = statements
                     break
         except Unknown as unknown:

@@ -13,8 +13,9 @@ import numpy as np
 from ...program import Fact, Reason, Unknown
 
 MAX_SIZE = 1_000_000  # elements of all data
+MAX_DIMENSIONS = 3  # VAL3 has no more
 MAX_LENGTH = 1e6  # mm; a robot's world ends before
-NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 TRSF = ("x", "y", "z", "rx", "ry", "rz")
 CONFIG = ("shoulder", "elbow", "wrist")
 NO_LIMIT = 9999.0  # mm/s; controllers write 9999 or 99999 for a speed without limit
@@ -283,10 +284,7 @@ def load(root, file):
         if data.tag != "Data" or not name:
             continue
         size = data.get("size", "1")
-        count = math.prod(
-            int(s) if s.isascii() and s.isdigit() and len(s) < 8 else MAX_SIZE + 1
-            for s in size.split(",")
-        )
+        count = product_of(size, MAX_SIZE + 1)
         total += max(count, len(data.children))
         if total > MAX_SIZE:
             fact = Fact(
@@ -340,6 +338,16 @@ def load(root, file):
             items = [lost if item is None else item for item in items]
         arrays[name] = Array(kind, items)
     return arrays, notes
+
+
+def product_of(text, otherwise):
+    """The product of the sizes in 'n,m,...'; ``otherwise`` where one is no number, or they are too many."""
+    sizes = text.split(",", MAX_DIMENSIONS)
+    if len(sizes) > MAX_DIMENSIONS:
+        return otherwise
+    return math.prod(
+        int(s) if s.isascii() and s.isdigit() and len(s) < 8 else otherwise for s in sizes
+    )
 
 
 def _form(data):

@@ -13,7 +13,7 @@ from .data import WORDS, Missing, Record, as_kind, inverse, number, product, six
 from .functions import FUNCTIONS, truth
 
 TOKEN = re.compile(
-    r"""\s*(?:(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?(?![\w.]))
+    r"""\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?(?![\w.]))
         |(?P<string>"[^"\n]*")
         |(?P<name>[^\W\d]\w*(?::\w+)?)
         |(?P<op>==|!=|<>|<=|>=|&&|\|\||[-+*/%&!(){}\[\],.<>]))""",

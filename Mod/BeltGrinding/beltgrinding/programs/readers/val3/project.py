@@ -3,11 +3,11 @@
 Schemas Program/2, Data/2 and Project/3 of VAL3 s7 and later (also s8, CS9); namespaces are ignored.
 """
 
-import math
 import re
 from pathlib import Path
 
-from ...program import Fact, ProgramError, name_of, work_of
+from ....base.stopping import check
+from ...program import Fact, ProgramError, lines_of, name_of, work_of
 from ..rapid.text import Node
 from ..xml_tree import read_xml
 from . import data as val3_data
@@ -45,13 +45,14 @@ class Project:
         self.notes = []  # (file, line, Fact)
         self.millimetres = True
         self.data_file = None
+        self._near, self._names = None, {}  # what lies beside it, once asked for
 
     def routine(self, name):
         """The Routine of that name, or None. Raises ProgramError for one that cannot be read."""
         if name not in self.routines:
             self.routines[name] = None
             if re.fullmatch(r"\w+", name):
-                path = _beside(self.path.parent / f"{name}.pgx")
+                path = self.beside(f"{name}.pgx")
                 if path is not None:
                     self.routines.update({r.name: r for r in routines(path)})
         return self.routines[name]
@@ -59,9 +60,9 @@ class Project:
     def data(self):
         """Arrays by name of the application's .dtx; none where there is none."""
         own = self.path if self.path.suffix.lower() == ".dtx" else None
-        path = own or _beside(self.path.with_suffix(".dtx"))
+        path = own or self.beside(self.path.with_suffix(".dtx").name)
         listed = self.project()
-        folder = sorted(p for p in self.path.parent.glob("*") if p.suffix.lower() == ".dtx")
+        folder = self.of_suffix(".dtx")
         if path is None and listed:
             path = listed[0]
         if path is None and len(folder) == 1:
@@ -79,7 +80,7 @@ class Project:
                     "programs.val3.no_data",
                     "there is no .dtx beside it; what its data are is not known",
                 )
-            self.notes.append((self.path.name, 1, what))
+            self.notes.append((name_of(self.path), 1, what))
             return {}
         self.data_file = name_of(path)
         arrays, notes = val3_data.load(read_xml(path), self.data_file)
@@ -88,7 +89,7 @@ class Project:
 
     def project(self):
         """The data files that the .pjx beside the program names; sets the unit of length."""
-        found = sorted(p for p in self.path.parent.glob("*") if p.suffix.lower() == ".pjx")
+        found = self.of_suffix(".pjx")
         if len(found) != 1:
             return []
         root = read_xml(found[0])
@@ -97,22 +98,30 @@ class Project:
             self.millimetres = False
         files = [data.get("file", "") for data in (database.children if database else ())]
         names = [re.split(r"[\\/]", file)[-1] for file in files]
-        return [p for p in (_beside(found[0].with_name(n)) for n in names if n) if p is not None]
+        return [p for p in map(self.beside, names) if p is not None]
+
+    def near(self):
+        """What lies in the program's folder, sorted."""
+        if self._near is None:
+            self._near = sorted(self.path.parent.glob("*"))
+            self._names = {p.name.lower(): p for p in reversed(self._near)}
+            self._names.update({p.name: p for p in self._near})  # the very name first
+        return self._near
+
+    def beside(self, name):
+        """The file of that name in the program's folder, its case aside, or None."""
+        self.near()
+        path = self._names.get(name) or self._names.get(name.lower())
+        return path if path is not None and path.is_file() else None
+
+    def of_suffix(self, suffix):
+        """The files in the program's folder with a suffix, whatever its case, sorted."""
+        return [p for p in self.near() if p.suffix.lower() == suffix]
 
     @property
     def unit(self):
         """mm of the application's unit of length."""
         return 1.0 if self.millimetres else INCH
-
-
-def _beside(path):
-    """The file of that name, its case aside, or None."""
-    if path.is_file():
-        return path
-    folder, name = path.parent, path.name.lower()
-    return next(
-        (p for p in sorted(folder.glob("*")) if p.name.lower() == name and p.is_file()), None
-    )
 
 
 def routines(path):
@@ -140,7 +149,7 @@ def _routine(element, file):
             if section == "Parameters":
                 target.append((name, kind, item.get("use", "") == "reference"))
             else:
-                target.append((name, kind, _size(item.get("size", "1"))))
+                target.append((name, kind, val3_data.product_of(item.get("size", "1"), 0)))
     code = element.find("Code")
     if code is None or code.text is None:
         raise ProgramError.at(
@@ -155,16 +164,11 @@ def _routine(element, file):
     return routine
 
 
-def _size(text):
-    sizes = [int(s) if s.isascii() and s.isdigit() and len(s) < 8 else 0 for s in text.split(",")]
-    return math.prod(sizes)
-
-
 def _tree(routine, code):
     text = STRING_OR_COMMENT.sub(lambda m: m.group() if m.group()[0] == '"' else "", code.text)
     open_nodes, body, begun, line = [], routine.body, False, code.text_line
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    for line, statement in enumerate(lines, code.text_line):
+    for line, statement in enumerate(lines_of(text, routine.file), code.text_line):
+        check()
         statement = statement.strip()
         word = WORD.match(statement)
         word = word.group().lower() if word else ""

@@ -9,7 +9,10 @@ a program gives its points as PTP targets, over which nothing is ground.
 
 from pathlib import Path
 
-from ...program import Fact, Motion, ProgramError, Unknown, cannot_be_read
+from ....base.files import cannot_be_read
+from ....base.regular_files import shown
+from ....base.stopping import check
+from ...program import Fact, Motion, ProgramError, Unknown, name_of
 from . import data
 from .control import ASSIGN, CALL, HARMLESS, INSTRUCTION, MOTION, MOVES, NAME, Break, Control
 from .data import Array, Missing, Record, number, six
@@ -39,10 +42,10 @@ def read(path):
     except RecursionError:
         error = ProgramError("programs.val3.nested", "values or calls are nested too deeply")
         if interpreter is None:
-            raise error.within("programs.in_file", "{file}: ", file=path.name) from None
+            raise error.within("programs.in_file", "{file}: ", file=name_of(path)) from None
         raise error.in_line(interpreter.file, interpreter.line) from None
     except OSError as error:
-        raise cannot_be_read(path, error) from None
+        raise ProgramError.of(cannot_be_read(shown(path), error)) from None
     return interpreter.finish()
 
 
@@ -53,17 +56,18 @@ def _points(path):
     for file, line, message in state.project.notes:
         state.file = file
         state.problem(line, message)
-    state.file = path.name
+    state.file = name_of(path)
     state.problem(
         1,
         "programs.val3.no_program_beside",
         "there is no program of this name beside it; its points are given as PTP targets",
     )
     for name, array in state.globals.items():
-        keys = array.items if isinstance(array.items, dict) else range(len(array.items or ()))
-        if data.POSED.get(array.kind) != "point":
+        if data.POSED.get(array.kind) != "point" or isinstance(array.items, Missing):
             continue
-        for key in keys if not isinstance(array.items, Missing) else ():
+        keys = array.items if isinstance(array.items, dict) else range(len(array.items))
+        for key in keys:
+            check()
             if array.items[key] is None:  # never taught
                 continue
             line = getattr(array.items[key], "line", 1)
@@ -81,7 +85,7 @@ def _points(path):
                 )
                 state.gap(line)
                 continue
-            motion = Motion("PTP", None, line, path.name)
+            motion = Motion("PTP", None, line, state.file)
             motion.base = state.described(point.father, "world")
             state.program.motions.append(motion)
             state.rows.append((motion, row))
@@ -151,7 +155,7 @@ class _Interpreter(Control):
                 else Missing("programs.val3.no_size", "{name} has no size", name=name)
             )
             scope[name] = Array(kind, items)
-            self.rounds += size // 8
+            self.tick(self.line, size // 8)
         self.rounds -= routine.work
         routine.work = 0  # a second call is work beyond what the file has
         outer = self.file, self.scope
@@ -225,7 +229,8 @@ class _Interpreter(Control):
             self.gap(node.line)
         if target:
             self.unknown(
-                target, Fact("programs.val3.motion_number", "it numbers a motion at run time")
+                target.strip(),
+                Fact("programs.val3.motion_number", "it numbers a motion at run time"),
             )
 
     def move(self, line, kind, targets, tool, mdesc):

@@ -2,7 +2,17 @@
 
 import re
 
-from ...program import MAX_UNROLLED, Fact, Motion, Program, ProgramError, Unknown, shortened
+from ....base.stopping import check
+from ...program import (
+    MAX_UNROLLED,
+    Fact,
+    Motion,
+    Program,
+    ProgramError,
+    Unknown,
+    name_of,
+    shortened,
+)
 from ..xml_tree import Element
 from . import data
 from .data import Array, Missing, Record
@@ -20,10 +30,10 @@ class State:
 
     def __init__(self, project):
         self.project = project
-        self.program = Program("VAL3", project.path.name)
+        self.program = Program("VAL3", name_of(project.path))
         self.globals = {}
         self.scope = {}  # of the running program
-        self.file, self.line = project.path.name, 1
+        self.file, self.line = name_of(project.path), 1
         self.rounds = 0  # units of work; below 0: as many as the files have
         self.said = set()
         self.rows = []  # (motion, six components), made poses all at once
@@ -41,6 +51,7 @@ class State:
             self.program.problem(self.file, line, fact)
 
     def tick(self, line, work=1):
+        check()
         self.line = line
         self.rounds += work
         if self.rounds > MAX_UNROLLED or len(self.program.motions) > MAX_MOTIONS:

@@ -1,0 +1,81 @@
+"""Files that others wrote, opened only where they are files.
+
+A FIFO or a device in a file's place would be read for ever, or never.
+"""
+
+import os
+import stat
+
+from ..engine import InputError, core
+from .files import cannot_be_read
+
+MEGABYTE = 1 << 20
+KINDS = (
+    (stat.S_ISDIR, "files.kind_folder", "a folder"),
+    (stat.S_ISFIFO, "files.kind_fifo", "a FIFO"),
+    (stat.S_ISSOCK, "files.kind_socket", "a socket"),
+    (stat.S_ISCHR, "files.kind_device", "a device"),
+    (stat.S_ISBLK, "files.kind_device", "a device"),
+)
+
+
+def shown(path):
+    """A path as text that can be written in UTF-8: bytes of its name that are none as \\udcff."""
+    return str(path).encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def open_regular(path, limit):
+    """A regular file, opened to be read as bytes. Raises InputError where there is none, or where it
+    is larger than ``limit`` bytes.
+    """
+    try:
+        # Opening a FIFO would wait for someone who writes into it.
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _BINARY)
+    except OSError as error:
+        raise cannot_be_read(shown(path), error) from None
+    except ValueError:  # zero bytes, lone surrogates
+        raise InputError(
+            "files.no_name", "{file}: cannot be the name of a file", file=shown(path)
+        ) from None
+    file = None
+    try:
+        state = os.fstat(descriptor)
+        if not stat.S_ISREG(state.st_mode):
+            raise InputError(
+                "files.not_regular",
+                "{file}: is {kind}; give a file",
+                file=shown(path),
+                kind=_kind(state.st_mode),
+            )
+        if state.st_size > limit:
+            raise InputError(
+                "files.too_large",
+                "{file}: has {size} MB, and no more than {limit} MB are read; split it",
+                file=shown(path),
+                size=-(-state.st_size // MEGABYTE),
+                limit=limit // MEGABYTE,
+            )
+        file = os.fdopen(descriptor, "rb")
+        return file
+    finally:
+        if file is None:
+            os.close(descriptor)
+
+
+_BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+
+
+def read_regular(path, limit):
+    """The bytes of a regular file. Raises InputError as ``open_regular``."""
+    with open_regular(path, limit) as file:
+        try:
+            return file.read(limit)
+        except OSError as error:
+            raise cannot_be_read(shown(path), error) from None
+
+
+def _kind(mode):
+    for is_kind, code, text in KINDS:
+        if is_kind(mode):
+            return core.Fact(code, text)
+    return core.Fact("files.kind_other", "no regular file")

@@ -1,0 +1,63 @@
+"""Work that the window waits for without standing still: in a thread, with a dialog that can cancel."""
+
+import FreeCADGui as Gui
+
+from ...engine import Cancelled
+from .compat import QtCore, QtGui, translate
+from .runner import Background
+
+PATIENCE = 0.2  # s; what is done by then needs no dialog
+_going = set()  # works that were cancelled and have not ended yet
+
+
+def wait(work, text):
+    """What ``work(context)`` gives, or raises; meanwhile a dialog says ``text``. Cancelled as soon as
+    its Cancel is pressed, even if the work does not notice: it ends in its thread, unheard.
+    """
+    loop, outcome = QtCore.QEventLoop(), []
+
+    def done(result, error):
+        outcome.append((result, error))
+        loop.quit()
+
+    background = Background(work, done)
+    background.thread.join(PATIENCE)
+    if not background.thread.is_alive():
+        background.timer.stop()
+        return _given(*background.outcome)
+    dialog = _dialog(text)
+    dialog.canceled.connect(loop.quit)
+    try:
+        dialog.show()
+        (loop.exec_ if hasattr(loop, "exec_") else loop.exec)()
+    finally:
+        dialog.canceled.disconnect(loop.quit)
+        dialog.close()
+        dialog.deleteLater()
+    if not outcome:
+        _going.add(background)  # its timer asks the thread until that has ended
+        background.abandon(lambda: _going.discard(background))
+        raise Cancelled(translate("BeltGrinding", "cancelled"))
+    return _given(*outcome[0])
+
+
+def _given(result, error):
+    if error is not None:
+        raise error
+    return result
+
+
+def _dialog(text):
+    """A QProgressDialog: these FreeCAD lets have clicks and keys where it shows its wait cursor, as its
+    own import commands do.
+    """
+    dialog = QtGui.QProgressDialog(Gui.getMainWindow())
+    dialog.setObjectName("BeltGrinding_Waiting")
+    dialog.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
+    dialog.setLabelText(text)
+    dialog.setCancelButtonText(translate("BeltGrinding", "Cancel"))
+    dialog.setRange(0, 0)  # how much there is to do is not known
+    dialog.setMinimumDuration(2**31 - 1)  # shown when it is needed, not by a guess
+    dialog.setWindowModality(QtCore.Qt.ApplicationModal)
+    dialog.setAutoClose(False)
+    return dialog

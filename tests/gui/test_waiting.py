@@ -1,0 +1,145 @@
+"""Robot programs are read while the window stays alive, and reading can be cancelled."""
+
+PREPARE = """
+import time
+from pathlib import Path
+import beltgrinding
+from beltgrinding.base import stopping
+from beltgrinding.engine import Cancelled
+from beltgrinding.gui.common import waiting
+from beltgrinding.objects import importer, robot_path
+from support.hands import *
+
+job = prepare()
+doc = job.Document
+read, ended = robot_path.read_program, []
+
+
+def slow(path):
+    end = time.monotonic() + 30
+    try:
+        while time.monotonic() < end:
+            stopping.check()
+    except Cancelled:
+        ended.append("cancelled")
+        raise
+    ended.append("read")
+    return read(path)
+
+
+def deaf(path):
+    time.sleep(3)  # as a library that looks at nothing
+    ended.append("deaf")
+    return read(path)
+
+
+def dialogs():
+    return [d for d in widgets(QtGui.QProgressDialog, "BeltGrinding_Waiting") if d.isVisible()]
+
+
+def press_cancel():
+    shown = dialogs()
+    if not shown:
+        return QtCore.QTimer.singleShot(20, press_cancel)
+    assert shown[0].labelText() == "Reading pass.csv" and shown[0].isModal()
+    button = shown[0].findChild(QtGui.QPushButton)
+    press_on(button)
+
+
+def press_on(button):
+    # as the mouse does it: through whatever looks at all events
+    middle = button.rect().center()
+    for kind in (QtCore.QEvent.MouseButtonPress, QtCore.QEvent.MouseButtonRelease):
+        held = QtCore.Qt.LeftButton if kind == QtCore.QEvent.MouseButtonPress else QtCore.Qt.NoButton
+        event = QtGui.QMouseEvent(
+            kind, QtCore.QPointF(middle), QtCore.Qt.LeftButton, held, QtCore.Qt.NoModifier
+        )
+        QtGui.QApplication.postEvent(button, event)
+
+
+def boxes():
+    return [b for b in widgets(QtGui.QMessageBox, "BeltGrinding_Error") if b.isVisible()]
+
+
+def cancelled(action):
+    QtCore.QTimer.singleShot(50, press_cancel)
+    before = names(), doc.UndoCount
+    begin = time.monotonic()
+    action()
+    settle()
+    assert time.monotonic() - begin < 2, time.monotonic() - begin
+    assert (names(), doc.UndoCount) == before and not boxes() and not dialogs()
+
+
+def names():
+    return [obj.Name for obj in doc.Objects]
+"""
+
+
+def test_reading_is_cancelled_and_nothing_is_changed(freecad):
+    freecad.run(
+        PREPARE
+        + """
+patch(robot_path, "read_program", slow)
+patch(QtGui.QFileDialog, "getOpenFileName", lambda *_: ("pass.csv", ""))
+cancelled(lambda: menu("Import robot program..."))
+cancelled(lambda: menu("Read programs again"))
+cancelled(lambda: importer.insert("pass.csv", doc.Name))
+documents = set(FreeCAD.listDocuments())
+cancelled(lambda: importer.open("pass.csv"))
+assert set(FreeCAD.listDocuments()) == documents
+wait(lambda: len(ended) == 4, 5)
+assert ended == ["cancelled"] * 4 and len(doc.RobotPath.Poses) == 9
+""",
+        window=True,
+    )
+
+
+def test_what_does_not_listen_is_left_behind(freecad):
+    freecad.run(
+        PREPARE
+        + """
+patch(robot_path, "read_program", deaf)
+cancelled(lambda: importer.insert("pass.csv", doc.Name))
+assert not ended and len(waiting._going) == 1
+wait(lambda: not waiting._going, 8)
+assert ended == ["deaf"] and names().count("RobotPath001") == 0
+""",
+        window=True,
+    )
+
+
+def test_the_window_lives_while_a_long_program_is_read(freecad):
+    freecad.run(
+        PREPARE
+        + """
+line = "LIN {X %d,Y 2,Z 3,A 4,B 5,C 6}"
+Path("long.src").write_text("DEF a()\\n" + "\\n".join(line % k for k in range(20000)) + "\\nEND\\n")
+beats = []
+timer = QtCore.QTimer()
+timer.timeout.connect(lambda: beats.append((time.monotonic(), len(dialogs()))))
+timer.start(20)
+done = []
+
+
+def measured(path):
+    program = read(path)
+    done.append(time.monotonic())
+    return program
+
+
+patch(robot_path, "read_program", measured)
+robot = robot_path.read_arrays("long.src")[0]
+timer.stop()
+meanwhile = [beat for beat in beats if beat[0] < done[0]]
+assert len(robot.motions) == 20000 and len(meanwhile) >= 5, len(meanwhile)
+assert meanwhile[-1][1] == 1 and not dialogs()
+try:
+    robot_path.read_arrays("absent.src")
+except beltgrinding.engine.InputError as error:
+    assert "absent.src" in str(error)
+else:
+    raise AssertionError("no error")
+""",
+        window=True,
+    )

@@ -28,16 +28,14 @@ constexpr double kStill = 1e-9;      // mm, no way
 }  // namespace
 
 ProcessMonitor::ProcessMonitor(const HeightField& field, const ToolPath& path,
-                               const std::vector<PathStep>& steps, const ProcessSettings& process,
-                               const MonitorLimits& limits, const RemovalLaw& law)
+                               const ProcessSettings& process, const MonitorLimits& limits,
+                               const RemovalLaw& law)
     : field_(field),
       path_(path),
-      steps_(steps),
       process_(process),
       limits_(limits),
       law_(law),
-      events_(path, kPause),
-      touched_(steps.size(), 0) {
+      events_(path, kPause) {
     if (limits.lower.empty()) return;
     below_.resize(field.size());
     for (std::uint32_t s = 0; s < field.size(); ++s) below_[s] = field.height[s] < lower_limit(s);
@@ -57,12 +55,19 @@ void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, doubl
     if (const auto sample = pressing.map().sample_near(s, y)) put(event, *sample);
 }
 
-void ProcessMonitor::pressed(std::size_t index, const Pressing& pressing, Pressing::State state,
+void ProcessMonitor::begin(const PathStep& step) {
+    steps_.push_back(step);
+    touched_.push_back(0);
+}
+
+void ProcessMonitor::pressed(const Pressing& pressing, Pressing::State state,
                              const BeltState& belt) {
+    const std::size_t index = steps_.size() - 1;
     touched_[index] = 1;
     if (pressing.rigid()) return;  // nothing is known of its pressure
     if (state == Pressing::State::kBeyondTravel) note_force(index, pressing);
     note_limits(index, pressing, belt);
+    note_compression(index, pressing, state);
     note_distribution(index, pressing);
     note_hollow(index, pressing, false);
     note_hollow(index, pressing, true);
@@ -90,6 +95,42 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
                          "end of its travel, {travel:.3g} mm away from the work",
                          arguments}};
     }
+    put(*event, pressing, 0.0, 0.0);
+}
+
+void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressing,
+                                      Pressing::State state) {
+    const double depth = pressing.indentation(), most = pressing.largest_indentation();
+    const bool stopped = state == Pressing::State::kOverCompressed;
+    if (!stopped && !(depth > most)) return;
+    Event* event = events_.note("over_compressed", index, steps_[index], depth);
+    if (event == nullptr) return;
+    event->limit = most;
+    event->facts = {{"event.over_compressed",
+                     "the wheel is pressed in by {depth:.3g} mm, more than the {limit:.3g} mm that "
+                     "it can yield: what the contact model says there is not to be trusted",
+                     {{"depth", depth}, {"limit", most}}}};
+    if (stopped) {
+        event->facts = {{"event.force_over_compresses",
+                         "{commanded:.3g} N would press the wheel in by more than the {limit:.3g} "
+                         "mm that it can yield: it is held there, at {force:.3g} N",
+                         {{"commanded", steps_[index].force},
+                          {"limit", most},
+                          {"force", pressing.solution().force}}}};
+    }
+    put(*event, pressing, 0.0, 0.0);
+}
+
+void ProcessMonitor::coarse(const Pressing& pressing, double removal, double most, int parts) {
+    const std::size_t index = steps_.size() - 1;
+    Event* event = events_.note("step_too_coarse", index, steps_[index], removal);
+    if (event == nullptr) return;
+    event->limit = most;
+    event->facts = {{"event.step_too_coarse",
+                     "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
+                     "half of what it is pressed in by, though the step was cut into {parts}: the "
+                     "heights are bounded by the wheel's envelope, and not resolved in time",
+                     {{"removal", removal}, {"parts", parts}}}};
     put(*event, pressing, 0.0, 0.0);
 }
 
@@ -298,7 +339,8 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
                         pressing.approach() - process_.wheel.radius + r * std::cos(angle));
 }
 
-void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> changed) {
+void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
+    const std::size_t index = steps_.size() - 1;
     const PathStep& step = steps_[index];
     double deepest = 0.0, worst = 0.0;
     std::uint32_t deepest_at = 0, worst_at = 0;

@@ -212,7 +212,9 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
     if (held && free > 0.0) more = std::clamp((wanted - kept) / free, 1.0, kLargestScale / scale);
     double removed = 0.0;
     for (std::size_t k = 0; k < footprints_.size(); ++k) {
+        if (lowering_[k] <= 0.0) continue;
         const double lowering = std::min(room_[k], more * scale * lowering_[k]);
+        if (held) footprints_[k].taken = static_cast<float>(lowering / (scale * lowering_[k]));
         if (lowering <= 0.0) continue;
         field.height[footprints_[k].sample] -= lowering;
         changed.push_back(footprints_[k].sample);
@@ -240,7 +242,7 @@ void GapMap::spread(const Eigen::ArrayXd& rate, double duration,
         if (!f.nearest) continue;
         double amount = 0.0;
         for_cells(f, [&](int cell, float weight, double) { amount += weight * rate[cell]; });
-        amounts[f.sample] += f.inside * amount * duration;
+        amounts[f.sample] += f.taken * f.inside * amount * duration;
     }
 }
 

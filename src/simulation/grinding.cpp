@@ -102,11 +102,11 @@ double Grinding::grind_part(double left, double least, double& volume,
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.
     const Eigen::ArrayXd most = (contact.approach - map.gap()).max(0.0) / part;
     rate_ = rate_.min(most);
+    const double removed = map.remove(field_, rate_, part, contact.approach, changed);
     for (std::size_t k = 0; k < outputs_.shifted_laws.size(); ++k) {
         outputs_.shifted_laws[k]->rate(contact.pressure, state_, shifted_);
         map.spread(shifted_.min(most) - rate_, part, shifts_.col(static_cast<Eigen::Index>(k)));
     }
-    const double removed = map.remove(field_, rate_, part, contact.approach, changed);
     volume += removed;
     belt_.work += kJoule * contact.force * process_.belt_speed * part;
     belt_.volume += removed;

@@ -55,7 +55,8 @@ class GapMap {
     double cut(HeightField& field, std::vector<std::uint32_t>& changed) const;
 
     /// Adds what `rate` (mm/s per cell) takes from each sample in `duration` s to `amounts` (mm,
-    /// one per sample of the field), without touching the field.
+    /// one per sample of the field), without touching the field: as little as the last `remove`
+    /// took where the envelope kept some back.
     void spread(const Eigen::ArrayXd& rate, double duration,
                 Eigen::Ref<Eigen::ArrayXd> amounts) const;
 
@@ -88,6 +89,7 @@ class GapMap {
         float area;               // mm2, of the design surface
         float projected_area;     // mm2, on the wheel
         bool boundary;
+        float taken = 1.0f;  // share of what the cells' rate asked for that the envelope let go
         bool nearest = true;  // belongs to the layer nearest to the wheel
     };
     /// Finds the four cells.

@@ -55,9 +55,15 @@ void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, doubl
     if (const auto sample = pressing.map().sample_near(s, y)) put(event, *sample);
 }
 
-void ProcessMonitor::begin(const PathStep& step) {
+void ProcessMonitor::begin(const PathStep& step, std::size_t planned) {
     steps_.push_back(step);
+    planned_.push_back(planned);
     touched_.push_back(0);
+}
+
+Event* ProcessMonitor::note(const char* kind, std::size_t index, double value, int part,
+                            double badness) {
+    return events_.note(kind, planned_[index], steps_[index], value, part, badness);
 }
 
 void ProcessMonitor::pressed(const Pressing& pressing, Pressing::State state,
@@ -79,7 +85,7 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     const bool low = force < step.force;
     // On the way to the surface and off it, less than the commanded force is no fault.
     if (low && step.plunging) return;
-    Event* event = events_.note(low ? "force_not_reached" : "force_exceeded", index, step, force);
+    Event* event = note(low ? "force_not_reached" : "force_exceeded", index, force);
     if (event == nullptr) return;
     event->limit = step.force;
     const Arguments arguments = {
@@ -103,7 +109,7 @@ void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressin
     const double depth = pressing.indentation(), most = pressing.largest_indentation();
     const bool stopped = state == Pressing::State::kOverCompressed;
     if (!stopped && !(depth > most)) return;
-    Event* event = events_.note("over_compressed", index, steps_[index], depth);
+    Event* event = note("over_compressed", index, depth);
     if (event == nullptr) return;
     event->limit = most;
     event->facts = {{"event.over_compressed",
@@ -123,7 +129,7 @@ void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressin
 
 void ProcessMonitor::coarse(const Pressing& pressing, double removal, double most, int parts) {
     const std::size_t index = steps_.size() - 1;
-    Event* event = events_.note("step_too_coarse", index, steps_[index], removal);
+    Event* event = note("step_too_coarse", index, removal);
     if (event == nullptr) return;
     event->limit = most;
     event->facts = {{"event.step_too_coarse",
@@ -146,7 +152,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
             grid.y(static_cast<int>(cell) / grid.nx));
     };
     if (!contact.converged) {
-        if (Event* event = events_.note("not_converged", index, step, contact.iterations)) {
+        if (Event* event = note("not_converged", index, contact.iterations)) {
             event->facts = {{"event.not_converged",
                              "the contact did not converge in {iterations} iterations",
                              {{"iterations", contact.iterations}}}};
@@ -155,7 +161,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     }
     const double peak = contact.peak_pressure;
     if (limits_.pressure > 0.0 && peak > limits_.pressure) {
-        if (Event* event = events_.note("over_pressure", index, step, peak)) {
+        if (Event* event = note("over_pressure", index, peak)) {
             event->limit = limits_.pressure;
             event->facts = {
                 {"event.over_pressure",
@@ -167,7 +173,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     const double heat = kMetre * peak * process_.belt_speed;
     const double heat_limit = kMetre * limits_.heat;
     if (heat_limit > 0.0 && heat > heat_limit) {
-        if (Event* event = events_.note("burn_risk", index, step, heat)) {
+        if (Event* event = note("burn_risk", index, heat)) {
             event->limit = heat_limit;
             event->facts = {{"event.burn_risk",
                              "pressure times belt speed reaches {heat:.3g} MPa m/s, above the "
@@ -180,7 +186,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     if (const auto outside = law_.outside(peak, state)) {
         const double ratio = outside->value / outside->limit;
         const double badness = ratio > 0.0 ? std::abs(std::log(ratio)) : HUGE_VAL;
-        Event* event = events_.note("law_out_of_range", index, step, outside->value, 0, badness);
+        Event* event = note("law_out_of_range", index, outside->value, 0, badness);
         if (event != nullptr) {
             event->limit = outside->limit;
             event->unit = outside->unit;
@@ -190,7 +196,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
         }
     }
     if (!process_.wear.measured(belt)) {
-        if (Event* event = events_.note("belt_out_of_range", index, step, belt.work)) {
+        if (Event* event = note("belt_out_of_range", index, belt.work)) {
             event->facts = {{"event.belt_not_measured",
                              "the belt has done more than its wear was measured for: {work:.4g} J",
                              {{"work", belt.work}}}};
@@ -220,7 +226,7 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     note_edges(index, pressing, by_column);
     const double tilt = std::abs(centre) / process_.wheel.radius;
     if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
-    if (Event* event = events_.note("tilted_contact", index, steps_[index], kDegrees * tilt)) {
+    if (Event* event = note("tilted_contact", index, kDegrees * tilt)) {
         event->limit = kDegrees * limits_.tilt;
         const Arguments arguments = {{"angle", kDegrees * tilt}};
         if (centre > 0.0) {
@@ -255,7 +261,7 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     if (outer[more] <= (on[0] && on[1] ? kEven : 1.0) * even) return;
     const double share = 100.0 * outer[more];
     Event* event =
-        events_.note("edge_contact", index, steps_[index], share, static_cast<int>(more));
+        note("edge_contact", index, share, static_cast<int>(more));
     if (event == nullptr) return;
     event->limit = 100.0 * even;
     const Arguments arguments = {{"share", share}, {"even", event->limit}};
@@ -315,7 +321,7 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
     const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * span;
     const double hollow = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
-    Event* event = events_.note("wheel_too_large", index, steps_[index], hollow, across ? 1 : 0);
+    Event* event = note("wheel_too_large", index, hollow, across ? 1 : 0);
     if (event == nullptr) return;
     if (radius > 0.0) event->limit = radius;
     const Arguments arguments = {{"radius", hollow}, {"span", span}};
@@ -341,7 +347,6 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
 
 void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
     const std::size_t index = steps_.size() - 1;
-    const PathStep& step = steps_[index];
     double deepest = 0.0, worst = 0.0;
     std::uint32_t deepest_at = 0, worst_at = 0;
     bool fresh = false;  // a sample was within its limits before
@@ -356,7 +361,7 @@ void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
         if (height - lower_limit(s) < worst) worst = height - lower_limit(s), worst_at = s;
     }
     if (fresh) {
-        if (Event* event = events_.note("gouge", index, step, field_.height[worst_at], 0, -worst)) {
+        if (Event* event = note("gouge", index, field_.height[worst_at], 0, -worst)) {
             event->limit = lower_limit(worst_at);
             event->facts = {{"event.gouge",
                              "ground to {height:.3f} mm, below the lower limit of {limit:.3g} mm",
@@ -365,7 +370,7 @@ void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
         }
     }
     if (deepest < -field_.depth) {
-        if (Event* event = events_.note("depth_exceeded", index, step, deepest)) {
+        if (Event* event = note("depth_exceeded", index, deepest)) {
             event->limit = -field_.depth;
             event->facts = {
                 {"event.depth_exceeded",
@@ -426,7 +431,7 @@ void ProcessMonitor::note_lost_contact() {
         double way = 0.0;
         for (std::size_t k = before + 1; k < i; ++k) {
             way += steps_[k].feed * steps_[k].duration;
-            Event* event = events_.note("loss_of_contact", k, steps_[k], way);
+            Event* event = note("loss_of_contact", k, way);
             if (event == nullptr) continue;
             event->facts = {{"event.loss_of_contact",
                              "the wheel loses the work for {way:.3g} mm of its way",

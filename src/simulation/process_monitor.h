@@ -18,8 +18,9 @@ class ProcessMonitor {
     ProcessMonitor(const HeightField& field, const ToolPath& path, const ProcessSettings& process,
                    const MonitorLimits& limits, const RemovalLaw& law);
 
-    /// A step begins: what is told after this is of it.
-    void begin(const PathStep& step);
+    /// A step begins: what is told after this is of it. `planned`: number of the step that it is
+    /// or is a part of.
+    void begin(const PathStep& step, std::size_t planned);
     /// The wheel is pressed, nothing is removed yet. `belt`: what it has done.
     void pressed(const Pressing& pressing, Pressing::State state, const BeltState& belt);
     /// The law takes `removal` mm in the step, more than `most`, though it is one of `parts` that
@@ -31,6 +32,9 @@ class ProcessMonitor {
     std::vector<Event> take();
 
   private:
+    /// A condition in the step `index`, as EventLog has it.
+    Event* note(const char* kind, std::size_t index, double value, int part = 0,
+                double badness = Event::kNone);
     void note_force(std::size_t index, const Pressing& pressing);
     void note_limits(std::size_t index, const Pressing& pressing, const BeltState& belt);
     void note_compression(std::size_t index, const Pressing& pressing, Pressing::State state);
@@ -46,7 +50,8 @@ class ProcessMonitor {
 
     const HeightField& field_;
     const ToolPath& path_;
-    std::vector<PathStep> steps_;  // begun so far
+    std::vector<PathStep> steps_;       // begun so far
+    std::vector<std::size_t> planned_;  // by step: number of the planned one
     const ProcessSettings& process_;
     const MonitorLimits& limits_;
     const RemovalLaw& law_;

@@ -158,7 +158,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
                 continue;
             }
         }
-        monitor.begin(step);
+        monitor.begin(step, steps.number());
         StepRecord record;
         record.time = step.time;
         record.pose = step.pose;

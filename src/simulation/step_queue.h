@@ -18,6 +18,8 @@ class StepQueue {
     /// Goes on to the next step; false when there is none.
     bool next();
     const PathStep& step() const { return now_.step; }
+    /// Number of the planned step that it is or is a part of.
+    std::size_t number() const { return begun_ - 1; }
     /// Share of a planned step that it is.
     double share() const { return 1.0 / now_.parts; }
     /// Parts that the planned step has been cut into.

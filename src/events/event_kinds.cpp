@@ -90,7 +90,7 @@ constexpr std::array kKinds = {
               "lower the force, or move the pose away from the work; check Young's modulus and the "
               "unit of the force"},
     EventKind{"step_too_coarse", kWarning, "mm", kLarger,
-              "the wheel follows the surface, and more than half of what it is pressed in by is "
+              "the wheel follows the surface, and more than it is pressed in by is "
               "ground at one place before it moves on, even with the step cut smaller; the value "
               "is how much",
               "lower simulation.max_travel_mm; or raise the feed, lower the force or the law's "

@@ -26,7 +26,10 @@ constexpr double kAhead = 0.5;
 
 Pressing::Pressing(const ProcessSettings& process, double spacing, double tolerance,
                    const ContactModel& model)
-    : process_(process), tolerance_(tolerance), model_(model), map_(process.wheel, spacing),
+    : process_(process),
+      tolerance_(tolerance),
+      model_(model),
+      map_(process.wheel, spacing),
       largest_indentation_(std::min(model.thickness(), (1.0 - kAhead) * process.wheel.radius)) {}
 
 Frame Pressing::placed_frame() const {

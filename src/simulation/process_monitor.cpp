@@ -132,11 +132,12 @@ void ProcessMonitor::coarse(const Pressing& pressing, double removal, double mos
     Event* event = note("step_too_coarse", index, removal);
     if (event == nullptr) return;
     event->limit = most;
-    event->facts = {{"event.step_too_coarse",
-                     "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
-                     "half of what it is pressed in by, though the step was cut into {parts}: the "
-                     "heights are bounded by the wheel's envelope, and not resolved in time",
-                     {{"removal", removal}, {"parts", parts}}}};
+    event->facts = {
+        {"event.step_too_coarse",
+         "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
+         "the {limit:.3g} mm that it is pressed in by, though the step was cut into {parts}: the "
+         "heights are bounded by the wheel's envelope, and not resolved in time",
+         {{"removal", removal}, {"limit", most}, {"parts", parts}}}};
     put(*event, pressing, 0.0, 0.0);
 }
 
@@ -260,8 +261,7 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
     if (outer[more] <= (on[0] && on[1] ? kEven : 1.0) * even) return;
     const double share = 100.0 * outer[more];
-    Event* event =
-        note("edge_contact", index, share, static_cast<int>(more));
+    Event* event = note("edge_contact", index, share, static_cast<int>(more));
     if (event == nullptr) return;
     event->limit = 100.0 * even;
     const Arguments arguments = {{"share", share}, {"even", event->limit}};

@@ -273,7 +273,11 @@ def real_part():
         pytest.skip(f"no parts at {SHARED}")
     design = {"file": str(path), "faces": [1]}
     checked = jobs.validate(
-        {"design": design, "sampling": {"spacing_mm": 3.0}, "programs": [{"poses": line((0, 0, 0))}]}
+        {
+            "design": design,
+            "sampling": {"spacing_mm": 3.0},
+            "programs": [{"poses": line((0, 0, 0))}],
+        }
     )
     shape = workpiece.read_design(checked["design"])
     field = workpiece.make_field(checked, shape, [], core.RunContext())

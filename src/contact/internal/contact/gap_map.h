@@ -89,7 +89,7 @@ class GapMap {
         float area;               // mm2, of the design surface
         float projected_area;     // mm2, on the wheel
         bool boundary;
-        float taken = 1.0f;  // share of what the cells' rate asked for that the envelope let go
+        float taken = 1.0f;   // share of what the cells' rate asked for that the envelope let go
         bool nearest = true;  // belongs to the layer nearest to the wheel
     };
     /// Finds the four cells.

@@ -18,6 +18,8 @@ constexpr double kLeastCoverage = 0.05;
 // At the surface's border a cell of less coverage is left out: the wheel yields under it as under a
 // whole cell, so its pressure came out too high by 1 / coverage.
 constexpr double kLeastAtBorder = 0.25;
+constexpr double kOnEnvelope = 1e-5;  // mm: a sample as near to the wheel's envelope lies on it
+constexpr int kMaxSecants = 20;
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
 
 }  // namespace
@@ -26,6 +28,12 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing) : wheel_(wheel) {
     grid_.ds = spacing;
     grid_.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
     grid_.dy = wheel.width / grid_.ny;
+    const double half = 0.5 * wheel.width;
+    for (const double y : {-half, half})
+        steepest_flank_ = std::max(steepest_flank_, std::abs(wheel.drop_slope(y)));
+    for (const Eigen::Vector2d& at : wheel.profile)
+        steepest_flank_ =
+            std::max(steepest_flank_, std::abs(wheel.drop_slope(std::clamp(at.x(), -half, half))));
 }
 
 void GapMap::fit_grid(double half_length) {
@@ -63,7 +71,8 @@ void GapMap::for_cells(const Footprint& f, Visit visit) const {
 
 void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hits,
                     const Frame& work_from_contact, double reach) {
-    const Frame contact_from_work = work_from_contact.inverse();
+    contact_from_work_ = work_from_contact.inverse();
+    const Frame& contact_from_work = contact_from_work_;
     const Eigen::Matrix3d rotation = contact_from_work.linear();
     const double radius = wheel_.radius;
     footprints_.clear();
@@ -97,6 +106,7 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
         f.inside = inside;
         f.own_gap = static_cast<float>(gap);
         f.cosine = static_cast<float>(-n_radial);
+        f.facing = static_cast<float>(cosine);
         f.area = field.area[sample];
         f.projected_area = static_cast<float>(-n_radial * inside * field.area[sample] * radius / r);
         f.boundary = (field.flags[sample] & kOnBoundary) != 0;
@@ -139,8 +149,37 @@ void GapMap::update(const HeightField& field, std::span<const std::uint32_t> hit
     }
 }
 
+double GapMap::down_to_envelope(const HeightField& field, const Footprint& f, double approach,
+                                double wanted) const {
+    // By the slopes at most, and by the curvature of the radius seen from z.
+    const double overlap = approach * f.facing - f.own_gap;
+    const double bent = approach * approach / wheel_.radius;
+    if (overlap - bent >= (1.0 + steepest_flank_) * wanted) return wanted;
+    const Vec3 top = contact_from_work_ * field.top(f.sample);
+    const Vec3 normal = contact_from_work_.linear() * field.normal[f.sample].cast<double>();
+    const auto gap = [&](double lowering) {
+        const Vec3 at = top - lowering * normal;
+        const double y = std::clamp(at.y(), -0.5 * wheel_.width, 0.5 * wheel_.width);
+        return std::hypot(at.x(), at.z() - approach + wheel_.radius) -
+               (wheel_.radius - wheel_.drop(y));
+    };
+    double at_low = gap(0.0);
+    if (at_low >= 0.0) return 0.0;
+    double at_high = gap(wanted);
+    if (at_high <= kOnEnvelope) return wanted;
+    // Regula falsi. The radius is convex in the lowering, so that it comes from within.
+    double low = 0.0, high = wanted;
+    for (int k = 0; k < kMaxSecants && at_low < -kOnEnvelope; ++k) {
+        const double between = low + (high - low) * at_low / (at_low - at_high);
+        const double found = gap(between);
+        (found <= 0.0 ? low : high) = between;
+        (found <= 0.0 ? at_low : at_high) = found;
+    }
+    return low;
+}
+
 double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
-                      std::vector<std::uint32_t>& changed) {
+                      double approach, std::vector<std::uint32_t>& changed) {
     const double volume = (rate * coverage_).sum() * grid_.cell_area() * duration;
     if (!(volume > 0.0)) return 0.0;
     lowering_.assign(footprints_.size(), 0.0);
@@ -155,19 +194,41 @@ double GapMap::remove(HeightField& field, const Eigen::ArrayXd& rate, double dur
     }
     if (!(unscaled > 0.0)) return 0.0;
     const double scale = std::min(volume / unscaled, kLargestScale);
+    double kept = 0.0, free = 0.0;  // mm3, of the samples on the envelope, of the others
+    bool held = false;
+    room_.assign(footprints_.size(), 0.0);
     for (std::size_t k = 0; k < footprints_.size(); ++k) {
         if (lowering_[k] <= 0.0) continue;
-        field.height[footprints_[k].sample] -= scale * lowering_[k];
-        changed.push_back(footprints_[k].sample);
+        const Footprint& f = footprints_[k];
+        // Room enough for what the others keep back as well.
+        room_[k] = down_to_envelope(field, f, approach, kLargestScale * lowering_[k]);
+        const double most = std::min(room_[k], scale * lowering_[k]);
+        const bool holds = most < scale * lowering_[k];
+        held = held || holds;
+        (holds ? kept : free) += most * f.area;
     }
-    return scale * unscaled;
+    const double wanted = scale * unscaled;
+    double more = 1.0;
+    if (held && free > 0.0) more = std::clamp((wanted - kept) / free, 1.0, kLargestScale / scale);
+    double removed = 0.0;
+    for (std::size_t k = 0; k < footprints_.size(); ++k) {
+        if (lowering_[k] <= 0.0) continue;
+        const double lowering = std::min(room_[k], more * scale * lowering_[k]);
+        if (held) footprints_[k].taken = static_cast<float>(lowering / (scale * lowering_[k]));
+        if (lowering <= 0.0) continue;
+        field.height[footprints_[k].sample] -= lowering;
+        changed.push_back(footprints_[k].sample);
+        removed += lowering * footprints_[k].area;
+    }
+    return held ? removed : wanted;
 }
 
 double GapMap::cut(HeightField& field, std::vector<std::uint32_t>& changed) const {
     double volume = 0.0;
     for (const Footprint& f : footprints_) {
         if (f.own_gap >= 0.0f || f.inside < 0.5) continue;  // its middle lies beside the wheel
-        const double lowering = -f.own_gap / f.cosine;
+        const double lowering = down_to_envelope(field, f, 0.0, -f.own_gap / f.cosine);
+        if (lowering <= 0.0) continue;
         field.height[f.sample] -= lowering;
         volume += lowering * f.area;
         changed.push_back(f.sample);
@@ -181,7 +242,7 @@ void GapMap::spread(const Eigen::ArrayXd& rate, double duration,
         if (!f.nearest) continue;
         double amount = 0.0;
         for_cells(f, [&](int cell, float weight, double) { amount += weight * rate[cell]; });
-        amounts[f.sample] += f.inside * amount * duration;
+        amounts[f.sample] += f.taken * f.inside * amount * duration;
     }
 }
 

@@ -340,6 +340,10 @@ WheelRim::Spectrum WheelRim::build(const ContactGrid& grid, const Samples& sampl
     return result;
 }
 
+double WheelRim::thickness() const {
+    return design_.thickness();
+}
+
 std::string WheelRim::describe() const {
     return describe_design(kReadable);
 }

@@ -84,6 +84,17 @@ constexpr std::array kKinds = {
               "the feed needs more of a joint than it has, so that the robot is slower and grinds "
               "deeper there; the value is how many times its greatest speed",
               "lower the feed there, or keep clear of the singularity"},
+    EventKind{"over_compressed", kWarning, "mm", kLarger,
+              "the wheel is pressed in further than its elastic rim is thick, or than half its "
+              "radius: no contact model holds there",
+              "lower the force, or move the pose away from the work; check Young's modulus and the "
+              "unit of the force"},
+    EventKind{"step_too_coarse", kWarning, "mm", kLarger,
+              "the wheel follows the surface, and more than it is pressed in by is "
+              "ground at one place before it moves on, even with the step cut smaller; the value "
+              "is how much",
+              "lower simulation.max_travel_mm; or raise the feed, lower the force or the law's "
+              "coefficient, if one of them is a mistake"},
     EventKind{"not_converged", kWarning, "iterations", kLarger,
               "the contact was not solved to the tolerance asked for",
               "refine the contact grid, or raise belt_machine.contact_tolerance"},

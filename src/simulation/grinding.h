@@ -16,23 +16,35 @@ class Grinding {
     Grinding(HeightField& field, Pressing& pressing, const RemovalLaw& law,
              const SimulationOptions& options, TraceKeeper* trace);
 
+    /// mm that the law takes during one step at the wheel's deepest place as it is pressed now, if
+    /// the wheel follows the surface; one that stands cannot grind deeper than it stands: 0.
+    double removal(const PathStep& step);
     /// Removes what the law says during one step, in as many parts as the pressure needs to follow.
-    /// Appends the samples that it lowered to `changed`. Returns the volume, mm3.
-    double grind(const PathStep& step, std::vector<std::uint32_t>& changed);
+    /// After `removal`, for the wheel as it is pressed then. `share`: of a planned step, which has
+    /// a number of parts. Appends the samples that it lowered to `changed`; the tree has to be
+    /// refitted to them, except to those up to `refitted`. Returns the volume, mm3.
+    double grind(const PathStep& step, double share, SegmentTree& tree,
+                 std::vector<std::uint32_t>& changed);
 
     const BeltState& belt() const { return belt_; }
     /// mm3, time integral of the law's rate so far.
     double integrated_rate() const { return integrated_rate_; }
+    /// Refits the tree to the samples `changed`, which are in order then, each of them once.
+    void refit(SegmentTree& tree, std::vector<std::uint32_t>& changed);
     /// Hands over `SimulationResult::shifts`.
     Eigen::ArrayXXd take_shifts() { return std::move(shifts_); }
     /// s of wall time for removal and trace so far.
     const PhaseTimes& times() const { return times_; }
 
   private:
+    /// mm/s where the law takes most, under the wheel as it is pressed.
+    double set_rate(const PathStep& step);
     double cut_all(const PathStep& step, std::vector<std::uint32_t>& changed);
     /// Removes for as long as the pressure holds, at most `left` s. Returns how long, s.
-    double grind_part(const PathStep& step, double left, double& volume,
+    double grind_part(double left, double least, double& volume,
                       std::vector<std::uint32_t>& changed);
+    /// False if the wheel has lost the work.
+    bool press_again(const PathStep& step, SegmentTree& tree, std::vector<std::uint32_t>& changed);
 
     HeightField& field_;
     Pressing& pressing_;
@@ -43,6 +55,8 @@ class Grinding {
     BeltState belt_;
     double integrated_rate_ = 0.0;
     Eigen::ArrayXXd shifts_;
+    ProcessState state_;             // of the wheel as pressed
+    double fastest_ = 0.0;           // mm/s, the largest of `rate_`
     Eigen::ArrayXd rate_, shifted_;  // mm/s per cell
     PhaseTimes times_;
 };

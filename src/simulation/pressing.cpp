@@ -15,6 +15,10 @@ constexpr double kMargin = 0.2;
 // the approach times 1 - cos of the contact's half angle, 0.4 % at 5 degrees).
 constexpr double kPlacement = 0.05;
 constexpr int kMaxPlacements = 12;
+constexpr double kAtStop = 1e-9;  // mm
+// mm by which the wheel may move while it grinds at a place: samples further away than the margin
+// are not on its map.
+constexpr double kDrift = 0.5 * kMargin;
 // Share of the radius ahead of the wheel's centre: what lies behind cannot be in the contact.
 constexpr double kAhead = 0.5;
 
@@ -22,7 +26,11 @@ constexpr double kAhead = 0.5;
 
 Pressing::Pressing(const ProcessSettings& process, double spacing, double tolerance,
                    const ContactModel& model)
-    : process_(process), tolerance_(tolerance), model_(model), map_(process.wheel, spacing) {}
+    : process_(process),
+      tolerance_(tolerance),
+      model_(model),
+      map_(process.wheel, spacing),
+      largest_indentation_(std::min(model.thickness(), (1.0 - kAhead) * process.wheel.radius)) {}
 
 Frame Pressing::placed_frame() const {
     return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
@@ -99,7 +107,12 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
 Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tree,
                                 const Frame& work_from_contact, double force) {
     programmed_ = work_from_contact;
-    if (!process_.force_control) return press_position(field, tree);
+    state_ = process_.force_control ? press_force(field, tree, force) : press_position(field, tree);
+    return state_;
+}
+
+Pressing::State Pressing::press_force(const HeightField& field, const SegmentTree& tree,
+                                      double force) {
     const auto nothing = [&] {
         warm_ = false;
         placed_ = 0.0;
@@ -112,7 +125,7 @@ Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tre
         if (!find_touch(field, tree)) return nothing();
         searched = true;
     }
-    for (int i = 0; i < kMaxPlacements; ++i) {
+    for (int i = 0;; ++i) {
         localise(field, tree, kMargin);
         map_gap(field, kMargin);
         if (!map_.empty()) solve(true, force);
@@ -122,28 +135,50 @@ Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tre
             searched = true;
             continue;
         }
-        const double wanted = placed_ + solution_.approach;
-        if (std::abs(wanted) > process_.force_travel) {
-            const double stop = std::copysign(process_.force_travel, wanted);
-            if (std::abs(placed_ - stop) < 1e-9) {
-                solve(false, 0.0);
-                return solution_.force > 0.0 ? State::kBeyondTravel : nothing();
-            }
-            placed_ = stop;
-            continue;
+        double wanted = placed_ + solution_.approach;
+        State state = State::kPressed;
+        const double deepest = placed_ + map_.lowest() + largest_indentation_;
+        if (wanted > deepest) {
+            wanted = deepest;
+            state = State::kOverCompressed;
         }
-        if (std::abs(solution_.approach) <= kPlacement) return State::kPressed;
+        if (std::abs(wanted) > process_.force_travel) {
+            wanted = std::copysign(process_.force_travel, wanted);
+            state = State::kBeyondTravel;
+        }
+        // The last placement may be off by its remaining approach.
+        const bool last = i + 1 >= kMaxPlacements;
+        if (state == State::kPressed) {
+            if (last || std::abs(solution_.approach) <= kPlacement) return state;
+        } else if (const double near = state == State::kBeyondTravel ? kAtStop : kPlacement;
+                   last || std::abs(wanted - placed_) < near) {
+            if (last) {
+                placed_ = wanted;
+                localise(field, tree, kMargin);
+                map_gap(field, kMargin);
+            }
+            if (!map_.empty()) solve(false, 0.0);
+            return !map_.empty() && solution_.force > 0.0 ? state : nothing();
+        }
         placed_ = wanted;
     }
-    // The last placement is off by its remaining approach, which still lies within the margin or
-    // was flagged by the solver.
-    return State::kPressed;
 }
 
 Pressing::State Pressing::press_again(const HeightField& field, double force) {
+    if (state_ == State::kOverCompressed) return State::kMoved;  // it follows what recedes
     map_gap(field, kMargin);
-    solve(process_.force_control, force);
-    return solution_.force > 0.0 ? State::kPressed : State::kNoContact;
+    const bool at_stop = state_ == State::kBeyondTravel;
+    solve(process_.force_control && !at_stop, force);
+    if (solution_.force <= 0.0) return State::kNoContact;
+    if (at_stop) {
+        const bool held = placed_ > 0.0 ? solution_.force <= force : solution_.force >= force;
+        return held ? state_ : State::kMoved;
+    }
+    if (std::abs(solution_.approach) > kDrift) return State::kMoved;
+    if (!process_.force_control) return State::kPressed;
+    const bool beyond = std::abs(placed_ + solution_.approach) > process_.force_travel ||
+                        indentation() > largest_indentation_;
+    return beyond ? State::kMoved : State::kPressed;
 }
 
 }  // namespace beltgrinding

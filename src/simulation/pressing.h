@@ -22,20 +22,33 @@ class Pressing {
              const ContactModel& model);
 
     /// What pressing ended in. `kBeyondTravel`: force control met its end stop, the force is what
-    /// the wheel has there.
-    enum class State { kNoContact, kPressed, kBeyondTravel };
+    /// the wheel has there. `kOverCompressed`: the force would press the wheel in further than the
+    /// model can be asked for; it stands there. `kMoved`, of `press_again`: the wheel went so far
+    /// that it must be pressed anew.
+    enum class State { kNoContact, kPressed, kBeyondTravel, kOverCompressed, kMoved };
 
     /// Presses at the programmed pose.
     State press(const HeightField& field, const SegmentTree& tree, const Frame& work_from_contact,
                 double force);
     /// Solves again at the same place after the surface was lowered (no new localisation).
     State press_again(const HeightField& field, double force);
+    /// Presses anew where `press` did. `tree`: of the lowered field.
+    State press_anew(const HeightField& field, const SegmentTree& tree, double force) {
+        return press(field, tree, Frame(programmed_), force);
+    }
 
     /// A rigid tool: `solution` has an area and no pressure.
     bool rigid() const { return model_.rigid(); }
     const ContactSolution& solution() const { return solution_; }
     /// mm by which the wheel reaches into the surface where that is highest.
     double indentation() const { return solution_.approach - map_.lowest(); }
+    /// mm of `indentation` beyond which the model is asked for what it cannot know: the elastic
+    /// rim's thickness, or what of the wheel is looked at.
+    double largest_indentation() const { return largest_indentation_; }
+    /// The wheel follows the surface as that recedes: by force control, or a robot that gives way.
+    bool yields() const {
+        return process_.force_control ? state_ == State::kPressed : process_.robot_stiffness > 0.0;
+    }
     /// mm along z from the programmed pose to the wheel as pressed.
     double approach() const { return placed_ + solution_.approach; }
     GapMap& map() { return map_; }
@@ -47,6 +60,7 @@ class Pressing {
     std::size_t localised() const { return hits_.size(); }
 
   private:
+    State press_force(const HeightField& field, const SegmentTree& tree, double force);
     State press_position(const HeightField& field, const SegmentTree& tree);
     Frame placed_frame() const;
     void localise(const HeightField& field, const SegmentTree& tree, double margin);
@@ -64,6 +78,8 @@ class Pressing {
     Frame programmed_ = Frame::Identity();
     double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap
     bool warm_ = false;
+    State state_ = State::kNoContact;  // of the last time that it was pressed
+    double largest_indentation_;
     PhaseTimes times_;
 };
 

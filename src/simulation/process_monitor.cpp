@@ -28,16 +28,14 @@ constexpr double kStill = 1e-9;      // mm, no way
 }  // namespace
 
 ProcessMonitor::ProcessMonitor(const HeightField& field, const ToolPath& path,
-                               const std::vector<PathStep>& steps, const ProcessSettings& process,
-                               const MonitorLimits& limits, const RemovalLaw& law)
+                               const ProcessSettings& process, const MonitorLimits& limits,
+                               const RemovalLaw& law)
     : field_(field),
       path_(path),
-      steps_(steps),
       process_(process),
       limits_(limits),
       law_(law),
-      events_(path, kPause),
-      touched_(steps.size(), 0) {
+      events_(path, kPause) {
     if (limits.lower.empty()) return;
     below_.resize(field.size());
     for (std::uint32_t s = 0; s < field.size(); ++s) below_[s] = field.height[s] < lower_limit(s);
@@ -57,12 +55,25 @@ void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, doubl
     if (const auto sample = pressing.map().sample_near(s, y)) put(event, *sample);
 }
 
-void ProcessMonitor::pressed(std::size_t index, const Pressing& pressing, Pressing::State state,
+void ProcessMonitor::begin(const PathStep& step, std::size_t planned) {
+    steps_.push_back(step);
+    planned_.push_back(planned);
+    touched_.push_back(0);
+}
+
+Event* ProcessMonitor::note(const char* kind, std::size_t index, double value, int part,
+                            double badness) {
+    return events_.note(kind, planned_[index], steps_[index], value, part, badness);
+}
+
+void ProcessMonitor::pressed(const Pressing& pressing, Pressing::State state,
                              const BeltState& belt) {
+    const std::size_t index = steps_.size() - 1;
     touched_[index] = 1;
     if (pressing.rigid()) return;  // nothing is known of its pressure
     if (state == Pressing::State::kBeyondTravel) note_force(index, pressing);
     note_limits(index, pressing, belt);
+    note_compression(index, pressing, state);
     note_distribution(index, pressing);
     note_hollow(index, pressing, false);
     note_hollow(index, pressing, true);
@@ -74,7 +85,7 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     const bool low = force < step.force;
     // On the way to the surface and off it, less than the commanded force is no fault.
     if (low && step.plunging) return;
-    Event* event = events_.note(low ? "force_not_reached" : "force_exceeded", index, step, force);
+    Event* event = note(low ? "force_not_reached" : "force_exceeded", index, force);
     if (event == nullptr) return;
     event->limit = step.force;
     const Arguments arguments = {
@@ -93,6 +104,43 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     put(*event, pressing, 0.0, 0.0);
 }
 
+void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressing,
+                                      Pressing::State state) {
+    const double depth = pressing.indentation(), most = pressing.largest_indentation();
+    const bool stopped = state == Pressing::State::kOverCompressed;
+    if (!stopped && !(depth > most)) return;
+    Event* event = note("over_compressed", index, depth);
+    if (event == nullptr) return;
+    event->limit = most;
+    event->facts = {{"event.over_compressed",
+                     "the wheel is pressed in by {depth:.3g} mm, more than the {limit:.3g} mm that "
+                     "it can yield: what the contact model says there is not to be trusted",
+                     {{"depth", depth}, {"limit", most}}}};
+    if (stopped) {
+        event->facts = {{"event.force_over_compresses",
+                         "{commanded:.3g} N would press the wheel in by more than the {limit:.3g} "
+                         "mm that it can yield: it is held there, at {force:.3g} N",
+                         {{"commanded", steps_[index].force},
+                          {"limit", most},
+                          {"force", pressing.solution().force}}}};
+    }
+    put(*event, pressing, 0.0, 0.0);
+}
+
+void ProcessMonitor::coarse(const Pressing& pressing, double removal, double most, int parts) {
+    const std::size_t index = steps_.size() - 1;
+    Event* event = note("step_too_coarse", index, removal);
+    if (event == nullptr) return;
+    event->limit = most;
+    event->facts = {
+        {"event.step_too_coarse",
+         "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
+         "the {limit:.3g} mm that it is pressed in by, though the step was cut into {parts}: the "
+         "heights are bounded by the wheel's envelope, and not resolved in time",
+         {{"removal", removal}, {"limit", most}, {"parts", parts}}}};
+    put(*event, pressing, 0.0, 0.0);
+}
+
 void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
                                  const BeltState& belt) {
     const PathStep& step = steps_[index];
@@ -105,7 +153,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
             grid.y(static_cast<int>(cell) / grid.nx));
     };
     if (!contact.converged) {
-        if (Event* event = events_.note("not_converged", index, step, contact.iterations)) {
+        if (Event* event = note("not_converged", index, contact.iterations)) {
             event->facts = {{"event.not_converged",
                              "the contact did not converge in {iterations} iterations",
                              {{"iterations", contact.iterations}}}};
@@ -114,7 +162,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     }
     const double peak = contact.peak_pressure;
     if (limits_.pressure > 0.0 && peak > limits_.pressure) {
-        if (Event* event = events_.note("over_pressure", index, step, peak)) {
+        if (Event* event = note("over_pressure", index, peak)) {
             event->limit = limits_.pressure;
             event->facts = {
                 {"event.over_pressure",
@@ -126,7 +174,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     const double heat = kMetre * peak * process_.belt_speed;
     const double heat_limit = kMetre * limits_.heat;
     if (heat_limit > 0.0 && heat > heat_limit) {
-        if (Event* event = events_.note("burn_risk", index, step, heat)) {
+        if (Event* event = note("burn_risk", index, heat)) {
             event->limit = heat_limit;
             event->facts = {{"event.burn_risk",
                              "pressure times belt speed reaches {heat:.3g} MPa m/s, above the "
@@ -139,7 +187,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     if (const auto outside = law_.outside(peak, state)) {
         const double ratio = outside->value / outside->limit;
         const double badness = ratio > 0.0 ? std::abs(std::log(ratio)) : HUGE_VAL;
-        Event* event = events_.note("law_out_of_range", index, step, outside->value, 0, badness);
+        Event* event = note("law_out_of_range", index, outside->value, 0, badness);
         if (event != nullptr) {
             event->limit = outside->limit;
             event->unit = outside->unit;
@@ -149,7 +197,7 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
         }
     }
     if (!process_.wear.measured(belt)) {
-        if (Event* event = events_.note("belt_out_of_range", index, step, belt.work)) {
+        if (Event* event = note("belt_out_of_range", index, belt.work)) {
             event->facts = {{"event.belt_not_measured",
                              "the belt has done more than its wear was measured for: {work:.4g} J",
                              {{"work", belt.work}}}};
@@ -179,7 +227,7 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     note_edges(index, pressing, by_column);
     const double tilt = std::abs(centre) / process_.wheel.radius;
     if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
-    if (Event* event = events_.note("tilted_contact", index, steps_[index], kDegrees * tilt)) {
+    if (Event* event = note("tilted_contact", index, kDegrees * tilt)) {
         event->limit = kDegrees * limits_.tilt;
         const Arguments arguments = {{"angle", kDegrees * tilt}};
         if (centre > 0.0) {
@@ -213,8 +261,7 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
     if (outer[more] <= (on[0] && on[1] ? kEven : 1.0) * even) return;
     const double share = 100.0 * outer[more];
-    Event* event =
-        events_.note("edge_contact", index, steps_[index], share, static_cast<int>(more));
+    Event* event = note("edge_contact", index, share, static_cast<int>(more));
     if (event == nullptr) return;
     event->limit = 100.0 * even;
     const Arguments arguments = {{"share", share}, {"even", event->limit}};
@@ -274,7 +321,7 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
     const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * span;
     const double hollow = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
-    Event* event = events_.note("wheel_too_large", index, steps_[index], hollow, across ? 1 : 0);
+    Event* event = note("wheel_too_large", index, hollow, across ? 1 : 0);
     if (event == nullptr) return;
     if (radius > 0.0) event->limit = radius;
     const Arguments arguments = {{"radius", hollow}, {"span", span}};
@@ -298,8 +345,8 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
                         pressing.approach() - process_.wheel.radius + r * std::cos(angle));
 }
 
-void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> changed) {
-    const PathStep& step = steps_[index];
+void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
+    const std::size_t index = steps_.size() - 1;
     double deepest = 0.0, worst = 0.0;
     std::uint32_t deepest_at = 0, worst_at = 0;
     bool fresh = false;  // a sample was within its limits before
@@ -314,7 +361,7 @@ void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> ch
         if (height - lower_limit(s) < worst) worst = height - lower_limit(s), worst_at = s;
     }
     if (fresh) {
-        if (Event* event = events_.note("gouge", index, step, field_.height[worst_at], 0, -worst)) {
+        if (Event* event = note("gouge", index, field_.height[worst_at], 0, -worst)) {
             event->limit = lower_limit(worst_at);
             event->facts = {{"event.gouge",
                              "ground to {height:.3f} mm, below the lower limit of {limit:.3g} mm",
@@ -323,7 +370,7 @@ void ProcessMonitor::ground(std::size_t index, std::span<const std::uint32_t> ch
         }
     }
     if (deepest < -field_.depth) {
-        if (Event* event = events_.note("depth_exceeded", index, step, deepest)) {
+        if (Event* event = note("depth_exceeded", index, deepest)) {
             event->limit = -field_.depth;
             event->facts = {
                 {"event.depth_exceeded",
@@ -384,7 +431,7 @@ void ProcessMonitor::note_lost_contact() {
         double way = 0.0;
         for (std::size_t k = before + 1; k < i; ++k) {
             way += steps_[k].feed * steps_[k].duration;
-            Event* event = events_.note("loss_of_contact", k, steps_[k], way);
+            Event* event = note("loss_of_contact", k, way);
             if (event == nullptr) continue;
             event->facts = {{"event.loss_of_contact",
                              "the wheel loses the work for {way:.3g} mm of its way",

@@ -15,21 +15,29 @@ namespace beltgrinding {
 class ProcessMonitor {
   public:
     /// All of them must outlive it. `field` is the one that is ground.
-    ProcessMonitor(const HeightField& field, const ToolPath& path,
-                   const std::vector<PathStep>& steps, const ProcessSettings& process,
+    ProcessMonitor(const HeightField& field, const ToolPath& path, const ProcessSettings& process,
                    const MonitorLimits& limits, const RemovalLaw& law);
 
-    /// The wheel is pressed in step `index`, nothing is removed yet. `belt`: what it has done.
-    void pressed(std::size_t index, const Pressing& pressing, Pressing::State state,
-                 const BeltState& belt);
-    /// Step `index` has lowered the samples `changed`.
-    void ground(std::size_t index, std::span<const std::uint32_t> changed);
+    /// A step begins: what is told after this is of it. `planned`: number of the step that it is
+    /// or is a part of.
+    void begin(const PathStep& step, std::size_t planned);
+    /// The wheel is pressed, nothing is removed yet. `belt`: what it has done.
+    void pressed(const Pressing& pressing, Pressing::State state, const BeltState& belt);
+    /// The law takes `removal` mm in the step, more than `most`, though it is one of `parts` that
+    /// the planned step was cut into.
+    void coarse(const Pressing& pressing, double removal, double most, int parts);
+    /// The step has lowered the samples `changed`.
+    void ground(std::span<const std::uint32_t> changed);
     /// All events, in order of time.
     std::vector<Event> take();
 
   private:
+    /// A condition in the step `index`, as EventLog has it.
+    Event* note(const char* kind, std::size_t index, double value, int part = 0,
+                double badness = Event::kNone);
     void note_force(std::size_t index, const Pressing& pressing);
     void note_limits(std::size_t index, const Pressing& pressing, const BeltState& belt);
+    void note_compression(std::size_t index, const Pressing& pressing, Pressing::State state);
     void note_distribution(std::size_t index, const Pressing& pressing);
     void note_edges(std::size_t index, const Pressing& pressing,
                     const std::vector<double>& by_column);
@@ -42,7 +50,8 @@ class ProcessMonitor {
 
     const HeightField& field_;
     const ToolPath& path_;
-    const std::vector<PathStep>& steps_;
+    std::vector<PathStep> steps_;       // begun so far
+    std::vector<std::size_t> planned_;  // by step: number of the planned one
     const ProcessSettings& process_;
     const MonitorLimits& limits_;
     const RemovalLaw& law_;

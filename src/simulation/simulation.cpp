@@ -11,6 +11,7 @@
 #include "pressing.h"
 #include "process_monitor.h"
 #include "simulation/recording.h"
+#include "step_queue.h"
 #include "trace_keeper.h"
 
 namespace beltgrinding {
@@ -19,7 +20,11 @@ namespace {
 // The wheel's cells must each hold samples: never finer than this many sample spacings.
 constexpr double kSamplesPerCell = 1.5;
 constexpr double kMostCellsAcross = 2000;
-constexpr std::size_t kReportEvery = 16;  // steps between two looks at progress and cancel
+// Share of the wheel's indentation that may be ground in a step where the wheel follows the surface:
+// beyond, the step is cut, since the wheel would sink where it has long gone on.
+constexpr double kCoarse = 1.0;
+constexpr double kLeastIndentation = 1e-6;  // mm
+constexpr std::size_t kReportEvery = 16;    // steps between two looks at progress and cancel
 
 void refuse_empty(const HeightField& field) {
     if (field.size() == 0) {
@@ -106,9 +111,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     process.validate();
     resolution.validate();
     options.limits.validate(field.size());
-    const std::vector<PathStep> steps =
-        path.steps({resolution.max_travel, resolution.max_angle, process.force});
-    if (steps.empty()) {
+    StepQueue steps(path, {resolution.max_travel, resolution.max_angle, process.force});
+    if (steps.planned() == 0) {
         throw InputError(
             "simulation.no_grinding_motion",
             "the path has no motion that grinds: it needs at least two poses, and other "
@@ -117,13 +121,13 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
 
     SimulationResult result;
     result.process_time = path.duration();
-    result.steps.reserve(steps.size());
+    result.steps.reserve(steps.planned());
     PhaseTimes& wall = result.wall;
     HeightGuard guard(field);
     Recording* const recording = options.outputs.recording;
     RecordingGuard recording_guard(recording);
     if (recording != nullptr) recording->begin(field, path.duration());
-    ProcessMonitor monitor(field, path, steps, process, options.limits, law);
+    ProcessMonitor monitor(field, path, process, options.limits, law);
     std::optional<TraceKeeper> trace;
     if (options.outputs.trace) trace.emplace(field);
     std::unique_ptr<SegmentTree> tree;
@@ -138,12 +142,23 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     std::vector<std::uint32_t> changed;
     bool touched = false;
 
-    for (std::size_t i = 0; i < steps.size(); ++i) {
+    for (std::size_t i = 0; steps.next(); ++i) {
         if (i % kReportEvery == 0) {
             context.throw_if_cancelled();
-            context.report(static_cast<double>(i) / static_cast<double>(steps.size()));
+            context.report(steps.progress());
         }
-        const PathStep& step = steps[i];
+        const PathStep& step = steps.step();
+        const auto state = pressing.press(field, *tree, step.work_from_contact, step.force);
+        double removal = 0.0, most = 0.0;  // mm
+        if (state != Pressing::State::kNoContact) {
+            removal = grinding.removal(step);
+            most = kCoarse * std::max(pressing.indentation(), kLeastIndentation);
+            if (removal > most && steps.divisible()) {
+                steps.cut(removal / most);
+                continue;
+            }
+        }
+        monitor.begin(step, steps.number());
         StepRecord record;
         record.time = step.time;
         record.pose = step.pose;
@@ -151,7 +166,6 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         record.feed = static_cast<float>(step.feed);
 
         changed.clear();
-        const auto state = pressing.press(field, *tree, step.work_from_contact, step.force);
         record.segments = static_cast<std::uint32_t>(pressing.localised());
         if (state != Pressing::State::kNoContact) {
             touched = true;
@@ -162,18 +176,14 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             record.peak_pressure = static_cast<float>(contact.peak_pressure);
             {
                 const Stopwatch watch(wall.events);
-                monitor.pressed(i, pressing, state, grinding.belt());
+                monitor.pressed(pressing, state, grinding.belt());
+                if (removal > most) monitor.coarse(pressing, removal, most, steps.parts());
             }
-            const double volume = grinding.grind(step, changed);
+            const double volume = grinding.grind(step, steps.share(), *tree, changed);
             record.removal_rate = static_cast<float>(volume / step.duration);
-            {
-                const Stopwatch watch(wall.refit);
-                std::sort(changed.begin(), changed.end());
-                changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-                tree->refit(field, changed);
-            }
+            grinding.refit(*tree, changed);
             const Stopwatch watch(wall.events);
-            monitor.ground(i, changed);
+            monitor.ground(changed);
         }
         if (trace && !changed.empty()) {
             const Stopwatch watch(wall.trace);

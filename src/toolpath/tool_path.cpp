@@ -152,7 +152,6 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
                          "angle in degrees)");
     }
     std::vector<PathStep> steps;
-    double time = 0.0;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
         const PathPose& from = poses_[i - 1];
         const PathPose& to = poses_[i];
@@ -180,37 +179,57 @@ std::vector<PathStep> ToolPath::steps(const SteppingOptions& options) const {
                                          "the path needs more than {count} steps; enlarge the step",
                                          {{"count", kMaxSteps}}));
             }
-            const int parts = static_cast<int>(wanted);
-            const double force = to.force >= 0.0 ? to.force : options.default_force;
-            Frame previous = start;
-            double begin = 0.0;  // of the step, s since the motion's
-            for (int k = 0; k < parts; ++k) {
-                PathStep step;
-                step.work_from_contact = frames_.work_from_contact(frame_at((k + 0.5) / parts));
-                const Frame next = frames_.work_from_contact(frame_at((k + 1.0) / parts));
-                if (trapezoidal()) {
-                    const double finish = elapsed(i, (k + 1.0) / parts);
-                    step.duration = finish - begin;
-                    step.time = time + 0.5 * (begin + finish);
-                    begin = finish;
-                    if (!(step.duration > 0.0)) continue;
-                } else {
-                    step.duration = duration / parts;
-                    step.time = time + (k + 0.5) * step.duration;
-                }
-                const Vec3 way = next.translation() - previous.translation();
-                const double along = std::abs(way.dot(step.work_from_contact.linear().col(2)));
-                step.feed = way.norm() / step.duration;
-                step.plunging = 2.0 * along * along > way.squaredNorm();
-                step.force = force;
-                step.pose = static_cast<std::uint32_t>(i);
-                steps.push_back(step);
-                previous = next;
-            }
+            append_steps(i, 0.0, 1.0, static_cast<int>(wanted),
+                         to.force >= 0.0 ? to.force : options.default_force, steps);
         }
-        time += duration;
     }
     return steps;
+}
+
+std::vector<PathStep> ToolPath::cut(const PathStep& step, int parts) const {
+    std::vector<PathStep> steps;
+    append_steps(step.pose, step.begin, step.end, parts, step.force, steps);
+    return steps;
+}
+
+void ToolPath::append_steps(std::size_t i, double begin, double end, int parts, double force,
+                            std::vector<PathStep>& steps) const {
+    const double duration = this->duration(i), time = ends_[i - 1], way = end - begin;
+    const auto frame_at = [&](double t) {
+        return frames_.work_from_contact(
+            trapezoidal() ? plan_->frame(poses_, i, t)
+                          : interpolate(poses_[i - 1].base_from_tcp, poses_[i].base_from_tcp, t));
+    };
+    // At constant feed a motion begins at the pose itself, to the last bit.
+    Frame previous = begin > 0.0 || trapezoidal()
+                         ? frame_at(begin)
+                         : frames_.work_from_contact(poses_[i - 1].base_from_tcp);
+    double since = trapezoidal() ? elapsed(i, begin) : 0.0;  // of the step's begin, s
+    for (int k = 0; k < parts; ++k) {
+        PathStep step;
+        step.begin = begin + way * (k / static_cast<double>(parts));
+        step.end = begin + way * ((k + 1.0) / parts);
+        step.work_from_contact = frame_at(begin + way * ((k + 0.5) / parts));
+        const Frame next = frame_at(step.end);
+        if (trapezoidal()) {
+            const double finish = elapsed(i, step.end);
+            step.duration = finish - since;
+            step.time = time + 0.5 * (since + finish);
+            since = finish;
+            if (!(step.duration > 0.0)) continue;
+        } else {
+            step.duration = way * duration / parts;
+            step.time = time + (begin * duration + (k + 0.5) * step.duration);
+        }
+        const Vec3 moved = next.translation() - previous.translation();
+        const double along = std::abs(moved.dot(step.work_from_contact.linear().col(2)));
+        step.feed = moved.norm() / step.duration;
+        step.plunging = 2.0 * along * along > moved.squaredNorm();
+        step.force = force;
+        step.pose = static_cast<std::uint32_t>(i);
+        steps.push_back(step);
+        previous = next;
+    }
 }
 
 }  // namespace beltgrinding

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "support/synthetic_field.h"
@@ -87,7 +89,7 @@ TEST(GapMap, SeesOnlyTheNearestLayer) {
     EXPECT_NEAR(map.lowest(), 0.0, 2e-3);
     std::vector<std::uint32_t> changed;
     Eigen::ArrayXd rate = (map.gap() < 0.2).select(Eigen::ArrayXd::Ones(map.gap().size()), 0.0);
-    map.remove(field, rate, 0.01, changed);
+    map.remove(field, rate, 0.01, 1.0, changed);
     for (const std::uint32_t s : changed) EXPECT_LT(s, n);
     EXPECT_FALSE(changed.empty());
 }
@@ -100,13 +102,68 @@ TEST(GapMap, RemovesTheVolumeOfTheCells) {
         map.update(field, all_of(field), above(0.0, 20.0, 0.2, 0.4), 1.0);
         const Eigen::ArrayXd rate = (-map.gap()).max(0.0);
         std::vector<std::uint32_t> changed;
-        const double volume = map.remove(field, rate, 0.5, changed);
+        const double volume = map.remove(field, rate, 0.5, 1.0, changed);
         EXPECT_NEAR(volume, (rate * map.coverage()).sum() * map.grid().cell_area() * 0.5, 1e-12);
         double removed = 0.0;
         for (std::size_t i = 0; i < field.size(); ++i) {
             removed += field.area[i] * (before[i] - field.height[i]);
         }
         EXPECT_NEAR(removed, volume, 1e-9 * volume);
+    }
+}
+
+/// mm by which the top of a sample lies within the wheel at `work_from_contact`, moved by
+/// `approach` along z; negative: outside.
+double overlap(const HeightField& field, std::size_t sample, const ContactWheel& wheel,
+               const Frame& work_from_contact, double approach) {
+    const Vec3 top = work_from_contact.inverse() * field.top(sample) - approach * Vec3::UnitZ();
+    if (std::abs(top.y()) > 0.5 * (wheel.width + field.spacing)) return -1.0;
+    const double y = std::clamp(top.y(), -0.5 * wheel.width, 0.5 * wheel.width);
+    return wheel.radius - wheel.drop(y) - std::hypot(top.x(), top.z() + wheel.radius);
+}
+
+TEST(GapMap, NoSampleFallsBelowTheEnvelope) {
+    const Frame pose = above(0.0, 20.0, 0.2, 0.4);
+    for (const ContactWheel& wheel :
+         {ContactWheel{50.0, 15.0, 0.0}, ContactWheel{50.0, 15.0, 20.0}}) {
+        for (const double approach : {0.3, 3.0}) {
+            HeightField field = testing::cylinder(45.0, 60.0, 40.0, 0.6, 0.5);
+            const HeightField before = field;
+            GapMap map(wheel, 1.0);
+            map.update(field, all_of(field), pose, 1.0);
+            // The middle gets more than there is, the border about as much.
+            const Eigen::ArrayXd rate = 2.0 * (approach + 0.5 - map.gap()).max(0.0);
+            std::vector<std::uint32_t> changed;
+            const double volume = map.remove(field, rate, 1.0, approach, changed);
+            EXPECT_FALSE(changed.empty());
+            double removed = 0.0;
+            for (std::size_t i = 0; i < field.size(); ++i) {
+                EXPECT_LE(field.height[i], before.height[i]);
+                removed += field.area[i] * (before.height[i] - field.height[i]);
+                const double was = overlap(before, i, wheel, pose, approach);
+                const double is = overlap(field, i, wheel, pose, approach);
+                EXPECT_GE(is, std::min(was, -1e-9)) << i;  // none goes through
+            }
+            EXPECT_NEAR(removed, volume, 1e-9 * volume);
+        }
+    }
+}
+
+TEST(GapMap, ADeepCutEndsOnTheEnvelope) {
+    // Along a normal far from the wheel's radius the cut is no straight share of the overlap.
+    const ContactWheel wheel{40.0, 20.0, 30.0};
+    for (const double deep : {0.1, 2.0, 8.0}) {
+        HeightField field = testing::plate(60.0, 40.0, 0.5);
+        const HeightField before = field;
+        GapMap map(wheel, 1.0);
+        const Frame pose = above(30.0, 20.0, -deep);
+        map.update(field, all_of(field), pose, 0.2);
+        std::vector<std::uint32_t> changed;
+        map.cut(field, changed);
+        EXPECT_FALSE(changed.empty());
+        for (const std::uint32_t s : changed) {
+            EXPECT_NEAR(overlap(field, s, wheel, pose, 0.0), 0.0, 2e-5) << deep;
+        }
     }
 }
 

@@ -1,4 +1,5 @@
 #include "beltgrinding/simulation.h"
+#include "contact/half_space.h"
 #include "contact/wheel_rim.h"
 #include "simulation/recording.h"
 
@@ -333,6 +334,74 @@ TEST(Simulation, LimitsAndOutputsChangeNothingThatIsGround) {
         EXPECT_GT(phase, 0.0);
     }
     EXPECT_EQ(without.wall.trace, 0.0);
+}
+
+TEST(Simulation, TheEndStopHoldsWithinAStep) {
+    // Pressed again within a step, the wheel went on beyond the stop.
+    for (const double force : {300.0, 1e9}) {
+        HeightField field = testing::plate(60.0, 40.0, 1.0, 0.3);
+        const ElasticFoundation foundation(0.5);
+        SimulationOptions o = options();
+        o.process.force = force;
+        o.process.force_travel = 0.7;
+        const ToolPath path({pressing_down(10, 20, 0.3, 5.0), pressing_down(50, 20, 0.3, 5.0)}, {});
+        const SimulationResult result = simulate(field, path, foundation, LocalLaw({1e-2}), o);
+        EXPECT_GE(*std::min_element(field.height.begin(), field.height.end()), -0.4 - 1e-6);
+        for (const StepRecord& step : result.steps) EXPECT_LE(step.approach, 0.7f);
+    }
+}
+
+TEST(Simulation, AStepThatTakesMoreThanTheIndentationIsCut) {
+    const ToolPath path({pressing_down(10, 20, 0.3, 20.0), pressing_down(50, 20, 0.3, 20.0)}, {});
+    const ElasticFoundation foundation(0.5);
+    SimulationOptions o = options();
+    o.resolution.max_travel = 4.0;
+    o.process.force_travel = 100.0;
+    std::size_t last = 0;
+    for (const double coefficient : {1e-4, 2e-3, 10.0}) {
+        HeightField field = testing::plate(60.0, 40.0, 1.0, 0.3);
+        Recording recording;
+        o.outputs.recording = &recording;
+        const SimulationResult result =
+            simulate(field, path, foundation, LocalLaw({coefficient}), o);
+        EXPECT_GT(result.steps.size(), last);
+        last = result.steps.size();
+        double time = 0.0, volume = 0.0;
+        for (const StepRecord& step : result.steps) {
+            EXPECT_NEAR(step.time, time + 0.5 * step.duration, 1e-6);
+            time += step.duration;
+            volume += static_cast<double>(step.removal_rate) * step.duration;
+        }
+        EXPECT_NEAR(time, 2.0, 1e-5);
+        EXPECT_NEAR(volume, result.removed_volume, 1e-5 * volume);
+        EXPECT_NEAR(result.belt.volume, result.removed_volume, 1e-9 * volume);
+        const bool told =
+            std::any_of(result.events.begin(), result.events.end(),
+                        [](const Event& event) { return event.kind == "step_too_coarse"; });
+        EXPECT_EQ(told, coefficient == 10.0);
+        if (coefficient == 1e-4) {
+            EXPECT_EQ(last, 10u);
+        }
+        EXPECT_LE(last, 640u);
+    }
+}
+
+TEST(Simulation, AnAbsurdForceIsHeldAtTheRimsThickness) {
+    HeightField field = testing::plate(60.0, 40.0, 1.0, 0.3);
+    const BondedLayer layer({5.0, 0.45}, 10.0);
+    SimulationOptions o = options();
+    o.process.force = 1e9;
+    o.process.force_travel = 1e4;
+    const ToolPath path({pressing_down(25, 20, 0.3, 20.0), pressing_down(30, 20, 0.3, 20.0)}, {});
+    const SimulationResult result = simulate(field, path, layer, LocalLaw({1e-12}), o);
+    ASSERT_FALSE(result.events.empty());
+    EXPECT_TRUE(std::any_of(result.events.begin(), result.events.end(), [](const Event& event) {
+        return event.kind == "over_compressed" && event.limit == 10.0;
+    }));
+    for (const StepRecord& step : result.steps) {
+        EXPECT_NEAR(step.approach, 10.0, 0.1);
+        EXPECT_GT(step.force, 0.0);
+    }
 }
 
 TEST(Simulation, ComingToTheSurfaceAndLeavingItIsNoEvent) {

@@ -40,6 +40,37 @@ TEST(ToolPath, InterpolatesPositionLinearlyAndOrientationBySlerp) {
     }
 }
 
+TEST(ToolPath, AStepIsCutIntoStepsOfTheSameWayAndTime) {
+    for (const auto timing : {TimeLaw::Timing::kConstantFeed, TimeLaw::Timing::kTrapezoidal}) {
+        TimeLaw law;
+        law.timing = timing;
+        const ToolPath path({pose_at(0, 0, 0), pose_at(7, 0, 0, 10.0, 0.3), pose_at(7, 9, 0)}, {},
+                            law);
+        for (const PathStep& whole : path.steps({3.0, 1.0, 50.0})) {
+            std::vector<PathStep> parts = path.cut(whole, 4);
+            const std::vector<PathStep> again = path.cut(parts[1], 2);  // a part may be cut again
+            parts.erase(parts.begin() + 1);
+            parts.insert(parts.begin() + 1, again.begin(), again.end());
+            double time = whole.time - 0.5 * whole.duration, share = whole.begin;
+            for (const PathStep& part : parts) {
+                EXPECT_NEAR(part.time - 0.5 * part.duration, time, 1e-9);
+                EXPECT_NEAR(part.begin, share, 1e-12);
+                time += part.duration;
+                share = part.end;
+                EXPECT_EQ(part.pose, whole.pose);
+                EXPECT_EQ(part.force, whole.force);
+            }
+            EXPECT_NEAR(time, whole.time + 0.5 * whole.duration, 1e-9);
+            EXPECT_NEAR(share, whole.end, 1e-12);
+            // Halves stand on both sides of the whole's place.
+            const std::vector<PathStep> halves = path.cut(whole, 2);
+            const Vec3 middle = 0.5 * (halves[0].work_from_contact.translation() +
+                                       halves[1].work_from_contact.translation());
+            EXPECT_LT((middle - whole.work_from_contact.translation()).norm(), 0.05);
+        }
+    }
+}
+
 TEST(ToolPath, StepsAreNeverLongerThanAsked) {
     const ToolPath path({pose_at(0, 0, 0), pose_at(7.3, 0, 0, 10.0, 0.3), pose_at(7.3, 9, 0)}, {});
     const auto steps = path.steps({0.5, 0.01, 50.0});

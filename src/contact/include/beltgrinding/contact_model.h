@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -102,6 +103,9 @@ class ContactModel {
     /// True if there is no elasticity at all: no pressure can be solved for, and the tool's
     /// envelope is what remains.
     virtual bool rigid() const { return false; }
+    /// mm of what is elastic between the work and a rigid core: no contact can be deeper. Infinite:
+    /// the model knows of no core.
+    virtual double thickness() const { return std::numeric_limits<double>::infinity(); }
     /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
 

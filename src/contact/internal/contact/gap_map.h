@@ -43,9 +43,11 @@ class GapMap {
 
     /// Lowers `field.height` by the removal of `rate` (mm/s per cell) over `duration` s: the rate
     /// is interpolated at each sample, then scaled so that the samples' volume equals the cells'
-    /// (rate x coverage x cell area x duration) to rounding. Appends the samples it lowered to
-    /// `changed`. Returns the volume, mm3.
-    double remove(HeightField& field, const Eigen::ArrayXd& rate, double duration,
+    /// (rate x coverage x cell area x duration) to rounding. No sample falls below the envelope of
+    /// the undeformed wheel, moved by `approach` (mm, along the contact frame's z) from where the
+    /// map was taken; what that keeps back is taken from the others, as far as they stand above it.
+    /// Appends the samples it lowered to `changed`. Returns the volume, mm3.
+    double remove(HeightField& field, const Eigen::ArrayXd& rate, double duration, double approach,
                   std::vector<std::uint32_t>& changed);
 
     /// Lowers every sample that reaches into the wheel's envelope onto it, along its own normal: a
@@ -53,7 +55,8 @@ class GapMap {
     double cut(HeightField& field, std::vector<std::uint32_t>& changed) const;
 
     /// Adds what `rate` (mm/s per cell) takes from each sample in `duration` s to `amounts` (mm,
-    /// one per sample of the field), without touching the field.
+    /// one per sample of the field), without touching the field: as little as the last `remove`
+    /// took where the envelope kept some back.
     void spread(const Eigen::ArrayXd& rate, double duration,
                 Eigen::Ref<Eigen::ArrayXd> amounts) const;
 
@@ -82,9 +85,11 @@ class GapMap {
         float u, v;               // weights of the cells of higher s, of higher y
         float own_gap;            // mm, radial, at the sample itself
         float cosine;             // of its normal against the wheel's radius
+        float facing;             // cosine of the wheel's radius there against the contact's z
         float area;               // mm2, of the design surface
         float projected_area;     // mm2, on the wheel
         bool boundary;
+        float taken = 1.0f;   // share of what the cells' rate asked for that the envelope let go
         bool nearest = true;  // belongs to the layer nearest to the wheel
     };
     /// Finds the four cells.
@@ -93,13 +98,19 @@ class GapMap {
     template <class Visit>
     void for_cells(const Footprint& f, Visit visit) const;
     void fit_grid(double half_length);
+    /// How far of `wanted` mm the sample may be lowered until it lies on the envelope of the wheel,
+    /// moved by `approach` mm along z.
+    double down_to_envelope(const HeightField& field, const Footprint& f, double approach,
+                            double wanted) const;
 
     ContactWheel wheel_;
+    double steepest_flank_ = 0.0;  // of the wheel's profile, mm per mm of width
+    Frame contact_from_work_ = Frame::Identity();
     ContactGrid grid_;
     Eigen::ArrayXd gap_, coverage_, nearest_, weight_;
     std::vector<std::uint8_t> at_boundary_;
     std::vector<Footprint> footprints_;
-    std::vector<double> lowering_;
+    std::vector<double> lowering_, room_;  // mm, by footprint
 };
 
 /// Carries a pressure field from one grid to another of the same cells and another length (both are

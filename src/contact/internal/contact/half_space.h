@@ -63,6 +63,7 @@ class BondedLayer final : public ConvolutionModel {
     /// `thickness` in mm. Throws InputError for values that are none.
     BondedLayer(Elasticity elasticity, double thickness);
     std::string describe() const override;
+    double thickness() const override { return thickness_; }
 
     /// S(x) for x = q h >= 0; goes to 1 for large x.
     static double shape(double x, double poissons_ratio);

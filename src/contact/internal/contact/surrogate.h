@@ -44,6 +44,7 @@ class Surrogate final : public ContactModel {
     Surrogate(ContactFeatures features, TrainedRegression regression, std::string name);
 
     std::string describe() const override { return name_; }
+    double thickness() const override { return features_.rim_thickness; }
 
   private:
     std::unique_ptr<PreparedContact> do_prepare(const ContactGrid& grid) const override;

@@ -33,6 +33,7 @@ class WheelRim final : public ElasticModel {
 
     /// What the operator of a grid says also names the cache's entry.
     std::string describe() const override;
+    double thickness() const override;
 
     /// The section's compliance for some cells.
     struct Samples {

@@ -83,6 +83,8 @@ struct PathStep {
     std::uint32_t pose = 0;  ///< index of the programmed pose that the step leads to
     bool plunging = false;   ///< the contact point moves more along its z than across: it comes to
                              ///< the surface, or leaves it
+    double begin = 0.0;      ///< share of the motion's way at which the step begins, [0, 1]
+    double end = 1.0;        ///< share of the motion's way at which it ends
 };
 
 /// How finely a path is stepped through.
@@ -129,8 +131,13 @@ class ToolPath {
     /// give none. Their durations are the time that the robot takes from part to part, and with
     /// the rapid motions' add up to `duration()`.
     std::vector<PathStep> steps(const SteppingOptions& options) const;
+    /// A step of `steps`, or of `cut`, as `parts` steps of equal ways.
+    std::vector<PathStep> cut(const PathStep& step, int parts) const;
 
   private:
+    /// Appends the steps of the motion to pose `i` between two shares of its way.
+    void append_steps(std::size_t i, double begin, double end, int parts, double force,
+                      std::vector<PathStep>& steps) const;
     bool trapezoidal() const { return law_.timing == TimeLaw::Timing::kTrapezoidal; }
 
     std::vector<PathPose> poses_;

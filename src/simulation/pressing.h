@@ -47,7 +47,8 @@ class Pressing {
     double largest_indentation() const { return largest_indentation_; }
     /// The wheel follows the surface as that recedes: by force control, or a robot that gives way.
     bool yields() const {
-        return process_.force_control ? state_ == State::kPressed : process_.robot_stiffness > 0.0;
+        if (!process_.force_control) return process_.robot_stiffness > 0.0;
+        return state_ != State::kBeyondTravel || placed_ < 0.0;  // it comes off the far stop
     }
     /// mm along z from the programmed pose to the wheel as pressed.
     double approach() const { return placed_ + solution_.approach; }

@@ -20,8 +20,8 @@ namespace {
 // The wheel's cells must each hold samples: never finer than this many sample spacings.
 constexpr double kSamplesPerCell = 1.5;
 constexpr double kMostCellsAcross = 2000;
-// Share of the wheel's indentation that may be ground in a step where the wheel follows the surface:
-// beyond, the step is cut, since the wheel would sink where it has long gone on.
+// Share of the wheel's indentation that may be ground in a step where the wheel follows the
+// surface: beyond, the step is cut, since the wheel would sink where it has long gone on.
 constexpr double kCoarse = 1.0;
 constexpr double kLeastIndentation = 1e-6;  // mm
 constexpr std::size_t kReportEvery = 16;    // steps between two looks at progress and cancel

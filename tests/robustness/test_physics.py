@@ -97,8 +97,9 @@ def envelope(result, points, one, slack):
     lowest = np.full(len(points), np.inf)
     deep = np.array(result.steps["approach"], dtype=float)
     deepest = np.maximum(deep, np.append(deep[1:], deep[-1]))
-    if any(event["kind"] == "step_too_coarse" for event in result.events):
-        deepest[:] = machine["force_travel_mm"]  # it went far within a step
+    went_far = {"step_too_coarse", "over_compressed", "force_exceeded"}  # within a step
+    if machine["control"] == "force" and went_far & {event["kind"] for event in result.events}:
+        deepest[:] = machine["force_travel_mm"]
     for time, approach in zip(np.array(result.steps["time"], dtype=float), deepest):
         tip = a + (b - a) * time / whole + (approach + slack) * axes[:, 2]
         centre = tip - radius * axes[:, 2]

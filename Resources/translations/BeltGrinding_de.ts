@@ -1087,6 +1087,10 @@
         <source>the same as JSON, for other languages</source>
         <translation>dasselbe als JSON, für andere Sprachen</translation>
     </message>
+    <message>
+        <source>SHA-256 of the files of the result, as JSON</source>
+        <translation>SHA-256 der Dateien des Ergebnisses, als JSON</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -6,7 +6,6 @@ import errno
 import json
 import os
 import signal
-import stat
 import threading
 import uuid
 from pathlib import Path
@@ -47,15 +46,6 @@ def write_new(path, data):
         while left:
             left = left[file.write(left) :]
         os.fsync(number)
-
-
-def read_regular(path):
-    """The bytes of a regular file; a pipe or a device may have no end. Raises OSError."""
-    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    with open(number, "rb") as file:
-        if not stat.S_ISREG(os.fstat(number).st_mode):
-            raise OSError(errno.EINVAL, "it is no regular file", str(path))
-        return file.read()
 
 
 @contextlib.contextmanager
@@ -115,7 +105,7 @@ def absolute(folder, name):
         os.fsencode(path)
     except (ValueError, UnicodeEncodeError):  # a NUL in it, half a character
         raise engine.InputError(
-            "files.no_name", "{file}: no file can have this name", file=ascii(str(name))
+            "files.no_name", "{file}: cannot be the name of a file", file=ascii(str(name))[1:-1]
         ) from None
     return path
 

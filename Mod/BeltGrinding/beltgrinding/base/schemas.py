@@ -6,9 +6,13 @@ import math
 import sys
 
 from ..engine import InputError
-from .files import cannot_be_read, in_file, read_regular
+from .files import cannot_be_read, in_file
+from .regular_files import read_regular
 from .resources import resources
 from .schema_errors import explained
+
+
+LARGEST = 1 << 30  # bytes of a JSON file
 
 
 def schema(name):
@@ -20,8 +24,8 @@ def schema(name):
 def read_json(path):
     """The content of a JSON file (a pathlib.Path). Raises InputError."""
     try:
-        text = read_regular(path).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_regular(path, LARGEST).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
         raise cannot_be_read(path, error) from None
     try:
         return json.loads(

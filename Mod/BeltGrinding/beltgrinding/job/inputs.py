@@ -78,7 +78,7 @@ def _held(what, data):
 
 
 def _text(what, text):
-    return _digest(what, None, text.encode())
+    return _digest(what, None, text.encode("utf-8", "surrogatepass"))
 
 
 def _digest(what, file, data):

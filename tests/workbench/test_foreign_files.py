@@ -123,13 +123,20 @@ def stand_in(tmp_path, monkeypatch):
     return put
 
 
-@pytest.fixture(autouse=True)
-def afterwards(tmp_path, monkeypatch):
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """A mesh and a shape."""
+    folder = tmp_path_factory.mktemp("sound")
+    return write(folder / "cube.off"), write(folder / "cube.brep")
+
+
+@pytest.fixture
+def afterwards(sound, monkeypatch):
     """Whatever a test does, a good file of each kind is read after it as if nothing had been."""
     yield
     monkeypatch.undo()
-    assert len(core.read_mesh(str(write(tmp_path / "after.off"))).triangles) == 12
-    assert core.Shape.read(str(write(tmp_path / "after.brep"))).face_count == 6
+    assert len(core.read_mesh(str(sound[0])).triangles) == 12
+    assert core.Shape.read(str(sound[1])).face_count == 6
 
 
 # --- damaged ones
@@ -143,6 +150,7 @@ def test_a_sound_mesh_is_read(tmp_path, suffix):
     np.testing.assert_allclose(found, there, atol=1e-5)
 
 
+@pytest.mark.usefixtures("afterwards")
 def test_an_assertion_of_a_library_is_an_error(tmp_path):
     """Fewer vertices than the file says: assimp gives up by an assertion."""
     lines = OFF.splitlines(keepends=True)
@@ -151,26 +159,28 @@ def test_an_assertion_of_a_library_is_an_error(tmp_path):
     assert "assimp ended with SIGABRT" in refused(path, "cad.crash")
 
 
+@pytest.mark.usefixtures("afterwards")
 @pytest.mark.parametrize("suffix", MESHES)
 def test_every_cut_of_a_mesh_is_survived(tmp_path, suffix):
     whole = write(tmp_path / f"cube{suffix}").read_bytes()
     path = tmp_path / f"cut{suffix}"
     met = 0
-    for cut in np.linspace(1, len(whole) - 1, 12).astype(int):
+    for cut in np.linspace(1, len(whole) - 1, 6).astype(int):
         path.write_bytes(whole[:cut])
         try:
             read(path)
         except InputError as error:
             assert str(path) in str(error) and "\n" not in str(error)
             met += 1
-    assert met > 3
+    assert met > 1
 
 
+@pytest.mark.usefixtures("afterwards")
 def test_a_job_s_brep_text_without_one_of_its_lines(tmp_path):
     """Read, healed, checked, measured, sampled and meshed: none of it harms this process."""
     lines = core.shape_from_mesh(cube()).write_brep().splitlines(keepends=True)
     met = 0
-    for k in range(3, len(lines), 3):
+    for k in range(3, len(lines), 7):
         try:
             shape = core.Shape.read_brep("".join(lines[:k] + lines[k + 1 :]), "design")
             shape.warnings()
@@ -179,12 +189,13 @@ def test_a_job_s_brep_text_without_one_of_its_lines(tmp_path):
         except InputError as error:
             assert "\n" not in str(error)
             met += 1
-    assert met > 0.3 * len(lines) / 3
+    assert met > 0.3 * len(lines) / 7
 
 
 # --- limits
 
 
+@pytest.mark.usefixtures("afterwards")
 def test_a_bomb_is_refused_at_the_memory_limit(tmp_path, monkeypatch):
     path = tmp_path / "bomb.3mf"
     write_3mf(path, '<vertex x="0" y="0" z="0"/>' * 1_500_000, "")
@@ -194,6 +205,7 @@ def test_a_bomb_is_refused_at_the_memory_limit(tmp_path, monkeypatch):
     assert "60 MB" in text and MEMORY in text
 
 
+@pytest.mark.usefixtures("afterwards")
 def test_the_host_watches_the_memory_too(tmp_path, stand_in, monkeypatch):
     stand_in(f"#!{sys.executable} -SE\nx = bytearray(400_000_000)\nimport time\ntime.sleep(1000)\n")
     monkeypatch.setenv(MEMORY, "200")
@@ -202,6 +214,7 @@ def test_the_host_watches_the_memory_too(tmp_path, stand_in, monkeypatch):
     assert time.monotonic() - begun < 20
 
 
+@pytest.mark.usefixtures("afterwards")
 @pytest.mark.parametrize("name", ["cube.off", "cube.brep"])
 def test_an_answer_too_large_is_refused(tmp_path, monkeypatch, name):
     path = write(tmp_path / name)
@@ -210,12 +223,12 @@ def test_an_answer_too_large_is_refused(tmp_path, monkeypatch, name):
 
 
 @pytest.mark.parametrize("variable", [TIME, MEMORY, ANSWER])
-@pytest.mark.parametrize("value", ["soon", "-1", "0", "nan", "inf", "1,5", "5 "])
-def test_a_limit_that_is_no_number_is_named(tmp_path, monkeypatch, variable, value):
+def test_a_limit_that_is_no_number_is_named(tmp_path, monkeypatch, variable):
     path = write(tmp_path / "cube.off")
-    monkeypatch.setenv(variable, value)
-    with pytest.raises(InputError, match=f"{variable} is '{value}'"):
-        read(path)
+    for value in ("soon", "-1", "0", "nan", "inf", "1,5", "5 "):
+        monkeypatch.setenv(variable, value)
+        with pytest.raises(InputError, match=f"{variable} is '{value}'"):
+            read(path)
 
 
 def real():
@@ -226,31 +239,36 @@ def real():
 # Does what it is asked for but a task.
 SLOW = '#!/bin/sh\ncase $3 in {task}) exec sleep 1000 ;; esac\nexec {real} "$@"\n'
 LATER = {
-    "TRIANGULATE": lambda path, context: core.triangulate(core.Shape.read(path), 0.1, context),
-    "FACES": lambda path, context: core.shape_from_mesh(cube(), context),
-    "BREP": lambda path, context: core.Shape.read(path, context),
-    "MESH": lambda path, context: core.read_mesh(path.replace(".brep", ".off"), context=context),
+    "TRIANGULATE": lambda path, shape, context: core.triangulate(shape, 0.1, context),
+    "FACES": lambda path, shape, context: core.shape_from_mesh(cube(), context),
+    "BREP": lambda path, shape, context: core.Shape.read(path, context),
+    "MESH": lambda path, shape, context: core.read_mesh(
+        path.replace(".brep", ".off"), context=context
+    ),
 }
 
 
+@pytest.mark.usefixtures("afterwards")
 @pytest.mark.parametrize("task", LATER)
 def test_all_that_is_done_is_cancelled_and_limited(tmp_path, stand_in, monkeypatch, task):
     path = str(write(tmp_path / "cube.brep"))
     write(tmp_path / "cube.off")
+    shape = core.Shape.read(path)
     stand_in(SLOW.format(task=task, real=real()))
     context = core.RunContext()
     threading.Timer(0.5, context.cancel).start()
     begun = time.monotonic()
     with pytest.raises(Cancelled):
-        LATER[task](path, context)
+        LATER[task](path, shape, context)
     assert time.monotonic() - begun < 4
     monkeypatch.setenv(TIME, "0.8")
     begun = time.monotonic()
     with pytest.raises(InputError, match=f"0.8 s.*{TIME}"):
-        LATER[task](path, core.RunContext())
+        LATER[task](path, shape, core.RunContext())
     assert time.monotonic() - begun < 5
 
 
+@pytest.mark.usefixtures("afterwards")
 def test_a_mesher_that_crashes_is_an_error(tmp_path, stand_in):
     path = str(write(tmp_path / "cube.brep"))
     stand_in(SLOW.format(task="TRIANGULATE", real=real()).replace("exec sleep 1000", "kill -11 $$"))
@@ -303,7 +321,8 @@ def test_what_is_no_file_is_told_as_such(tmp_path, suffix):
     empty = tmp_path / f"empty{suffix}"
     empty.touch()
     refused(empty, "foreign.empty")
-    file = write(tmp_path / f"file{suffix}")
+    file = tmp_path / f"file{suffix}"
+    file.write_text(OFF)
     file.chmod(0)
     root = os.geteuid() == 0
     if root:

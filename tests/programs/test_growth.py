@@ -9,6 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
 
 import growing  # noqa: E402
+from beltgrinding.programs.patch.patch import patch  # noqa: E402
 from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.registry import READERS, read_program  # noqa: E402
 from support.cost import cost, growth  # noqa: E402
@@ -65,6 +66,19 @@ def test_long_statements(tmp_path, name):
                     lambda: reading(tmp_path, short)
                 )
                 assert ratio < TOLERATED * LONG / SHORT, f"{prefix!r} and many {piece!r}"
+
+
+@pytest.mark.parametrize("name", ["krl", "rapid", "urscript", "fanuc", "inform", "gcode"])
+@pytest.mark.parametrize("change", [{"dx_mm": 0.1}, {"speed_mm_s": 20.0}])
+def test_changes_written_back(tmp_path, name, change):
+    def work(n):
+        (suffix, text), *_ = growing.MANY[f"{name} motions"](n).items()
+        (tmp_path / f"a{suffix}").write_text(text)
+        lines = {motion.line for motion in read_program(tmp_path / f"a{suffix}").motions}
+        changes = [{"line": line, **change} for line in lines]
+        assert len(patch(tmp_path / f"a{suffix}", changes, tmp_path / f"b{suffix}")) == n
+
+    assert growth(work, 150) < TOLERATED
 
 
 def _once(folder, files):

@@ -174,6 +174,13 @@ def test_data_that_double_are_not_made(tmp_path):
         )
 
 
+def test_many_large_arrays_are_refused(tmp_path):
+    arrays = "".join(f"VAR num a{k}{{100,100,100}};\n" for k in range(200))
+    (tmp_path / "a.mod").write_text(f"MODULE a\n{arrays}PROC main()\nENDPROC\nENDMODULE\n")
+    with pytest.raises(ProgramError, match=r"a.mod:\d+: the program is too long"):
+        read_program(tmp_path / "a.mod")
+
+
 def test_defaults_that_call_their_own_routine_end(tmp_path):
     text = "def a():\n  b()\nend\ndef b(x=b(), y=b()):\n  movel(p[0,0,0,0,0,0])\nend\na()\n"
     (tmp_path / "a.script").write_text(text)

@@ -172,10 +172,10 @@ def _move_positions(source, work):
             raise work.refuse(
                 line, "programs.patch.no_position", "its target is no position of this program"
             )
-        step = _shared(work, used, n, shift, line)
-        if n in done:
+        if n in done:  # and compared with all that use it
             continue
         done.add(n)
+        step = _shared(work, used, n, shift, line)
         body = blocks[n].span(2)
         first = text.find("GP1", *body)
         places = {
@@ -211,10 +211,10 @@ def _move_rows(source, work):
                 "its target is no C position: a variable is other jobs' as well",
             )
         n = int(move.group(1))
-        step = _shared(work, used, n, shift, line)
-        if n in done:
+        if n in done:  # and compared with all that use it
             continue
         done.add(n)
+        step = _shared(work, used, n, shift, line)
         begin, row = rows[n]
         for k, value in enumerate(step, 2):
             if value:

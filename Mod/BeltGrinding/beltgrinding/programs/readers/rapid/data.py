@@ -112,12 +112,19 @@ def _size_of(kind, records, known, depth=0):
     return known[kind]
 
 
-def array(dimensions, value):
-    """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
+def array_size(dimensions, value):
+    """How many values an array of copies of ``value`` has. Raises Unknown beyond reason."""
     if min(dimensions) < 1 or len(dimensions) > MAX_DIMENSIONS:
         raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
-    if math.prod(dimensions) * size(value) > MAX_ARRAY:
+    count = math.prod(dimensions) * size(value)
+    if count > MAX_ARRAY:
         raise Unknown("programs.rapid.array_size", "the array's size is not sensible")
+    return count
+
+
+def array(dimensions, value):
+    """Nested lists with a copy of ``value`` in each element. Raises Unknown beyond reason."""
+    array_size(dimensions, value)
     if len(dimensions) == 1:
         return [copied(value) for _ in range(dimensions[0])]
     return [array(dimensions[1:], value) for _ in range(dimensions[0])]

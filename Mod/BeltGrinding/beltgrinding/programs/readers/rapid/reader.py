@@ -16,6 +16,7 @@ from .motion import spec_of
 from .text import tree
 
 MAX_CALLS = 20
+MADE = 64  # values of an array, which are made in a unit of work
 DECLARATION = re.compile(
     r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(?:(\{[^}]*\})\s*)?(?::=(.*))?$",
     re.IGNORECASE | re.DOTALL,
@@ -161,7 +162,9 @@ class _Interpreter(Control):
             if dimensions:
                 row = tokens(dimensions[1:-1])
                 sizes = [int(number(self.value(p))) for p in arguments(row)[0]]
-                value = self.copy(data.array(sizes, value), node.line)
+                count = data.array_size(sizes, value)
+                self.tick(node.line, count // MADE)
+                value = data.array(sizes, value)
             # Persistent data without a value keeps what the controller last had.
             scope[name][1] = None if storage.lower() == "pers" else value
         except Unknown:

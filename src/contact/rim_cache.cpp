@@ -1,15 +1,12 @@
 #include "contact/rim_cache.h"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "base/whole_file.h"
 
 namespace beltgrinding {
 namespace {
@@ -80,8 +77,8 @@ fs::path FolderRimCache::path(const std::string& key) const {
 }
 
 std::optional<RimSamples> FolderRimCache::read(const std::string& key) const {
-    std::ifstream file(path(key), std::ios::binary);
-    const std::string data{std::istreambuf_iterator<char>(file), {}};
+    std::string data;
+    if (read_whole(path(key).string(), data)) return std::nullopt;
     if (data.size() < sizeof(std::uint64_t)) return std::nullopt;
     const std::string_view body(data.data(), data.size() - sizeof(std::uint64_t));
     std::uint64_t sum = 0;
@@ -112,17 +109,7 @@ void FolderRimCache::write(const std::string& key, const RimSamples& samples) {
     put(data, &sum, sizeof(sum));
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
-    static std::atomic<unsigned> writes{0};  // two threads may write the same
-    std::ostringstream part_name;
-    part_name << path(key).string() << '.' << ::getpid() << '-' << writes++ << ".part";
-    const fs::path part = part_name.str();
-    std::ofstream file(part, std::ios::binary);
-    file.write(data.data(), static_cast<std::streamsize>(data.size()));
-    file.close();
-    if (file) {
-        fs::rename(part, path(key), ignored);
-    }
-    fs::remove(part, ignored);
+    (void)write_whole(path(key).string(), data);  // what cannot be kept is computed again
 }
 
 }  // namespace beltgrinding

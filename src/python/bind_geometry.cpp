@@ -39,7 +39,7 @@ void bind_geometry(py::module_& m) {
         });
     m.def(
         "read_ply",
-        [](const std::string& path) {
+        [](const std::filesystem::path& path) {
             RawMesh data;
             {
                 const py::gil_scoped_release release;
@@ -56,10 +56,10 @@ void bind_geometry(py::module_& m) {
         py::arg("path"), "(vertices (n, 3), triangles (m, 3)) of a PLY, as the file has them.");
     m.def(
         "read_mesh",
-        [](const std::string& path, double unit_mm, const Eigen::Matrix4d& placement,
+        [](const std::filesystem::path& path, double unit_mm, const Eigen::Matrix4d& placement,
            const RunContext* context) {
-            const Frame frame =
-                frame_from(placement, "placement", Fact{"mesh.file", "{file}: ", {{"file", path}}});
+            const Frame frame = frame_from(
+                placement, "placement", Fact{"mesh.file", "{file}: ", {{"file", path.string()}}});
             const py::gil_scoped_release release;
             return read_mesh(path, unit_mm, frame, context != nullptr ? *context : RunContext());
         },
@@ -73,7 +73,7 @@ void bind_geometry(py::module_& m) {
     py::class_<Shape>(m, "Shape", "A boundary representation; faces are numbered from 0.")
         .def_static(
             "read",
-            [](const std::string& path, const RunContext* context) {
+            [](const std::filesystem::path& path, const RunContext* context) {
                 const py::gil_scoped_release release;
                 return Shape::read(path, context != nullptr ? *context : RunContext());
             },

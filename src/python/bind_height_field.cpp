@@ -107,7 +107,8 @@ void bind_height_field(py::module_& m) {
             py::arg("measured"), "Height of a scan over every sample, mm; NaN: not scanned.")
         .def(
             "write_hdf5",
-            [](const HeightField& field, const std::string& path, const std::string& attributes) {
+            [](const HeightField& field, const std::filesystem::path& path,
+               const std::string& attributes) {
                 const py::gil_scoped_release release;
                 write_hdf5(field, path, attributes);
             },
@@ -139,7 +140,7 @@ void bind_height_field(py::module_& m) {
             "As from_hdf5, of a file's bytes; errors tell the name.")
         .def_static(
             "from_hdf5",
-            [](const std::string& path) {
+            [](const std::filesystem::path& path) {
                 std::string attributes;
                 HeightField field;
                 {

@@ -41,7 +41,8 @@ void bind_recording(py::module_& m) {
             "differ between two frames, in either order.")
         .def(
             "write_hdf5",
-            [](const Recording& r, const std::string& path, const std::string& attributes) {
+            [](const Recording& r, const std::filesystem::path& path,
+               const std::string& attributes) {
                 const py::gil_scoped_release release;
                 write_hdf5(r, path, attributes);
             },
@@ -73,7 +74,7 @@ void bind_recording(py::module_& m) {
             "As from_hdf5, of a file's bytes; errors tell the name.")
         .def_static(
             "from_hdf5",
-            [](const std::string& path) {
+            [](const std::filesystem::path& path) {
                 std::string attributes;
                 Recording recording;
                 {

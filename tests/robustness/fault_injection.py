@@ -162,7 +162,9 @@ def check_files(tell):
             return images.index(path.read_bytes()) == 1
 
         counts["C++ file"] = every_call(
-            lambda: new.field.write_hdf5(str(path), ""), look_at_one, lambda: path.write_bytes(images[0])
+            lambda: new.field.write_hdf5(str(path), ""),
+            look_at_one,
+            lambda: path.write_bytes(images[0]),
         )
         tell(f"C++ file: {counts['C++ file']} faults")
     return counts

@@ -29,7 +29,17 @@ def grind(folder, number, after=None):
     """Status, standard error and seconds of a run of job ``number``, interrupted ``after`` s."""
     begin = time.perf_counter()
     process = subprocess.Popen(
-        ["env", "--block-signal=INT", sys.executable, str(START), "run", f"{number}.json", "-o", "out", "-q"],
+        [
+            "env",
+            "--block-signal=INT",
+            sys.executable,
+            str(START),
+            "run",
+            f"{number}.json",
+            "-o",
+            "out",
+            "-q",
+        ],
         cwd=folder,
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,

@@ -1,5 +1,5 @@
-// Preloaded by fault_injection.py: lets the n-th call of the file system, or the n-th allocation of our own
-// code, fail once, or kills the process there. What is not armed passes through.
+// Preloaded by fault_injection.py: lets the n-th call of the file system, or the n-th allocation of
+// our own code, fail once, or kills the process there. What is not armed passes through.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -56,10 +56,10 @@ extern "C" void* __libc_realloc(void*, std::size_t);
 }  // namespace
 
 #define REAL(name) static const auto real = next<decltype(&name)>(#name)
-#define FILE_CALL(name, parameters, arguments)      \
-    extern "C" int name parameters {                \
-        REAL(name);                                 \
-        return file_fails() ? -1 : real arguments;  \
+#define FILE_CALL(name, parameters, arguments)     \
+    extern "C" int name parameters {               \
+        REAL(name);                                \
+        return file_fails() ? -1 : real arguments; \
     }
 
 FILE_CALL(rename, (const char* a, const char* b) noexcept, (a, b))
@@ -89,14 +89,14 @@ extern "C" int close(int f) {
     return file_fails() ? -1 : done;
 }
 
-#define OPEN(name)                                            \
-    extern "C" int name(const char* path, int flags, ...) {   \
-        REAL(name);                                           \
-        va_list more;                                         \
-        va_start(more, flags);                                \
+#define OPEN(name)                                                \
+    extern "C" int name(const char* path, int flags, ...) {       \
+        REAL(name);                                               \
+        va_list more;                                             \
+        va_start(more, flags);                                    \
         const auto mode = static_cast<mode_t>(va_arg(more, int)); \
-        va_end(more);                                         \
-        return file_fails() ? -1 : real(path, flags, mode);   \
+        va_end(more);                                             \
+        return file_fails() ? -1 : real(path, flags, mode);       \
     }
 OPEN(open)
 OPEN(open64)
@@ -111,23 +111,33 @@ extern "C" void* realloc(void* old, std::size_t size) {
     return memory_fails(__builtin_return_address(0)) ? nullptr : __libc_realloc(old, size);
 }
 void* operator new(std::size_t size) {
-    void* found = memory_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(size ? size : 1);
+    void* found =
+        memory_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(size ? size : 1);
     if (!found) throw std::bad_alloc();
     return found;
 }
 void* operator new[](std::size_t size) {
-    void* found = memory_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(size ? size : 1);
+    void* found =
+        memory_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(size ? size : 1);
     if (!found) throw std::bad_alloc();
     return found;
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+    std::free(p);
+}
 
 extern "C" {
-/// The call number `nth` of the file system from now on, from 0, fails with `error`, or is the last of the
-/// process. Negative: none.
+/// The call number `nth` of the file system from now on, from 0, fails with `error`, or is the last
+/// of the process. Negative: none.
 void fault_files(long nth, int error, int kills) {
     g_error = error;
     g_kill = kills != 0;
@@ -135,7 +145,9 @@ void fault_files(long nth, int error, int kills) {
     g_files_left = nth;
 }
 /// Calls of the file system since then, the one that failed included.
-long fault_files_seen() { return g_files_seen; }
+long fault_files_seen() {
+    return g_files_seen;
+}
 /// Likewise the allocations whose caller lies in [begin, end).
 void fault_memory(long nth, std::uintptr_t begin, std::uintptr_t end) {
     g_begin = begin;
@@ -143,5 +155,7 @@ void fault_memory(long nth, std::uintptr_t begin, std::uintptr_t end) {
     g_memory_seen = 0;
     g_memory_left = nth;
 }
-long fault_memory_seen() { return g_memory_seen; }
+long fault_memory_seen() {
+    return g_memory_seen;
+}
 }

@@ -42,6 +42,11 @@ class _Formatter(string.Formatter):
         # A form may come out of a document: nothing but the arguments themselves is told.
         return kwargs[field_name], field_name
 
+    def convert_field(self, value, conversion):
+        if conversion is not None:
+            raise ValueError(conversion)
+        return value
+
     def format_field(self, value, format_spec):
         if isinstance(value, str):  # also a number that JSON does not have
             return value

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact import single_contact as contacts
-from ..base.files import cannot_be_read
+from ..base.regular_files import read_regular
 from ..engine import InputError, core
 
 NOMINAL_DIAMETER = 200.0  # mm, of a drive wheel whose diameter is not known
@@ -109,16 +109,7 @@ def read(path, wheel_diameter_mm=None, measured=True):
 
 def _split(path):
     """(names, rows of texts, their line numbers)."""
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(
-                "calibration.table_too_large",
-                "{file}: this is too large for a table of measured grinds",
-                file=path,
-            )
-        content = path.read_bytes()
-    except (OSError, ValueError) as error:
-        raise cannot_be_read(path, error) from None
+    content = read_regular(path, MOST_BYTES)
     encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     text = content.decode(encoding, errors="replace").replace("\0", "\ufffd")
     numbered = [

@@ -10,6 +10,7 @@ import io
 
 import numpy as np
 
+from ..base import cells
 from ..base.files import cannot_be_read
 from ..engine import InputError
 
@@ -48,7 +49,7 @@ def read(path):
         with open(path, encoding="utf-8") as file:
             if file.readline().strip() != ",".join(COLUMNS):
                 raise ValueError("its columns are others")
-            rows = np.loadtxt(file, delimiter=",", ndmin=2).reshape(-1, len(COLUMNS))
+            rows = cells.numbers(file).reshape(-1, len(COLUMNS))
     except FileNotFoundError:
         return None
     except OSError as error:

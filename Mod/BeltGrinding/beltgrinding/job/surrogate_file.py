@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.files import cannot_be_read, cannot_be_written, write_whole
+from ..base.files import cannot_be_written, write_whole
+from ..base.regular_files import read_regular
 from ..engine import InputError
 
 LEAST_CONTACTS = 20
+LARGEST = 4 << 30  # bytes, unpacked
 WHEEL = (  # what a surrogate holds for: keys of a contact's wheel
     "outer_radius_mm",
     "width_mm",
@@ -162,13 +164,16 @@ def _write(path, arrays, about):
 
 def _read(path, names):
     """(bytes, arrays by name, about) of an archive."""
+    content = read_regular(path, LARGEST)
     try:
-        content = Path(path).read_bytes()
+        with zipfile.ZipFile(io.BytesIO(content)) as packed:
+            if sum(one.file_size for one in packed.infolist()) > LARGEST:
+                raise InputError(
+                    "job.archive_too_large", "{file}: holds too much for a surrogate", file=path
+                )
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: np.array(archive[name]) for name in names}
             about = json.loads(str(archive["about"]))
-    except OSError as error:
-        raise cannot_be_read(path, error) from None
     except KeyError as error:
         raise InputError(
             "job.archive_lacks", "{file}: {reason}", file=path, reason=error.args[0]

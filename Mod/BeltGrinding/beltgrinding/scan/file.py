@@ -1,11 +1,12 @@
 """Reads a scan's file: a triangle mesh, or a cloud of points."""
 
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
 
-from ..base.files import cannot_be_read
+from ..base.regular_files import open_regular, read_regular
 from ..engine import InputError, core
 
 TEXT_SUFFIXES = (".xyz", ".asc", ".txt", ".csv", ".pts")
@@ -50,8 +51,7 @@ def read(path, unit_mm=1.0):
             "{file}: the scan's unit must be a positive number of millimetres",
             file=path,
         )
-    if not path.is_file():
-        raise InputError("scan.no_file", "{file}: there is no such file", file=path)
+    open_regular(path, sys.maxsize).close()
     if path.suffix.lower() in TEXT_SUFFIXES:
         return Scan(read_text(path) * unit_mm)
     if path.suffix.lower() == ".ply":
@@ -79,16 +79,7 @@ def read_text(path):
     that begin with # or //, and one line of headings or a count before the first point, are passed
     over.
     """
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(
-                "scan.text_too_large",
-                "{file}: a text of more than 4 GB; thin the scan out, or write PLY",
-                file=path,
-            )
-        text = path.read_text(encoding="latin-1")
-    except OSError as error:
-        raise cannot_be_read(path, error) from None
+    text = read_regular(path, MOST_BYTES).decode("latin-1")
     rows, headings = [], 0
     for number, line in enumerate(text.splitlines(), 1):
         line = line.strip()

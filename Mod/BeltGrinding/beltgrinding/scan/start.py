@@ -6,7 +6,10 @@ import math
 import numpy as np
 
 from ..base.files import cannot_be_read
+from ..base.regular_files import read_regular
 from ..engine import InputError, core
+
+MOST_BYTES = 100_000_000  # of a matrix or of pairs
 
 AXES = ("x", "y", "z")
 TRY_POINTS = 3_000  # of the scan, for one of the directions of its principal axes
@@ -172,9 +175,8 @@ def read_pairs(path):
 def _numbers(path, columns):
     """Rows of numbers with commas, semicolons or blanks between them. Raises InputError."""
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            lines = file.read().splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+        lines = read_regular(path, MOST_BYTES).decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
         raise cannot_be_read(path, error) from None
     rows = []
     for number, line in enumerate(lines, 1):

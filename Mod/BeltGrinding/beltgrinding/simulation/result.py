@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import folders, schemas
+from ..base.cells import numbers
 from ..base.files import cannot_be_read, json_bytes
 from ..cell import events, motions
 from ..engine import InputError, core
@@ -168,7 +169,7 @@ def _read_table(folder):
     try:
         with open(path, encoding="utf-8") as file:
             names = file.readline().strip().split(",")
-            rows = np.loadtxt(file, delimiter=",", ndmin=2)
+            rows = numbers(file)
     except (OSError, ValueError) as error:
         raise InputError(
             "simulation.no_steps", "{file}: no table of steps: {reason}", file=path, reason=error

@@ -7,10 +7,12 @@ made of (the same inputs and versions give the same) and under ``sha256`` its ow
 import hashlib
 import json
 import os
+import sys
 from pathlib import Path
 
 from ..base import folders, schemas
 from ..base.files import cannot_be_read, cannot_be_written, json_bytes
+from ..base.regular_files import open_regular
 from ..engine import InputError
 from ..job import inputs
 
@@ -194,7 +196,7 @@ def _same(path, kept):
     if not isinstance(kept, dict) or path.stat().st_size != kept.get("bytes"):
         return False
     found = hashlib.sha256()
-    with open(path, "rb") as file:
+    with open_regular(path, sys.maxsize) as file:
         while data := file.read(CHUNK):
             found.update(data)
     return found.hexdigest() == kept.get("sha256")

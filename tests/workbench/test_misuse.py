@@ -127,8 +127,7 @@ def test_a_huge_frame_is_refused(tmp_path, job):
 def test_folders_whose_names_are_no_text(tmp_path, job):
     folder = os.fsencode(tmp_path) + b"/w\xe4rme"
     os.mkdir(folder)
-    shape = core.read_brep(job["design"]["brep"])
-    Path(os.fsdecode(folder), "plate.brep").write_text(shape.write_brep())
+    Path(os.fsdecode(folder), "plate.brep").write_text(job["design"]["brep"])
     job["design"] = {"file": "plate.brep"}
     Path(os.fsdecode(folder), "job.json").write_text(json.dumps(job))
     done = call(b"run", folder + b"/job.json", b"-o", folder + b"/out", cwd=tmp_path)
@@ -144,7 +143,7 @@ def test_standard_output_that_nobody_takes(tmp_path, job):
     os.close(reader)
     done = call("run", "job.json", "-o", "out", cwd=tmp_path, stdout=writer)
     os.close(writer)
-    assert done.returncode == 0 and done.stderr == b""
+    assert done.returncode == 0 and b"beltgrind: " not in done.stderr
     with open("/dev/full", "wb") as full:
         one_line(call("schema", cwd=tmp_path, stdout=full), "No space left on device")
     closed = subprocess.run(
@@ -276,7 +275,11 @@ def test_no_title_is_a_command_in_a_report(tmp_path):
         html = beltgrinding.report(result, tmp_path / "r.html", title=title).read_text()
         command = html.split('class="command">')[1].split("</pre>")[0]
         name = command.split("beltgrind run ")[1].split(" -o out")[0].replace("&quot;", '"')
-        assert name[0] == name[-1] == '"' and not set(name[1:-1]) & set("$`\"\\\n'*;") and name[1] != "-"
+        assert (
+            name[0] == name[-1] == '"'
+            and not set(name[1:-1]) & set("$`\"\\\n'*;")
+            and name[1] != "-"
+        )
 
 
 def test_no_name_commands_the_terminal(tmp_path):

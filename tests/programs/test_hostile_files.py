@@ -41,7 +41,7 @@ def make(kind, path):
     [
         ("FIFO", "files.not_regular"),
         ("device", "files.not_regular"),
-        ("folder", "files.not_regular"),
+        ("folder", "files.cannot_be_read"),
         ("loop", "files.cannot_be_read"),
         ("missing", "files.cannot_be_read"),
         ("huge", "files.too_large"),

@@ -3,6 +3,7 @@
 A FIFO or a device in a file's place would be read for ever, or never.
 """
 
+import errno
 import os
 import stat
 
@@ -11,7 +12,6 @@ from .files import cannot_be_read
 
 MEGABYTE = 1 << 20
 KINDS = (
-    (stat.S_ISDIR, "files.kind_folder", "a folder"),
     (stat.S_ISFIFO, "files.kind_fifo", "a FIFO"),
     (stat.S_ISSOCK, "files.kind_socket", "a socket"),
     (stat.S_ISCHR, "files.kind_device", "a device"),
@@ -40,6 +40,9 @@ def open_regular(path, limit):
     file = None
     try:
         state = os.fstat(descriptor)
+        if stat.S_ISDIR(state.st_mode):
+            error = IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            raise cannot_be_read(shown(path), error)
         if not stat.S_ISREG(state.st_mode):
             raise InputError(
                 "files.not_regular",

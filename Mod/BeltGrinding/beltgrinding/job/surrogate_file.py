@@ -174,6 +174,8 @@ def _read(path, names):
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: np.array(archive[name]) for name in names}
             about = json.loads(str(archive["about"]))
+    except InputError:  # which is a ValueError
+        raise
     except KeyError as error:
         raise InputError(
             "job.archive_lacks", "{file}: {reason}", file=path, reason=error.args[0]

@@ -1,6 +1,7 @@
 """Short runs of fuzz_jobs.py and kill.py, and proof that their oracles see what they are for."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from support.freecad import SHARED
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
+import fault_injection  # noqa: E402
 import fuzz_jobs  # noqa: E402
 import kill  # noqa: E402
 
@@ -30,6 +32,35 @@ def test_random_jobs():
     assert not wrong, "\n".join([*wrong, "replay with fuzz_jobs.py --replay NUMBER"])
     assert len(found) == JOBS
     assert sum(words == "ground" for _, words, _ in found) >= GROUND
+
+
+@pytest.mark.parametrize(
+    "what, words", [("files", ("exchange", "journal", "C++")), ("memory", ("memory",))]
+)
+def test_every_call_fails_once(what, words):
+    done = fault_injection.run(what, 0.02)
+    assert done.returncode == 0, done.stdout + done.stderr
+    told = done.stdout.splitlines()
+    assert [line.split()[0].rstrip(":") for line in told] == list(words), told
+
+
+def test_a_fault_that_is_not_survived_is_found(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1])\n"
+        "import fault_injection as f\n"
+        "path = Path(sys.argv[2], 'file')\n"
+        "def work():\n    path.write_text('half'); path.write_text('new')\n"
+        "def look():\n"
+        "    if path.read_text() not in ('old', 'new'): raise f.Finding('half')\n"
+        "    return path.read_text() == 'new'\n"
+        "try: f.every_call(work, look, lambda: path.write_text('old'))\n"
+        "except f.Finding: sys.exit(7)\n"
+    )
+    library = str(fault_injection.build(tmp_path))
+    environment = {**os.environ, fault_injection.PRELOADED: library, "LD_PRELOAD": library}
+    command = [sys.executable, str(script), str(HERE), str(tmp_path)]
+    assert subprocess.run(command, env=environment).returncode == 7
 
 
 def test_ten_million_samples_fit_in_four_gigabytes(tmp_path):

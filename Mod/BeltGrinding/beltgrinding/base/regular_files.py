@@ -72,7 +72,7 @@ def read_regular(path, limit):
     """The bytes of a regular file. Raises InputError as ``open_regular``."""
     with open_regular(path, limit) as file:
         try:
-            return file.read(limit)
+            return file.read()  # as long as it was found to be
         except OSError as error:
             raise cannot_be_read(shown(path), error) from None
 

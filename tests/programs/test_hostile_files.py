@@ -1,5 +1,6 @@
 """Files that are no programs, whatever their names say: one error at once, never a wait or a traceback."""
 
+import errno
 import gzip
 import os
 import sys
@@ -10,6 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
+from beltgrinding.base import regular_files  # noqa: E402
 from beltgrinding.job import inputs  # noqa: E402
 from beltgrinding.programs.patch.patch import patch, read_changes  # noqa: E402
 from beltgrinding.programs.program import ProgramError, Program, Motion, Unknown  # noqa: E402
@@ -55,11 +57,14 @@ def test_what_is_no_file_is_said_at_once(tmp_path, suffix, kind, code):
     assert found.value.code == code and f"a{suffix}" in str(found.value)
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
-def test_no_permission_is_said(tmp_path):
+def test_no_permission_is_said(tmp_path, monkeypatch):
     path = tmp_path / "a.src"
     path.write_text("END")
-    path.chmod(0)
+
+    def forbidden(*_, **__):  # root may read everything
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(regular_files.os, "open", forbidden)
     with pytest.raises(ProgramError, match="a.src: cannot be read"):
         read_program(path)
 

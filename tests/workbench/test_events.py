@@ -18,6 +18,7 @@ from beltgrinding.base import schemas  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from beltgrinding.engine import core  # noqa: E402
 from test_job import plate_job  # noqa: E402
+from support.results import unseal  # noqa: E402
 
 
 def bad_job():
@@ -70,6 +71,7 @@ def test_a_gouge_is_below_the_limit_of_its_zone():
 
 def test_a_result_of_an_older_version_still_opens(tmp_path):
     beltgrinding.run(bad_job()).write(tmp_path)
+    unseal(tmp_path)
     path = tmp_path / "events.json"
     old = ("program", "kind", "pose", "line", "time", "duration", "value", "message")
     stored = [{key: event[key] for key in old} for event in json.loads(path.read_text())]

@@ -23,6 +23,7 @@ constexpr double kMostCellsAcross = 2000;
 // Share of the wheel's indentation that may be ground in a step where the wheel follows the
 // surface: beyond, the step is cut, since the wheel would sink where it has long gone on.
 constexpr double kCoarse = 1.0;
+constexpr double kCoarseShare = 0.05;       // of the parts at one place, for a step beyond cutting
 constexpr double kLeastIndentation = 1e-6;  // mm
 constexpr std::size_t kReportEvery = 16;    // steps between two looks at progress and cancel
 
@@ -153,7 +154,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         if (state != Pressing::State::kNoContact) {
             removal = grinding.removal(step);
             most = kCoarse * std::max(pressing.indentation(), kLeastIndentation);
-            if (removal > most && steps.divisible()) {
+            if (removal > most && steps.divisible(removal / most)) {
                 steps.cut(removal / most);
                 continue;
             }
@@ -179,7 +180,11 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
                 monitor.pressed(pressing, state, grinding.belt());
                 if (removal > most) monitor.coarse(pressing, removal, most, steps.parts());
             }
-            const double volume = grinding.grind(step, steps.share(), *tree, changed);
+            // A step that is told to be too coarse is not worth many parts, each of which maps
+            // anew.
+            const double share = removal > most ? kCoarseShare : steps.share();
+            const double volume =
+                grinding.grind(step, std::min(share, steps.share()), *tree, changed);
             record.removal_rate = static_cast<float>(volume / step.duration);
             grinding.refit(*tree, changed);
             const Stopwatch watch(wall.events);

@@ -24,8 +24,11 @@ class StepQueue {
     double share() const { return 1.0 / now_.parts; }
     /// Parts that the planned step has been cut into.
     int parts() const { return now_.parts; }
-    /// Whether `cut` may be called: there is a bound to the parts of a planned step.
-    bool divisible() const { return 2 * now_.parts <= kMostParts; }
+    /// Whether `cut(parts)` may be called: there is a bound to the parts of a planned step. One
+    /// that needs more is not cut at all, which would cost much and not be enough.
+    bool divisible(double parts) const {
+        return 2 * now_.parts <= kMostParts && parts <= kMostParts / now_.parts;
+    }
     /// Puts `parts` smaller steps, or as many as may be, in the step's place; `next` gives the
     /// first.
     void cut(double parts);
@@ -33,7 +36,7 @@ class StepQueue {
     double progress() const;
 
   private:
-    static constexpr int kMostParts = 64;
+    static constexpr int kMostParts = 16;
     struct Item {
         PathStep step;
         int parts = 1;

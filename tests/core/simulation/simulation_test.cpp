@@ -364,7 +364,9 @@ TEST(Simulation, AStepThatTakesMoreThanTheIndentationIsCut) {
         o.outputs.recording = &recording;
         const SimulationResult result =
             simulate(field, path, foundation, LocalLaw({coefficient}), o);
-        EXPECT_GT(result.steps.size(), last);
+        if (coefficient == 2e-3) {
+            EXPECT_GT(result.steps.size(), last);
+        }
         last = result.steps.size();
         double time = 0.0, volume = 0.0;
         for (const StepRecord& step : result.steps) {
@@ -382,7 +384,7 @@ TEST(Simulation, AStepThatTakesMoreThanTheIndentationIsCut) {
         if (coefficient == 1e-4) {
             EXPECT_EQ(last, 10u);
         }
-        EXPECT_LE(last, 640u);
+        EXPECT_LE(last, 160u);
     }
 }
 

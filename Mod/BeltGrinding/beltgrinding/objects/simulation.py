@@ -64,6 +64,7 @@ class Simulation(Proxy):
             )
             obj.setEditorMode("HeightField", 1)
         add_outputs(obj, OUTPUTS)
+        add_outputs(obj, result_files.OUTPUTS)
         report_data.add(obj)
 
     def field(self, obj):

@@ -23,7 +23,7 @@ constexpr double kMostCellsAcross = 2000;
 // Share of the wheel's indentation that may be ground in a step where the wheel follows the
 // surface: beyond, the step is cut, since the wheel would sink where it has long gone on.
 constexpr double kCoarse = 1.0;
-constexpr double kCoarseShare = 0.05;       // of the parts at one place, for a step beyond cutting
+constexpr double kCoarseShare = 0.01;       // of the parts at one place, for a step beyond cutting
 constexpr double kLeastIndentation = 1e-6;  // mm
 constexpr std::size_t kReportEvery = 16;    // steps between two looks at progress and cancel
 

@@ -40,6 +40,16 @@ std::size_t limit_of_groups(const fs::path& mounted, std::string_view group, con
     }
 }
 
+/// Whether "cpu,memory" and the like names the memory.
+bool lists_memory(std::string_view kinds) {
+    for (;;) {
+        const std::size_t comma = kinds.find(',');
+        if (kinds.substr(0, comma) == "memory") return true;
+        if (comma == std::string_view::npos) return false;
+        kinds.remove_prefix(comma + 1);
+    }
+}
+
 std::size_t available(const std::string& root) {
     std::ifstream file(root + "/proc/meminfo");
     for (std::string line; std::getline(file, line);) {
@@ -57,7 +67,7 @@ std::size_t usable_memory(const std::string& root) {
     std::size_t least = available(root);
     std::ifstream file(root + "/proc/self/cgroup");
     const fs::path mounted = root + "/sys/fs/cgroup";
-    for (std::string line; std::getline(file, line);) {  // "4:memory:/a/b", "0::/a/b"
+    for (std::string line; std::getline(file, line);) {  // "4:cpu,memory:/a/b", "0::/a/b"
         const auto first = line.find(':');
         const auto second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
@@ -65,7 +75,8 @@ std::size_t usable_memory(const std::string& root) {
         const std::string_view kinds = whole.substr(first + 1, second - first - 1);
         const std::string_view group = whole.substr(second + 1);
         const bool version_2 = kinds.empty();
-        if (!version_2 && kinds != "memory") continue;
+        if (!version_2 && !lists_memory(kinds)) continue;
+        // Beside each of several kinds of one mount there is a link of its name.
         least =
             std::min(least, limit_of_groups(version_2 ? mounted : mounted / "memory", group,
                                             version_2 ? "memory.max" : "memory.limit_in_bytes"));

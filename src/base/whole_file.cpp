@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
 namespace beltgrinding {
@@ -52,12 +53,22 @@ std::error_code write_new(const std::string& path, std::string_view bytes) {
 
 }  // namespace
 
-std::error_code write_whole(const std::string& path, std::string_view bytes) {
+std::error_code write_whole(const std::string& name, std::string_view bytes) {
     static std::atomic<unsigned> writes{0};
+    std::string path = name;
+    struct stat about {};
+    if (::stat(name.c_str(), &about) == 0) {
+        if (S_ISDIR(about.st_mode)) return std::make_error_code(std::errc::is_a_directory);
+        // Nothing may take the place of a pipe or a device.
+        if (!S_ISREG(about.st_mode)) return std::make_error_code(std::errc::invalid_argument);
+        std::error_code error;
+        path = std::filesystem::canonical(name, error).string();  // a link stays one
+        if (error) return error;
+    }
     const std::string folder = folder_of(path);
     // Not `path` and more: that may be too long a name.
     const std::string part =
-        folder + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(writes++);
+        folder + ".beltgrind-part-" + std::to_string(::getpid()) + "-" + std::to_string(writes++);
     ::unlink(part.c_str());  // of a killed process that had our number
     std::error_code error = write_new(part, bytes);
     if (!error && std::rename(part.c_str(), path.c_str()) != 0) error = last_error();

@@ -56,6 +56,14 @@ TEST_F(UsableMemory, KnowsTheFirstVersionToo) {
     EXPECT_EQ(kibibytes(), 500u);
 }
 
+TEST_F(UsableMemory, FindsTheMemoryAmongOtherKinds) {
+    put("proc/self/cgroup", "4:cpu,memory,pids:/one\n");
+    put("sys/fs/cgroup/memory/one/memory.limit_in_bytes", std::to_string(700 * 1024));
+    EXPECT_EQ(kibibytes(), 700u);
+    put("proc/self/cgroup", "4:cpu,memory2:/one\n");
+    EXPECT_EQ(kibibytes(), 4000u);
+}
+
 TEST_F(UsableMemory, IsTheMachinesWhereNothingIsSaid) {
     fs::remove_all(root_);
     EXPECT_GT(kibibytes(), 0u);

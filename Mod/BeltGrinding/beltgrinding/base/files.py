@@ -7,12 +7,14 @@ import json
 import os
 import signal
 import threading
+import time
 import uuid
 from pathlib import Path
 
 from .. import engine
 
 PART = ".beltgrind-part-"  # what is not whole yet; not NAME and more, which may be too long a name
+LEFT_OVER = 3600.0  # s; a part of that age is a killed writer's
 _written = collections.deque(maxlen=1)
 
 
@@ -26,6 +28,7 @@ def write_whole(path, data):
         return
     part = path.with_name(PART + uuid.uuid4().hex)
     with interruptible():
+        _remove_parts(path.parent)
         try:
             write_new(part, data)
             if path.exists():
@@ -36,6 +39,16 @@ def write_whole(path, data):
                 written(path)
         finally:
             part.unlink(missing_ok=True)
+
+
+def _remove_parts(folder):
+    """What killed writers could not tidy up themselves."""
+    with contextlib.suppress(OSError):
+        for entry in os.scandir(folder):
+            if entry.name.startswith(PART) and entry.is_file(follow_symlinks=False):
+                with contextlib.suppress(OSError):
+                    if time.time() - entry.stat(follow_symlinks=False).st_mtime > LEFT_OVER:
+                        os.unlink(entry.path)
 
 
 def write_new(path, data):

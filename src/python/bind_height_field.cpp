@@ -2,6 +2,7 @@
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/stock.h"
 #include "facts.h"
+#include "hdf5_files.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -28,10 +29,10 @@ void bind_height_field(py::module_& m) {
     def_property_readonly(name, [](const py::object& self) {              \
         return view<Scalar>(self.cast<HeightField&>().member, row, self); \
     })
-    py::class_<HeightField>(m, "HeightField",
-                            "Samples of the design surface and the stock on them; arrays are "
-                            "read-only views in mm, work frame.")
-        .def_property_readonly("size", &HeightField::size)
+    py::class_<HeightField> bound(m, "HeightField",
+                                  "Samples of the design surface and the stock on them; arrays are "
+                                  "read-only views in mm, work frame.");
+    bound.def_property_readonly("size", &HeightField::size)
         .def_property_readonly("bytes", &HeightField::bytes)
         .def_readonly("spacing", &HeightField::spacing)
         .def_readonly("depth", &HeightField::depth)
@@ -104,52 +105,9 @@ void bind_height_field(py::module_& m) {
                 }
                 field.measured = measured;
             },
-            py::arg("measured"), "Height of a scan over every sample, mm; NaN: not scanned.")
-        .def(
-            "write_hdf5",
-            [](const HeightField& field, const std::filesystem::path& path,
-               const std::string& attributes) {
-                const py::gil_scoped_release release;
-                write_hdf5(field, path, attributes);
-            },
-            py::arg("path"), py::arg("attributes") = "")
-        .def(
-            "hdf5",
-            [](const HeightField& field, const std::string& attributes) {
-                std::string image;
-                {
-                    const py::gil_scoped_release release;
-                    image = hdf5_image(field, attributes);
-                }
-                return py::bytes(image);
-            },
-            py::arg("attributes") = "", "The bytes that write_hdf5 writes.")
-        .def_static(
-            "from_hdf5_bytes",
-            [](const py::bytes& image, const std::string& name) {
-                const auto view = static_cast<std::string_view>(image);
-                std::string attributes;
-                HeightField field;
-                {
-                    const py::gil_scoped_release release;
-                    field = read_hdf5_image(view, name, &attributes);
-                }
-                return py::make_tuple(std::move(field), attributes);
-            },
-            py::arg("image"), py::arg("name"),
-            "As from_hdf5, of a file's bytes; errors tell the name.")
-        .def_static(
-            "from_hdf5",
-            [](const std::filesystem::path& path) {
-                std::string attributes;
-                HeightField field;
-                {
-                    const py::gil_scoped_release release;
-                    field = read_hdf5(path, &attributes);
-                }
-                return py::make_tuple(std::move(field), attributes);
-            },
-            py::arg("path"), "Returns (HeightField, attributes).");
+            py::arg("measured"), "Height of a scan over every sample, mm; NaN: not scanned.");
+    bind_hdf5<HeightField>(bound, "Returns (HeightField, attributes).", &read_hdf5,
+                           &read_hdf5_image);
 #undef BELTGRINDING_VIEW
 
     m.def(

@@ -1,13 +1,16 @@
 #include "arrays.h"
+#include "hdf5_files.h"
 #include "simulation/recording.h"
 
 namespace beltgrinding::python {
 
 void bind_recording(py::module_& m) {
-    py::class_<Recording>(m, "Recording",
-                          "What simulations did to the heights, step by step; give it to simulate, "
-                          "path after path. Frame k is the state after the k-th block of steps, "
-                          "frame 0 the start; see simulation/recording.h.")
+    py::class_<Recording> bound(
+        m, "Recording",
+        "What simulations did to the heights, step by step; give it to simulate, "
+        "path after path. Frame k is the state after the k-th block of steps, "
+        "frame 0 the start; see simulation/recording.h.");
+    bound
         .def(py::init<std::size_t>(), py::arg("max_bytes") = Recording::kMaxBytes,
              "max_bytes: of the frames; when they hold more, each two become one.")
         .def_property_readonly("samples", &Recording::samples)
@@ -38,52 +41,9 @@ void bind_recording(py::module_& m) {
             },
             py::arg("from_frame"), py::arg("to_frame"),
             "(samples (k,) uint32 ascending, their heights at to_frame (k,) float32 mm): what may "
-            "differ between two frames, in either order.")
-        .def(
-            "write_hdf5",
-            [](const Recording& r, const std::filesystem::path& path,
-               const std::string& attributes) {
-                const py::gil_scoped_release release;
-                write_hdf5(r, path, attributes);
-            },
-            py::arg("path"), py::arg("attributes") = "")
-        .def(
-            "hdf5",
-            [](const Recording& r, const std::string& attributes) {
-                std::string image;
-                {
-                    const py::gil_scoped_release release;
-                    image = hdf5_image(r, attributes);
-                }
-                return py::bytes(image);
-            },
-            py::arg("attributes") = "", "The bytes that write_hdf5 writes.")
-        .def_static(
-            "from_hdf5_bytes",
-            [](const py::bytes& image, const std::string& name) {
-                const auto view = static_cast<std::string_view>(image);
-                std::string attributes;
-                Recording recording;
-                {
-                    const py::gil_scoped_release release;
-                    recording = read_recording_image(view, name, &attributes);
-                }
-                return py::make_tuple(std::move(recording), attributes);
-            },
-            py::arg("image"), py::arg("name"),
-            "As from_hdf5, of a file's bytes; errors tell the name.")
-        .def_static(
-            "from_hdf5",
-            [](const std::filesystem::path& path) {
-                std::string attributes;
-                Recording recording;
-                {
-                    const py::gil_scoped_release release;
-                    recording = read_recording(path, &attributes);
-                }
-                return py::make_tuple(std::move(recording), attributes);
-            },
-            py::arg("path"), "Returns (Recording, attributes).");
+            "differ between two frames, in either order.");
+    bind_hdf5<Recording>(bound, "Returns (Recording, attributes).", &read_recording,
+                         &read_recording_image);
 }
 
 }  // namespace beltgrinding::python

@@ -136,8 +136,7 @@ void ProcessMonitor::coarse(const Pressing& pressing, double removal, double mos
         {"event.step_too_coarse",
          "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
          "the {limit:.3g} mm that it is pressed in by, in a step cut into {parts}; more parts are "
-         "not "
-         "tried: the heights are bounded by the wheel's envelope, and not resolved in time",
+         "not tried: the heights are bounded by the wheel's envelope, and not resolved in time",
          {{"removal", removal}, {"limit", most}, {"parts", parts}}}};
     put(*event, pressing, 0.0, 0.0);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace beltgrinding {
 
@@ -9,7 +10,7 @@ StepQueue::StepQueue(const ToolPath& path, const SteppingOptions& options) : pat
     const std::vector<PathStep> steps = path.steps(options);
     planned_ = steps.size();
     left_.reserve(planned_);
-    for (auto step = steps.rbegin(); step != steps.rend(); ++step) left_.push_back({*step, 1});
+    put(steps, 1);
 }
 
 bool StepQueue::next() {
@@ -23,10 +24,11 @@ bool StepQueue::next() {
 void StepQueue::cut(double parts) {
     const int most = kMostParts / now_.parts;
     const int count = parts < most ? std::max(2, static_cast<int>(std::ceil(parts))) : most;
-    const std::vector<PathStep> steps = path_.cut(now_.step, count);
-    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-        left_.push_back({*step, count * now_.parts});
-    }
+    put(path_.cut(now_.step, count), count * now_.parts);
+}
+
+void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
+    for (const PathStep& step : std::views::reverse(steps)) left_.push_back({step, parts});
 }
 
 double StepQueue::progress() const {

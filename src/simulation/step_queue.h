@@ -27,7 +27,7 @@ class StepQueue {
     /// Whether `cut(parts)` may be called: there is a bound to the parts of a planned step. One
     /// that needs more is not cut at all, which would cost much and not be enough.
     bool divisible(double parts) const {
-        return 2 * now_.parts <= kMostParts && parts <= kMostParts / now_.parts;
+        return 2 * now_.parts <= kMostParts && parts * now_.parts <= kMostParts;
     }
     /// Puts `parts` smaller steps, or as many as may be, in the step's place; `next` gives the
     /// first.
@@ -41,6 +41,9 @@ class StepQueue {
         PathStep step;
         int parts = 1;
     };
+    /// Makes them the next ones, in their order.
+    void put(const std::vector<PathStep>& steps, int parts);
+
     const ToolPath& path_;
     std::vector<Item> left_;  // the next one last
     Item now_;

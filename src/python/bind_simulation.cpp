@@ -116,6 +116,8 @@ py::dict to_dict(const SimulationResult& result) {
     steps["feed"] = column<float>(s, [](const StepRecord& r) { return r.feed; });
     steps["force"] = column<float>(s, [](const StepRecord& r) { return r.force; });
     steps["approach"] = column<float>(s, [](const StepRecord& r) { return r.approach; });
+    steps["deepest_approach"] =
+        column<float>(s, [](const StepRecord& r) { return r.deepest_approach; });
     steps["contact_area"] = column<float>(s, [](const StepRecord& r) { return r.contact_area; });
     steps["peak_pressure"] = column<float>(s, [](const StepRecord& r) { return r.peak_pressure; });
     steps["removal_rate"] = column<float>(s, [](const StepRecord& r) { return r.removal_rate; });

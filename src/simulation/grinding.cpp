@@ -45,6 +45,7 @@ double Grinding::removal(const PathStep& step) {
 
 double Grinding::grind(const PathStep& step, double share, SegmentTree& tree,
                        std::vector<std::uint32_t>& changed) {
+    deepest_ = pressing_.approach();
     if (pressing_.rigid()) return cut_all(step, changed);
     double volume = 0.0;
     double left = step.duration;
@@ -57,6 +58,7 @@ double Grinding::grind(const PathStep& step, double share, SegmentTree& tree,
         left -= grind_part(left, least, volume, changed);
         if (left <= 1e-12 * step.duration) break;
         if (!press_again(step, tree, changed)) break;
+        deepest_ = std::max(deepest_, pressing_.approach());
     }
     return volume;
 }

@@ -26,6 +26,9 @@ class Grinding {
     double grind(const PathStep& step, double share, SegmentTree& tree,
                  std::vector<std::uint32_t>& changed);
 
+    /// mm, where the wheel stood deepest in the last step that was ground, from its programmed
+    /// pose.
+    double deepest() const { return deepest_; }
     const BeltState& belt() const { return belt_; }
     /// mm3, time integral of the law's rate so far.
     double integrated_rate() const { return integrated_rate_; }
@@ -57,6 +60,7 @@ class Grinding {
     Eigen::ArrayXXd shifts_;
     ProcessState state_;             // of the wheel as pressed
     double fastest_ = 0.0;           // mm/s, the largest of `rate_`
+    double deepest_ = 0.0;           // mm
     Eigen::ArrayXd rate_, shifted_;  // mm/s per cell
     PhaseTimes times_;
 };

@@ -185,6 +185,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             const double share = removal > most ? kCoarseShare : steps.share();
             const double volume =
                 grinding.grind(step, std::min(share, steps.share()), *tree, changed);
+            record.deepest_approach = static_cast<float>(grinding.deepest());
             record.removal_rate = static_cast<float>(volume / step.duration);
             grinding.refit(*tree, changed);
             const Stopwatch watch(wall.events);

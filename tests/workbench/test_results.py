@@ -6,6 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -14,10 +15,11 @@ for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
         sys.path.insert(0, str(folder))
 
 import beltgrinding  # noqa: E402
-from beltgrinding.base import folders  # noqa: E402
+from beltgrinding.base import files, folders  # noqa: E402
 from beltgrinding.cli import main  # noqa: E402
 from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
+from support.results import unseal  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
 
@@ -138,6 +140,28 @@ def test_what_a_killed_writer_left_is_removed_when_it_is_old(tmp_path, results, 
     results[1].write(out)
     left = [p.name for p in parent.iterdir() if p.name.startswith(folders.STAGE)]
     assert left == [folders.STAGE + "new"]
+
+
+def test_what_a_killed_writer_of_a_file_left_is_removed_when_it_is_old(tmp_path):
+    for name, age in (("old", files.LEFT_OVER + 60), ("new", 0)):
+        part = tmp_path / (files.PART + name)
+        part.write_text("half")
+        os.utime(part, (part.stat().st_mtime - age,) * 2)
+    files.write_whole(tmp_path / "a.json", b"{}")
+    assert sorted(told(tmp_path)) == [files.PART + "new", "a.json"]
+
+
+def test_a_table_of_steps_of_0_1_0_is_read(tmp_path, results):
+    """It had no deepest approach: that is not known, and nothing else changes."""
+    out = tmp_path / "out"
+    results[0].write(out)
+    rows = [row.rsplit(",", 1) for row in (out / "steps.csv").read_text().splitlines()]
+    assert rows[0][1] == "deepest_approach_mm"
+    (out / "steps.csv").write_text("".join(row[0] + "\n" for row in rows))
+    unseal(out)
+    steps = Result.read(out).steps
+    assert np.isnan(steps["deepest_approach"]).all()
+    assert steps["approach"] == pytest.approx(results[0].steps["approach"])
 
 
 @pytest.mark.parametrize(

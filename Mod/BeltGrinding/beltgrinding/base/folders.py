@@ -23,9 +23,9 @@ import uuid
 from pathlib import Path
 
 from ..engine import InputError
+from .files import PART as STAGE
 from .files import interruptible, uninterrupted, write_new, written
 
-STAGE = ".beltgrind-part-"  # not whole yet: to be thrown away
 JOURNAL = ".beltgrind-ready-"  # whole, and decided: to be ended
 MANIFEST = ".manifest.json"
 WAIT = 60.0  # s for another process that writes
@@ -34,24 +34,23 @@ NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of a 
 RENAME_EXCHANGE, AT_FDCWD = 2, -100
 
 
-def replace(folder, contents, gone=(), check=None):
-    """Writes ``contents`` (bytes by file name) into ``folder`` and removes the names ``gone``, all of it
-    or nothing. The folder is made where it is not; its other files stay. ``check(folder)`` is called
-    under the lock, after what another had begun is ended, and may raise. Ctrl-C comes before the change or
-    after it. Raises OSError, InputError.
+def replace(folder, contents, look=None):
+    """Writes ``contents`` (bytes by file name) into ``folder``, all of it or nothing. The folder is made
+    where it is not; its other files stay. ``look(folder)`` is called under the lock, after what another
+    had begun is ended; it may raise, or return the names of files to be removed. Ctrl-C comes before the
+    change or after it. Raises OSError, InputError.
     """
     folder = Path(os.path.realpath(folder))
     with interruptible():
-        _replace(folder, contents, gone, check)
+        _replace(folder, contents, look)
 
 
-def _replace(folder, contents, gone, check):
+def _replace(folder, contents, look):
     made = _make(folder)
     try:
         with _locked(folder, fcntl.LOCK_EX):
             _end_journals(folder)
-            if check is not None:
-                check(folder)
+            gone = (look(folder) or ()) if look is not None else ()
             for name in (*contents, *gone):
                 if (folder / name).is_dir():
                     raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), folder / name)

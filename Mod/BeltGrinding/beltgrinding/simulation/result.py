@@ -150,7 +150,9 @@ STEP_COLUMNS = {
     "peak_pressure": "peak_pressure_MPa",
     "removal_rate": "removal_rate_mm3_s",
     "segments": "segments",
+    "deepest_approach": "deepest_approach_mm",
 }
+ADDED = {"deepest_approach_mm"}  # since 0.1.0, whose results are read with NaN there
 
 
 def _table(steps):
@@ -175,6 +177,7 @@ def _read_table(folder):
             "simulation.no_steps", "{file}: no table of steps: {reason}", file=path, reason=error
         ) from None
     found = dict(zip(names, rows.T))
+    found.update({name: np.full(len(rows), np.nan) for name in ADDED - set(found)})
     missing = [name for name in STEP_COLUMNS.values() if name not in found]
     if missing:
         raise InputError(

@@ -74,17 +74,15 @@ def write(folder, contents, summary, force=False, used=()):
     ``summary`` gets ``files``. Raises InputError; the folder is then as it was.
     """
 
-    def allowed(folder):
+    def of_the_old(folder):
         check(folder, summary, used, force)
-        for name, kept in _listed(folder).items():
-            if name not in FILES and _same(folder / name, kept):
-                gone.append(name)
+        listed = _listed(folder).items()
+        own = {name for name, kept in listed if name not in FILES and _same(folder / name, kept)}
+        return sorted({*FILES, *MADE_LATER, *own} - set(contents))
 
     summary["files"] = {name: _sum(data) for name, data in contents.items()}
-    # Found under the lock, and read only after ``allowed`` has filled it.
-    gone = [name for name in (*FILES, *MADE_LATER) if name not in contents and name != SUMMARY]
     contents = {**contents, SUMMARY: _summary_bytes(summary)}
-    _replace(folder, contents, gone, allowed)
+    _replace(folder, contents, of_the_old)
 
 
 def update(folder, summary, contents):
@@ -107,10 +105,10 @@ def update(folder, summary, contents):
 
     before = summary.get("files")
     if before is None:
-        _replace(folder, contents, (), None)
+        _replace(folder, contents)
         return
     changed = {**summary, "files": {**before, **{n: _sum(data) for n, data in contents.items()}}}
-    _replace(folder, {**contents, SUMMARY: _summary_bytes(changed)}, (), unchanged)
+    _replace(folder, {**contents, SUMMARY: _summary_bytes(changed)}, unchanged)
     summary["files"] = changed["files"]
 
 
@@ -152,9 +150,9 @@ def _damaged(path):
     )
 
 
-def _replace(folder, contents, gone, allowed):
+def _replace(folder, contents, look=None):
     try:
-        folders.replace(folder, contents, gone, allowed)
+        folders.replace(folder, contents, look)
     except OSError as error:
         raise cannot_be_written(folder, error) from None
 

@@ -20,16 +20,17 @@ class Recording;
 
 /// One row of the time series.
 struct StepRecord {
-    double time = 0.0;           ///< s
-    std::uint32_t pose = 0;      ///< programmed pose that the step leads to, from 0
-    float duration = 0.0f;       ///< s
-    float feed = 0.0f;           ///< mm/s, infeed speed of the contact point over the work
-    float force = 0.0f;          ///< N
-    float approach = 0.0f;       ///< mm, the wheel's way from the programmed pose along z
-    float contact_area = 0.0f;   ///< mm2
-    float peak_pressure = 0.0f;  ///< MPa
-    float removal_rate = 0.0f;   ///< mm3/s
-    std::uint32_t segments = 0;  ///< found by localisation
+    double time = 0.0;       ///< s
+    std::uint32_t pose = 0;  ///< programmed pose that the step leads to, from 0
+    float duration = 0.0f;   ///< s
+    float feed = 0.0f;       ///< mm/s, infeed speed of the contact point over the work
+    float force = 0.0f;      ///< N
+    float approach = 0.0f;   ///< mm, the wheel's way from the programmed pose along z, at first
+    float deepest_approach = 0.0f;  ///< mm, where it stood deepest within the step
+    float contact_area = 0.0f;      ///< mm2
+    float peak_pressure = 0.0f;     ///< MPa
+    float removal_rate = 0.0f;      ///< mm3/s
+    std::uint32_t segments = 0;     ///< found by localisation
 };
 
 /// How the wheel is pressed and the belt runs: what decides what is ground.

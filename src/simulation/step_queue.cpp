@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <iterator>
 
 namespace beltgrinding {
 
@@ -28,7 +28,10 @@ void StepQueue::cut(double parts) {
 }
 
 void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
-    for (const PathStep& step : std::views::reverse(steps)) left_.push_back({step, parts});
+    std::transform(steps.rbegin(), steps.rend(), std::back_inserter(left_),
+                   [parts](const PathStep& step) {
+                       return Item{step, parts};
+                   });
 }
 
 double StepQueue::progress() const {

@@ -11,6 +11,7 @@ from ..objects.proxy import type_of
 from .common.compat import QtGui, translate
 from .common.messages import error_text
 from .widgets.form import quantity_field, show_quantity
+from .widgets.steady import steady
 
 MOST_THREADS = 1024
 
@@ -47,7 +48,7 @@ class PreferencesPage:
 
     def _simulation(self):
         box, rows = _group(translate("BeltGrinding", "Simulation"))
-        self.threads = QtGui.QSpinBox()
+        self.threads = steady(QtGui.QSpinBox())
         self.threads.setObjectName("Threads")
         self.threads.setRange(0, MOST_THREADS)
         self.threads.setSpecialValueText(translate("BeltGrinding", "all"))
@@ -61,7 +62,7 @@ class PreferencesPage:
 
     def _deviation(self):
         box, rows = _group(translate("BeltGrinding", "Deviation"))
-        self.unit = QtGui.QComboBox()
+        self.unit = steady(QtGui.QComboBox())
         self.unit.setObjectName("DeviationUnit")
         for unit in preferences.UNITS:
             self.unit.addItem(unit.symbol)

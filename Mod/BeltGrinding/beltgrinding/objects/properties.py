@@ -2,6 +2,7 @@
 
 import copy
 import json
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -17,8 +18,15 @@ AS_IS = ("Bool", "Enumeration", "String", "File")  # kinds without a unit
 FACTOR = {"Force": 1000.0, "Pressure": 1000.0}
 
 
+# FreeCAD's property editor shows a Float with two decimals, and Enter makes the value what is shown: K of
+# 0.000125 becomes 0. A Precision is the same number with all of its decimals.
+STORED_AS = {"JSON": "String", "Float": "Precision"}
+UNBOUND = 1e300  # FreeCAD lets no Precision be negative unless it is told a bound
+
+
 class Key(NamedTuple):
-    """A property for the key of a job. ``kind`` is the property's type without App::Property."""
+    """A property for the key of a job. ``kind`` is the property's type without App::Property; what
+    FreeCAD keeps it as: ``STORED_AS``."""
 
     name: str
     kind: str
@@ -72,15 +80,46 @@ def add_keys(obj, keys):
     for key in keys:
         _keys[type_of(obj), key.name] = key
         if key.name in obj.PropertiesList:
-            _widen(obj, key)
+            _keep_up(obj, key)
             continue
         found, default = rule(key.key)
-        kind = "String" if key.kind == "JSON" else key.kind
-        obj.addProperty(f"App::Property{kind}", key.name, key.group, found["description"])
+        _add(obj, key)
         if key.kind == "Enumeration":
             setattr(obj, key.name, found["enum"])
+        elif key.kind == "Float":
+            _unbind(obj, key, 0.0)
         if default is not None:
             set_value(obj, key, default)
+
+
+def _add(obj, key):
+    kind, found = STORED_AS.get(key.kind, key.kind), rule(key.key)[0]
+    obj.addProperty(f"App::Property{kind}", key.name, key.group, found["description"])
+
+
+def _keep_up(obj, key):
+    """Makes the property of an older file what it would be in a new one."""
+    _widen(obj, key)
+    if key.kind != "Float":
+        return
+    touched, value = "Touched" in obj.State, getattr(obj, key.name)
+    if obj.getTypeIdOfProperty(key.name) == "App::PropertyFloat":  # of 0.1.0
+        bound = [text for name, text in obj.ExpressionEngine if name == key.name]
+        obj.removeProperty(key.name)
+        _add(obj, key)
+        for text in bound:
+            obj.setExpression(key.name, text)
+    _unbind(obj, key, value)
+    if not touched:
+        obj.purgeTouched()
+
+
+def _unbind(obj, key, value):
+    """Sets a Precision, and lets it take any number, which FreeCAD forgets with its file: what is
+    beyond the schema's limits is then told, not set to the limit without a word."""
+    default = rule(key.key)[1] or 1.0
+    step = 10.0 ** math.floor(math.log10(abs(default) * key.scale)) / 10.0
+    setattr(obj, key.name, (value, -UNBOUND, UNBOUND, step))
 
 
 def _widen(obj, key):

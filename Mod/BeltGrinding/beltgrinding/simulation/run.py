@@ -14,6 +14,7 @@ from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
 from ..job.workpiece import apply_stock, make_field, read_design
+from . import idle
 from .result import Result
 
 NOTES = 3  # warnings shown behind an error
@@ -85,6 +86,7 @@ def _run(job, context, warnings, recording, phases):
     core.check_wheel(wheel)
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
+    warnings += idle.warnings(job)
     ways = motions.of_paths(paths)
     phases.end("programs")
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))

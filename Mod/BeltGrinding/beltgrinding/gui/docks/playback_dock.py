@@ -14,6 +14,7 @@ from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..common.runner import Runner
 from ..scene.playback_scene import SAME, Scene
+from ..widgets.steady import steady
 
 SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # of the real time
 TICK = 40  # ms between two pictures
@@ -147,14 +148,14 @@ class Playback(QtGui.QDockWidget):
         self.play_button = button("play", icons.SP_MediaPlay, text, self.toggle)
         text = translate("BeltGrinding", "Next event")
         button("nextEvent", icons.SP_MediaSkipForward, text, lambda: self.step(1))
-        self.speed = QtGui.QComboBox()
+        self.speed = steady(QtGui.QComboBox())
         self.speed.setObjectName("speed")
         self.speed.setToolTip(translate("BeltGrinding", "Speed, as a multiple of the real time"))
         for speed in SPEEDS:
             self.speed.addItem(f"{speed:g} ×", speed)
         self.speed.setCurrentIndex(SPEEDS.index(1.0))
         row.addWidget(self.speed)
-        self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
+        self.slider = steady(QtGui.QSlider(QtCore.Qt.Horizontal))
         self.slider.setObjectName("timeSlider")
         self.slider.setRange(0, PARTS)
         self.slider.valueChanged.connect(self._slid)

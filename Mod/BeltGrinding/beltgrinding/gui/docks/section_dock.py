@@ -12,6 +12,7 @@ from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from .object_dock import ObjectDock
+from ..widgets.steady import steady
 
 STEPS = 1000  # of the slider
 AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
@@ -52,14 +53,14 @@ class SectionDock(ObjectDock):
         )
         self.kind.currentIndexChanged.connect(self._kind_chosen)
         self.controls.addRow(translate("BeltGrinding", "Cut"), self.kind)
-        self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
+        self.slider = steady(QtGui.QSlider(QtCore.Qt.Horizontal))
         self.slider.setObjectName("sectionSlider")
         self.slider.setRange(0, STEPS)
         self.slider.valueChanged.connect(self._slid)
         self.slider.sliderPressed.connect(self._open)
         self.slider.sliderReleased.connect(self._released)
         self.controls.addRow(self.slider)
-        self.offset = QtGui.QDoubleSpinBox()
+        self.offset = steady(QtGui.QDoubleSpinBox())
         self.offset.setObjectName("sectionOffset")
         self.offset.setDecimals(3)
         self.offset.setSuffix(" mm")
@@ -85,7 +86,7 @@ class SectionDock(ObjectDock):
         )
         self.mode.currentIndexChanged.connect(lambda _: self.refresh())
         self.controls.addRow(translate("BeltGrinding", "Plot"), self.mode)
-        self.factor = QtGui.QDoubleSpinBox()
+        self.factor = steady(QtGui.QDoubleSpinBox())
         self.factor.setObjectName("sectionFactor")
         self.factor.setRange(0.0, 1e6)
         self.factor.setDecimals(1)
@@ -105,7 +106,7 @@ class SectionDock(ObjectDock):
         self.controls.addRow(row)
 
     def _combo(self, name, texts, tip):
-        box = QtGui.QComboBox()
+        box = steady(QtGui.QComboBox())
         box.setObjectName(name)
         box.addItems(texts)
         box.setToolTip(tip)

@@ -12,6 +12,7 @@ from ..widgets.form import Form
 from ..widgets.pose_walk import PoseWalk
 from .panel import Panel
 from .robot_box import RobotBox
+from ..widgets.steady import steady
 
 WAIT = 200  # ms after the last change of a frame; long paths take a while to draw
 
@@ -76,7 +77,7 @@ class CellPanel(Panel):
             )
         )
         layout = QtGui.QVBoxLayout(box)
-        self.frame = QtGui.QComboBox()
+        self.frame = steady(QtGui.QComboBox())
         self.frame.setObjectName("bodyFrame")
         for text in (
             translate("BeltGrinding", "Stand still, in the base frame"),

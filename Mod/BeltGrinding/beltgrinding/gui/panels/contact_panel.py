@@ -11,6 +11,7 @@ from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..widgets.steady import steady
 
 WAIT = 300  # ms after the last move of the slider
 PICTURE = 220  # pixels, of the longer side
@@ -48,15 +49,15 @@ class ContactPanel:
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
         self.form.setWindowIcon(qicon("BeltGrinding_Contact"))
         body = QtGui.QVBoxLayout(self.form)
-        self.program = QtGui.QComboBox()
+        self.program = steady(QtGui.QComboBox())
         self.program.setObjectName("program")
         for path in self.paths:
             self.program.addItem(path.Label)
         self.program.setVisible(len(self.paths) > 1)
         body.addWidget(self.program)
         row = QtGui.QHBoxLayout()
-        self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
-        self.number = QtGui.QSpinBox()
+        self.slider = steady(QtGui.QSlider(QtCore.Qt.Horizontal))
+        self.number = steady(QtGui.QSpinBox())
         self.number.setObjectName("pose")
         self.number.setPrefix(translate("BeltGrinding", "pose "))
         row.addWidget(self.slider, 1)

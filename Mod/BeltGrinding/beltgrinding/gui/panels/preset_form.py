@@ -10,6 +10,7 @@ from ...objects.proxy import type_of
 from ...presets import library as presets, rubber
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..widgets.steady import steady
 
 YOUNGS_MODULUS = next(key for key in belt_machine.KEYS if key.name == "YoungsModulus")
 
@@ -114,7 +115,7 @@ class PresetForm(QtGui.QGroupBox):
             self.rows.addRow(wrong)
 
     def _add(self, kind, text, found):
-        box, hint = QtGui.QComboBox(), _hint(f"{kind}PresetHint")
+        box, hint = steady(QtGui.QComboBox()), _hint(f"{kind}PresetHint")
         self.boxes[kind] = box
         box.setObjectName(f"{kind}Preset")
         box.addItem(translate("BeltGrinding", "choose a preset…"))

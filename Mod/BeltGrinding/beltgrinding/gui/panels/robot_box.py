@@ -10,6 +10,7 @@ from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.form import FrameField
+from ..widgets.steady import steady
 
 OWN = "RobotModel"
 SHOWN_EVENTS = 200
@@ -27,7 +28,7 @@ class RobotBox(QtGui.QGroupBox):
         self.task, self.events = None, []
         layout = QtGui.QFormLayout(self)
         layout.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
-        self.choice = QtGui.QComboBox()
+        self.choice = steady(QtGui.QComboBox())
         self.choice.setObjectName("robot")
         self.choice.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         self.ids = ["", *(one["id"] for one in presets.robots())]

@@ -11,6 +11,7 @@ from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..common.runner import Background
 from .panel import Panel
+from ..widgets.steady import steady
 
 UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4))
 AS_IT_LIES, PRINCIPAL, MATRIX, PAIRS, ALIGNED = range(5)
@@ -83,7 +84,7 @@ class ScanPanel(Panel):
             self.held[name].setObjectName(name)
             grid.addWidget(self.held[name], i // 3, i % 3)
         rows.addRow(translate("BeltGrinding", "Hold"), held)
-        self.share = QtGui.QDoubleSpinBox()
+        self.share = steady(QtGui.QDoubleSpinBox())
         self.share.setObjectName("share")
         self.share.setRange(1.0, 100.0)
         self.share.setDecimals(0)
@@ -117,7 +118,7 @@ class ScanPanel(Panel):
             line.setText(path)
 
     def _choice(self, rows, text, choices):
-        box = QtGui.QComboBox()
+        box = steady(QtGui.QComboBox())
         # A long choice must not make the panel wider than the view that holds it.
         box.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         box.setMinimumContentsLength(8)

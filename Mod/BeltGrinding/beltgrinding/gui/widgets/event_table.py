@@ -4,6 +4,7 @@ from ...cell.events import SEVERITIES
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
 from ..common.event_texts import COLOURS
+from .steady import steady
 
 SHOWN = 5000  # rows; a table of more is no help
 ROWS = 12  # that the table has room for at least
@@ -66,7 +67,7 @@ class EventTable(QtGui.QWidget):
         body.addWidget(self.details)
 
     def _choice(self, name, row, stretch):
-        choice = QtGui.QComboBox()
+        choice = steady(QtGui.QComboBox())
         choice.setObjectName(name)
         choice.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         choice.setMinimumContentsLength(NARROW)

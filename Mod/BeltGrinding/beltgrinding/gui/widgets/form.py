@@ -9,6 +9,7 @@ from FreeCAD import Placement, Rotation, Units, Vector
 from ...engine import InputError
 from ...objects.properties import limits
 from ..common.compat import QtCore, QtGui, translate
+from .steady import steady
 
 QUANTITIES = {
     "App::PropertyLength",
@@ -19,7 +20,7 @@ QUANTITIES = {
     "App::PropertyPressure",
     "App::PropertyAcceleration",
 }
-NUMBERS = {"App::PropertyFloat", "App::PropertyInteger"}
+NUMBERS = {"App::PropertyFloat", "App::PropertyPrecision", "App::PropertyInteger"}
 WRONG = "QAbstractSpinBox, QLineEdit { border: 2px solid #b3261e; }"
 ATTEMPTS = 20
 MINIMUM_WIDTH = 96  # pixels: a panel must fit the combo view as it comes
@@ -45,7 +46,7 @@ def _spin_box():
         widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         try:
             widget.objectName()
-            return widget
+            return steady(widget)
         except RuntimeError:
             # A closed panel's widget was at this address, and PySide hands out its dead wrapper.
             gc.collect()
@@ -101,7 +102,7 @@ class Form(QtGui.QGroupBox):
             widget.setChecked(getattr(self.obj, name))
             widget.toggled.connect(lambda on: self._set(name, on))
         elif kind == "App::PropertyInteger":
-            widget = QtGui.QSpinBox()
+            widget = steady(QtGui.QSpinBox())
             widget.setValue(getattr(self.obj, name))
             widget.valueChanged.connect(lambda value: self._set(name, value))
         elif kind == "App::PropertyLinkGlobal":
@@ -247,7 +248,7 @@ class Form(QtGui.QGroupBox):
         return widget
 
     def _enumeration(self, name, texts):
-        widget = QtGui.QComboBox()
+        widget = steady(QtGui.QComboBox())
         # A long choice must not make the panel wider than the view that holds it.
         widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         widget.setMinimumContentsLength(10)
@@ -259,7 +260,7 @@ class Form(QtGui.QGroupBox):
         return widget
 
     def _link(self, name, objects):
-        widget = QtGui.QComboBox()
+        widget = steady(QtGui.QComboBox())
         choices = [None, *objects]
         for one in choices:
             widget.addItem(one.Label if one else translate("BeltGrinding", "(none)"))

@@ -8,6 +8,7 @@ import numpy as np
 from ...base.frames import to_abc
 from ..common.compat import QtCore, QtGui, translate
 from ..scene.cell_view import CellView
+from .steady import steady
 
 REACH = 8  # pixels around the mouse in which a pose is picked
 LARGEST_SOURCE = 20_000_000  # bytes; a larger file is not shown
@@ -25,14 +26,14 @@ class PoseWalk(QtGui.QWidget):
         self.picking = []
         body = QtGui.QVBoxLayout(self)
         body.setContentsMargins(0, 0, 0, 0)
-        self.program = QtGui.QComboBox()
+        self.program = steady(QtGui.QComboBox())
         self.program.setObjectName("walkedProgram")
         for path in paths:
             self.program.addItem(path.Label)
         self.program.setVisible(len(paths) > 1)
-        self.slider = QtGui.QSlider(QtCore.Qt.Horizontal)
+        self.slider = steady(QtGui.QSlider(QtCore.Qt.Horizontal))
         self.slider.setObjectName("poseSlider")
-        self.number = QtGui.QSpinBox()
+        self.number = steady(QtGui.QSpinBox())
         self.number.setObjectName("poseNumber")
         self.number.setPrefix(translate("BeltGrinding", "pose "))
         row = QtGui.QHBoxLayout()

@@ -1,0 +1,244 @@
+"""What changes a number without being meant to: the mouse wheel over a panel, Enter in the property
+editor."""
+
+PREPARE = """
+import time
+import beltgrinding
+from support.hands import *
+job = prepare()
+doc = job.Document
+"""
+
+WHEEL = """
+KINDS = QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QSlider
+
+def shown(widget):
+    line = widget.findChild(QtGui.QLineEdit)
+    for name in ("currentIndex", "value"):
+        found = getattr(widget, name, None)
+        if found is not None:
+            return found() if callable(found) else found, line and line.text()
+    return line.text()
+
+def turn(widget):
+    centre = QtCore.QPointF(widget.width() / 2, widget.height() / 2)
+    place = QtCore.QPointF(widget.mapToGlobal(centre.toPoint()))
+    for steps in (120, 120, -120, -120, -120):
+        event = QtGui.QWheelEvent(
+            centre, place, QtCore.QPoint(), QtCore.QPoint(0, steps), QtCore.Qt.NoButton,
+            QtCore.Qt.NoModifier, QtCore.Qt.NoScrollPhase, False,
+        )
+        QtGui.QApplication.sendEvent(widget, event)
+
+def fields():
+    return [w for kind in KINDS for w in visible(kind) if not isinstance(w, QtGui.QScrollBar)]
+
+def turn_over_all(before):
+    view_widget().setFocus()
+    found = [w for w in fields() if w not in before]
+    for widget in found:
+        was = shown(widget)
+        turn(widget)
+        assert shown(widget) == was, (widget.objectName(), was, shown(widget))
+        assert not widget.hasFocus()
+    return len(found)
+"""
+
+
+def test_the_mouse_wheel_over_a_panel_changes_no_field(freecad):
+    freecad.run(
+        PREPARE
+        + WHEEL
+        + """
+raster = beltgrinding.make_raster(job)
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+others = fields()  # FreeCAD's own
+settings = {o.Name: o.dumpContent() for o in doc.Objects}
+PANELS = {
+    "Stock": 1, "Belt machine": 10, "Belt": 0, "Cell": 10, "Tolerance zones...": 0,
+    "Contact at a pose...": 2, "Deviation": 2, "Compare a scan...": 2,
+}
+for text, least in PANELS.items():
+    menu(text)
+    looked = turn_over_all(others)
+    assert looked >= least, (text, looked)
+    Gui.Control.closeDialog()
+    settle()
+for obj in (job, raster, doc.RobotPath):
+    Gui.ActiveDocument.setEdit(obj.Name)
+    settle()
+    assert turn_over_all(others) > 1, obj.Name
+    Gui.Control.closeDialog()
+    settle()
+menu("Playback")
+press("Simulate with recording")
+wait(lambda: field("BeltGrinding_PlaybackDock").scene is not None)
+assert turn_over_all(others) > 1
+menu("Cross-section")
+assert turn_over_all(others) > 3
+
+# One that is clicked into is turned by it as ever.
+menu("Belt machine")
+radius = field("WheelRadius", QtGui.QAbstractSpinBox)
+radius.setFocus()
+settle()
+turn(radius)
+settle()
+assert doc.BeltMachine.WheelRadius.Value != 60
+Gui.Control.closeDialog()
+""",
+        window=True,
+    )
+
+
+EDITOR = """
+KINDS = "Float Precision Length Distance Pressure Force Speed Angle Acceleration".split()
+
+def rows(model, parent):
+    for row in range(model.rowCount(parent)):
+        index = model.index(row, 0, parent)
+        yield index
+        if not parent.isValid():
+            yield from rows(model, index)
+
+def editor(obj, name):
+    '''The open field of a property in FreeCAD's property editor; None: it cannot be edited there.'''
+    Gui.Selection.clearSelection()
+    settle()
+    time.sleep(0.1)
+    settle()
+    Gui.Selection.addSelection(obj)
+    settle()
+    time.sleep(0.15)  # FreeCAD fills it a moment later, and empties it before
+    settle()
+    label = "".join(" " + c if c.isupper() and i else c for i, c in enumerate(name))
+
+    def trees():
+        return [
+            tree
+            for tree in visible(QtGui.QTreeView)
+            if tree.metaObject().className().endswith("PropertyEditor")
+        ]
+
+    def found():
+        return [
+            index
+            for tree in trees()
+            for index in rows(tree.model(), QtCore.QModelIndex())
+            if index.data() == label and index.parent().isValid()
+        ]
+
+    index = eventually(found)[0]
+    tree = trees()[0]
+    cell = index.sibling(index.row(), 1)
+    tree.setCurrentIndex(cell)
+    tree.edit(cell)
+
+    def boxes():
+        return [
+            box
+            for box in visible(QtGui.QAbstractSpinBox)
+            if tree.viewport().isAncestorOf(box)
+        ]
+
+    return (eventually(boxes, 1) or [None])[0]
+
+def enter(box):
+    for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
+        key = QtGui.QKeyEvent(kind, QtCore.Qt.Key_Return, QtCore.Qt.NoModifier, chr(13))
+        QtGui.QApplication.sendEvent(box, key)
+    settle()
+
+def plain(value):
+    return float(getattr(value, "Value", value))
+
+def enter_everywhere(objects):
+    looked = 0
+    for obj in objects:
+        for name in obj.PropertiesList:
+            kind = obj.getTypeIdOfProperty(name).replace("App::Property", "")
+            modes = obj.getEditorMode(name)
+            if kind not in KINDS or "ReadOnly" in modes or "Hidden" in modes:
+                continue
+            setattr(obj, name, 0.000125)
+            box = editor(obj, name)
+            if box is None:
+                continue
+            if kind in ("Float", "Precision"):
+                assert "0.000125" in box.findChild(QtGui.QLineEdit).text(), (obj.Name, name)
+            enter(box)
+            assert plain(getattr(obj, name)) == 0.000125, (obj.Name, name, getattr(obj, name))
+            looked += 1
+    return looked
+"""
+
+
+def test_enter_in_the_property_editor_changes_no_number(freecad):
+    freecad.run(
+        PREPARE
+        + EDITOR
+        + """
+assert job.LawCoefficient == 0.000125
+raster = beltgrinding.make_raster(job)
+looked = enter_everywhere([job, doc.Stock, doc.BeltMachine, raster])
+assert looked > 50, looked
+# What is out of bounds is still told, not cut to size without a word.
+job.LawCoefficient = -1.0
+assert job.LawCoefficient == -1.0
+job.SpeedExponent = -0.5
+doc.saveAs("small.FCStd")
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("small.FCStd")
+job = doc.BeltGrindingJob
+assert job.LawCoefficient == -1.0 and job.SpeedExponent == -0.5
+job.LawCoefficient = -2.0
+assert job.LawCoefficient == -2.0
+""",
+        window=True,
+    )
+
+
+def test_numbers_of_an_older_document_are_kept_with_their_expressions(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.objects.properties import add_keys
+from beltgrinding.objects.job_data import KEYS
+
+def old(name, value):
+    job.removeProperty(name)
+    job.addProperty("App::PropertyFloat", name, "Law", "")
+    setattr(job, name, value)
+
+old("LawCoefficient", 4.5e-6)
+old("SpeedExponent", -0.25)
+job.setExpression("SpeedExponent", "-0.125 * 2")
+doc.recompute()
+doc.saveAs("old.FCStd")
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument("old.FCStd")
+job = doc.BeltGrindingJob
+assert job.getTypeIdOfProperty("LawCoefficient") == "App::PropertyPrecision"
+assert job.LawCoefficient == 4.5e-6 and job.SpeedExponent == -0.25
+assert job.ExpressionEngine == [("SpeedExponent", "-0.125 * 2")], job.ExpressionEngine
+assert "Touched" not in job.State, job.State
+""",
+        window=True,
+    )
+
+
+def test_settings_that_grind_nothing_are_told(freecad):
+    freecad.run(
+        PREPARE
+        + """
+job.LawCoefficient = 0.0
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+texts = [label.text() for label in visible(QtGui.QLabel)]
+assert any("law.coefficient_mm2_per_N is 0" in text for text in texts), texts
+""",
+        window=True,
+    )

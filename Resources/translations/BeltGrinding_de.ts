@@ -1080,10 +1080,6 @@
         <translation>ob Scheibe, Teil und Körper auf Kollisionen verfolgt werden</translation>
     </message>
     <message>
-        <source>shade the surface; off, every colour is exactly as in the legend</source>
-        <translation>die Fläche schattieren; aus: jede Farbe genau wie in der Legende</translation>
-    </message>
-    <message>
         <source>the same as JSON, for other languages</source>
         <translation>dasselbe als JSON, für andere Sprachen</translation>
     </message>

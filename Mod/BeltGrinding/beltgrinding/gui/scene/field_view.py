@@ -104,22 +104,15 @@ class FieldView:
         module = None if stock_nodes else _coin_module()
         self.own_node = module is not None
         self.drawn = _OwnNode(module, field) if self.own_node else _StockNodes(field)
-        self.light = coin.SoLightModel()
-        matt = coin.SoMaterial()  # a highlight would wash the colours out
-        matt.ambientColor = (0.2, 0.2, 0.2)
-        matt.specularColor = matt.emissiveColor = (0.0, 0.0, 0.0)
-        hints = coin.SoShapeHints()  # seen, and lit, from both sides
+        light = coin.SoLightModel()  # none: a shade would change what a colour says
+        light.model = coin.SoLightModel.BASE_COLOR
+        hints = coin.SoShapeHints()  # seen from both sides
         hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
         self.node = coin.SoSeparator()
-        for part in (self.light, matt, hints, *self.drawn.parts):
+        for part in (light, hints, *self.drawn.parts):
             self.node.addChild(part)
         self.set_heights(field.height)
         self.drawn.set_colours(np.full(len(self.points), 0xB0B0B0FF, dtype=np.uint32))
-
-    def set_lit(self, lit):
-        """Lit, or flat: every colour exactly as in the legend."""
-        model = coin.SoLightModel
-        self.light.model = model.PHONG if lit else model.BASE_COLOR
 
     def set_heights(self, heights):
         """Moves the samples: ``heights`` (n,) mm along the normals. Colours stay as they are."""

@@ -1,4 +1,4 @@
-"""The faces of the part that are not ground, for orientation."""
+"""The faces of the part that are not ground, and all its edges, for orientation."""
 
 import Part
 from pivy import coin
@@ -12,7 +12,7 @@ DEFLECTION = 0.002  # chord error, as a share of the part's diagonal
 
 
 def rest_of_part(job):
-    """Coin node with the job's part without the faces to be ground; not picked."""
+    """Coin node with the job's part without the faces to be ground, and with its edges; not picked."""
     root = coin.SoSeparator()
     try:
         shape, numbers = job_data.design(job)
@@ -20,13 +20,8 @@ def rest_of_part(job):
         return root
     ground = set(numbers)
     others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
-    if not others:
-        return root
-    rest = Part.Compound(others)
     deflection = DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
-    points, triangles = rest.tessellate(deflection)
-    if not triangles:
-        return root
+    points, triangles = Part.Compound(others).tessellate(deflection) if others else ([], [])
     pick = coin.SoPickStyle()
     pick.style = coin.SoPickStyle.UNPICKABLE
     hints = coin.SoShapeHints()
@@ -39,13 +34,16 @@ def rest_of_part(job):
     indices = [index for a, b, c in triangles for index in (a, b, c, -1)]
     faces = coin.SoIndexedFaceSet()
     faces.coordIndex.setValues(0, len(indices), indices)
-    for node in (pick, hints, material, coordinates, faces, _edges(rest, deflection)):
+    root.addChild(pick)
+    for node in (hints, material, coordinates, faces) if triangles else ():
         root.addChild(node)
+    root.addChild(_edges(shape, deflection))
     return root
 
 
 def _edges(shape, deflection):
-    """The edges as thin lines: without them, faces of one brightness run into one another."""
+    """The edges as thin lines: without them, faces of one brightness run into one another, and the
+    coloured ones have no light."""
     root = coin.SoSeparator()
     light = coin.SoLightModel()
     light.model = coin.SoLightModel.BASE_COLOR

@@ -1,4 +1,8 @@
-"""Base of the view providers of meshes with a colour at every vertex, and a legend over the 3D view."""
+"""Base of the view providers of meshes with a colour at every vertex, and a legend over the 3D view.
+
+A colour says a value, so nothing may change it: no light falls on it, and what is looked at or selected
+is framed, not painted.
+"""
 
 from pivy import coin
 
@@ -14,14 +18,19 @@ class ColouredMeshView(View):
     def __init__(self, view):
         super().__init__(view)
         view.Coloring = True
+        frame_selected(view)
 
     def attach(self, view):
         super().attach(view)
+        light = coin.SoLightModel()
+        light.model = coin.SoLightModel.BASE_COLOR
+        view.RootNode.insertChild(light, 0)
         self.legend = coin.SoSwitch()
         view.RootNode.addChild(self.legend)
         self.update_legend()
 
     def finishRestoring(self):
+        frame_selected(self.view)  # in a document of 0.1.0 it is painted
         self.colour()
         self.update_legend()
 
@@ -50,3 +59,9 @@ class ColouredMeshView(View):
     def _show_legend(self):
         shown = self.view.Visibility
         self.legend.whichChild = coin.SO_SWITCH_ALL if shown else coin.SO_SWITCH_NONE
+
+
+def frame_selected(view):
+    """Marks a mesh under the mouse, or selected, by a frame: FreeCAD would paint it in one colour."""
+    if view.SelectionStyle != "BoundBox":
+        view.SelectionStyle = "BoundBox"

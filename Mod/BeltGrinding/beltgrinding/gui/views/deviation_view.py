@@ -30,16 +30,12 @@ class DeviationView(ColouredMeshView):
             "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
         )
         view.RestOfPart = True
-        _add_lit(view)
 
     def attach(self, view):
-        self.light = coin.SoLightModel()
-        self.rest = coin.SoSwitch()
-        view.RootNode.insertChild(self.light, 0)
-        view.RootNode.insertChild(
-            self.rest, 0
-        )  # before the mesh's materials, which it would inherit
         super().attach(view)
+        self.rest = coin.SoSwitch()
+        # Before the mesh's materials and light, which it would inherit.
+        view.RootNode.insertChild(self.rest, 0)
 
     def panel(self, obj):
         from ..panels.deviation_panel import DeviationPanel
@@ -47,9 +43,8 @@ class DeviationView(ColouredMeshView):
         return DeviationPanel(obj)
 
     def finishRestoring(self):
-        if not hasattr(self.view, "Lit"):
-            _add_lit(self.view)
-        self.update_light()
+        if hasattr(self.view, "Lit"):  # 0.1.0 shaded the colours, which made others of them
+            self.view.removeProperty("Lit")
         super().finishRestoring()
         self.update_rest()
 
@@ -63,17 +58,11 @@ class DeviationView(ColouredMeshView):
             self.update_legend()
 
     def onChanged(self, view, name):
-        if getattr(self, "legend", None) is None:
+        if getattr(self, "rest", None) is None:
             return
         super().onChanged(view, name)
         if name in ("Visibility", "RestOfPart"):
             self.update_rest()
-        if name == "Lit":
-            self.update_light()
-
-    def update_light(self):
-        model = coin.SoLightModel
-        self.light.model = model.PHONG if self.view.Lit else model.BASE_COLOR
 
     def legend_node(self):
         obj = self.view.Object
@@ -93,13 +82,3 @@ class DeviationView(ColouredMeshView):
         if job is not None and self.view.Visibility and self.view.RestOfPart:
             self.rest.addChild(rest_of_part(job))
             self.rest.whichChild = -3
-
-
-def _add_lit(view):
-    view.addProperty(
-        "App::PropertyBool",
-        "Lit",
-        "Deviation",
-        "shade the surface; off, every colour is exactly as in the legend",
-    )
-    view.Lit = True

@@ -3212,6 +3212,10 @@ im Mittel {} abgetragen</translation>
         <source>The limits have changed since: gouges are told by the old ones.</source>
         <translation>Die Grenzen sind seither andere: Zu tiefe Stellen sind nach den alten gemeldet.</translation>
     </message>
+    <message>
+        <source>good</source>
+        <translation>gut</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

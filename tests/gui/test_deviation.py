@@ -214,3 +214,54 @@ assert len(label_values(-0.001, 0.001, 1.0, 20)) < 32  # not over one another
 """,
         window=True,
     )
+
+
+def test_the_legend_says_what_is_good_and_where_colours_are_clipped(freecad):
+    freecad.run(
+        """
+from pivy import coin
+from support.hands import *
+from beltgrinding.gui.scene import legend
+
+def found(node, kind):
+    search = coin.SoSearchAction()
+    search.setType(kind.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.apply(node)
+    paths = search.getPaths()
+    return [coin.cast(paths[k].getTail(), kind.__name__) for k in range(paths.getLength())]
+
+def texts(node):
+    return [text.string.getValues()[0] for text in found(node, coin.SoText2)]
+
+def arrows(node):
+    return len(found(node, coin.SoFaceSet)) - 1  # the other one is the ground
+
+start()
+for lower, upper, limit in ((-0.05, 0.05, 0.3), (-0.02, 0.1, 0.3), (-0.1, 0.0, 0.3)):
+    node = legend.node(lower, upper, limit)
+    node.ref()
+    assert {"too much left", "cut too deep", "good"} <= set(texts(node)), texts(node)
+    assert arrows(node) == 2
+narrow = legend.node(-0.005, 0.005, 0.3, beyond=(False, True))
+narrow.ref()
+assert "-0.005 good" in texts(narrow) and "good" not in texts(narrow), texts(narrow)
+assert arrows(narrow) == 1
+scan = legend.scan_node(-0.05, 0.05, 0.3, difference=True)  # not left or cut by anybody
+scan.ref()
+assert not {"too much left", "cut too deep", "good"} & set(texts(scan))
+
+job = prepare()
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+type_in("ColourLimit", "0.1 mm")  # there are 0.2 mm of stock
+press("OK")
+assert doc.Deviation.Maximum.Value > 0.1
+drawn = doc.Deviation.ViewObject.Proxy.legend
+clipped = 1 + (doc.Deviation.Minimum.Value < -0.1)
+assert arrows(drawn) == clipped, (arrows(drawn), doc.Deviation.Minimum)
+""",
+        window=True,
+    )

@@ -1,4 +1,7 @@
-"""The legend of the deviation: a colour bar with numbers, laid over the 3D view."""
+"""The legend of the deviation: a colour bar with numbers and words, laid over the 3D view.
+
+An end of the bar is an arrow where values beyond it have its colour, or may have.
+"""
 
 from pivy import coin
 
@@ -13,13 +16,18 @@ LABEL_GAP = 0.07  # of half the bar: a line of text
 RIGHT = 0.36  # of its ground: room for a line of 14 letters in a view of 600 pixels
 LETTERS = 15  # of a line
 LINE = 0.055  # from line to line, in a view of 600 pixels
+TIP = 0.05  # height of an arrow
+OPEN = (
+    True,
+    True,
+)  # whether values lie beyond the lower end, the upper one; true, too, where not known
 
 
 def _rgb(packed):
     return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
 
 
-def scan_node(lower, upper, limit, out_of_date=False, difference=False):
+def scan_node(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
     """The legend of a scan's heights, or of their difference from the prediction; always in the
     standard colours without steps.
     """
@@ -27,18 +35,19 @@ def scan_node(lower, upper, limit, out_of_date=False, difference=False):
         text = translate("BeltGrinding", "scan - prediction, {}")
     else:
         text = translate("BeltGrinding", "scan, {}")
-    return _deviation(lower, upper, limit, out_of_date, 0, None, text)
+    return _deviation(lower, upper, limit, out_of_date, 0, None, text, beyond, not difference)
 
 
-def node(lower, upper, limit, out_of_date=False, bands=0):
+def node(lower, upper, limit, out_of_date=False, bands=0, beyond=OPEN):
     """The legend of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
-    each ramp.
+    each ramp; ``beyond``: as OPEN.
     """
     text = translate("BeltGrinding", "deviation, {}")
-    return _deviation(lower, upper, limit, out_of_date, bands, preferences.colours(), text)
+    chosen = preferences.colours()
+    return _deviation(lower, upper, limit, out_of_date, bands, chosen, text, beyond, True)
 
 
-def _deviation(lower, upper, limit, out_of_date, bands, choice, text):
+def _deviation(lower, upper, limit, out_of_date, bands, choice, text, beyond, judged):
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     unit = preferences.deviation_unit()
     labels = {
@@ -46,7 +55,20 @@ def _deviation(lower, upper, limit, out_of_date, bands, choice, text):
         for value in label_values(lower, upper, limit, bands)
     }
     colours = core.colour_scale(lower, upper, limit, values, bands, choice)
-    return _legend(colours, labels, text.format(unit.symbol), out_of_date)
+    words = ("", "")
+    if judged:
+        good = translate("BeltGrinding", "good")
+        at = _height(0.5 * (lower + upper), limit)
+        nearest = min(labels, key=lambda height: abs(height - at))
+        if abs(nearest - at) > 0.5 * LABEL_GAP * HEIGHT:
+            labels[at] = good
+        else:  # no room for a line between
+            labels[nearest] += " " + good
+        words = (
+            translate("BeltGrinding", "cut too deep"),
+            translate("BeltGrinding", "too much left"),
+        )
+    return _legend(colours, labels, text.format(unit.symbol), out_of_date, beyond, words)
 
 
 def label_values(lower, upper, limit, bands=0):
@@ -73,12 +95,12 @@ def uncertainty_node(limit, out_of_date=False):
     unit = preferences.deviation_unit()
     labels = {HEIGHT * k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
     text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
-    return _legend(colours, labels, text, out_of_date)
+    return _legend(colours, labels, text, out_of_date, (False, True), ("", ""))
 
 
-def _legend(colours, labels, title, out_of_date):
+def _legend(colours, labels, title, out_of_date, beyond, words):
     """Colour bar with texts by height at the view's left border; not picked, not counted by
-    fitAll.
+    fitAll. ``words``: below the bar and above it.
     """
     outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
     group = coin.SoAnnotation()
@@ -97,12 +119,20 @@ def _legend(colours, labels, title, out_of_date):
     shift = coin.SoTranslation()
     shift.translation = (-0.95, -0.5 * HEIGHT, 0)
     group.addChild(shift)
-    titles = _lines(title)
+    titles = [*_lines(title), words[1]] if words[1] else _lines(title)
+    top = HEIGHT + (TIP if beyond[1] else 0.0)
+    bottom = -TIP if beyond[0] else 0.0
+    if words[0]:
+        bottom -= 0.02 + LINE
     warnings = (
         _lines(translate("BeltGrinding", "out of date: simulate again")) if out_of_date else []
     )
-    group.addChild(_panel(HEIGHT + 0.13 + LINE * (len(titles) - 1), len(warnings)))
-    group.addChild(_bar([_rgb(c) for c in colours]))
+    group.addChild(_panel(bottom, top + 0.13 + LINE * (len(titles) - 1), len(warnings)))
+    rgb = [_rgb(c) for c in colours]
+    group.addChild(_bar(rgb))
+    for there, colour, end, way in zip(beyond, (rgb[0], rgb[-1]), (0.0, HEIGHT), (-TIP, TIP)):
+        if there:
+            group.addChild(_arrow(colour, end, way))
     text_colour = coin.SoBaseColor()
     text_colour.rgb = (0.0, 0.0, 0.0)
     group.addChild(text_colour)
@@ -113,13 +143,15 @@ def _legend(colours, labels, title, out_of_date):
     for height, text in labels.items():
         group.addChild(_label(text, LEFT + WIDTH + 0.02, height))
     for k, line in enumerate(reversed(titles)):
-        group.addChild(_label(line, LEFT, HEIGHT + 0.06 + LINE * k))
+        group.addChild(_label(line, LEFT, top + 0.06 + LINE * k))
+    if words[0]:
+        group.addChild(_label(words[0], LEFT, bottom))
     if warnings:
         warning = coin.SoBaseColor()
         warning.rgb = (0.7, 0.15, 0.1)
         group.addChild(warning)
     for k, line in enumerate(warnings):
-        group.addChild(_label(line, LEFT, -0.1 - LINE * k))
+        group.addChild(_label(line, LEFT, bottom - 0.1 - LINE * k))
     return outer
 
 
@@ -132,14 +164,15 @@ def _lines(text):
     return [text]
 
 
-def _panel(high, lines_below):
-    """A light ground, up to ``high``: FreeCAD's own background may be dark."""
+def _panel(low, high, lines_below):
+    """A light ground about what is between ``low`` and ``high``: FreeCAD's own background may be dark."""
     group = coin.SoSeparator()
     material = coin.SoMaterial()
     material.diffuseColor = (1.0, 1.0, 1.0)
     material.transparency = 0.25
     group.addChild(material)
-    low, right = -0.06 - (0.045 + LINE * lines_below if lines_below else 0.0), LEFT + RIGHT
+    low -= 0.06 + (0.045 + LINE * lines_below if lines_below else 0.0)
+    right = LEFT + RIGHT
     points = coin.SoCoordinate3()
     corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
     points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])
@@ -162,6 +195,21 @@ def _label(text, x, y):
     node = coin.SoText2()
     node.string = text
     group.addChild(node)
+    return group
+
+
+def _arrow(colour, end, way):
+    """A tip on the bar: its base at the height ``end``, its point ``way`` from there."""
+    group = coin.SoSeparator()
+    base = coin.SoBaseColor()
+    base.rgb = colour
+    points = coin.SoCoordinate3()
+    corners = [(LEFT, end, 0), (LEFT + WIDTH, end, 0), (LEFT + 0.5 * WIDTH, end + way, 0)]
+    points.point.setValues(0, 3, corners)
+    face = coin.SoFaceSet()
+    face.numVertices = 3
+    for node in (base, points, face):
+        group.addChild(node)
     return group
 
 

@@ -13,6 +13,8 @@ LEGEND = (
     "ColourLimit",
     "UncertaintyLimit",
     "Bands",
+    "Minimum",
+    "Maximum",
     "VertexColors",
     "OutOfDate",
 )
@@ -73,7 +75,8 @@ class DeviationView(ColouredMeshView):
             return legend.uncertainty_node(obj.UncertaintyLimit.Value, obj.OutOfDate)
         if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
             return legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
-        return legend.node(*scale, obj.OutOfDate, bands_of(obj))
+        beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
+        return legend.node(*scale, obj.OutOfDate, bands_of(obj), beyond)
 
     def update_rest(self):
         """Draws the faces that are not ground; what is cut below them would else be hidden."""

@@ -386,3 +386,37 @@ assert scene.getNumChildren() == children and len(doc.Objects) == objects
 """,
         window=True,
     )
+
+
+def test_what_the_user_is_to_mend_does_not_pull_up_the_report_view(freecad):
+    freecad.run(
+        """
+from support.hands import *
+dock = widgets(QtGui.QDockWidget, "Report view")[0]
+log = dock.findChild(QtGui.QTextEdit) or widgets(QtGui.QTextEdit, "Report view")[0]
+
+# FreeCAD does so on an error of anybody: else this test could not fail.
+dock.hide()
+FreeCAD.Console.PrintError("an error of another's\\n")
+wait(dock.isVisible, 10)
+dock.hide()
+
+start()
+doc = FreeCAD.newDocument("unfinished")
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeBox(60, 40, 20)
+doc.recompute()
+Gui.Selection.addSelection(doc.Name, "Block", "Face6")
+menu("New job")
+type_in("Spacing", "0 mm")
+press("OK")
+assert field("note").isVisible()
+type_in("Spacing", "1 mm")
+press("OK")
+menu("Simulate")
+wait(lambda: "add one" in log.toPlainText(), 10)
+settle()
+assert not dock.isVisible()
+""",
+        window=True,
+    )

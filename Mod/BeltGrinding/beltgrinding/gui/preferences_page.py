@@ -116,7 +116,7 @@ class PreferencesPage:
         values = {name: float(f.property("rawValue")) for name, f in self.defaults.items()}
         if values["DefaultToleranceLower"] > values["DefaultToleranceUpper"]:
             text = translate("BeltGrinding", "The lower limit lies above the upper limit.")
-            FreeCAD.Console.PrintError(text + "\n")
+            FreeCAD.Console.PrintWarning(text + "\n")
             del values["DefaultToleranceLower"], values["DefaultToleranceUpper"]
         for name, value in values.items():
             # What nobody changed goes on following the schema's default.
@@ -176,4 +176,4 @@ def take_effect():
                 obj.Proxy.update(obj)
                 obj.ViewObject.Proxy.update_legend()
             except InputError as error:  # its result is gone
-                FreeCAD.Console.PrintError(f"{error_text(error)}\n")
+                FreeCAD.Console.PrintWarning(f"{error_text(error)}\n")

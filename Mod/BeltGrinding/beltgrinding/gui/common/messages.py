@@ -1,4 +1,8 @@
-"""Errors, said in the report view and in a message that does not hold FreeCAD up."""
+"""Errors, said in the report view and in a message that does not hold FreeCAD up.
+
+What a user is to mend is a warning there: on an error FreeCAD pulls its report view over the window. A
+fault of ours is one.
+"""
 
 import traceback
 
@@ -37,7 +41,7 @@ def report(error):
 
 def tell(text):
     """An error in the report view and in a message that does not hold FreeCAD up."""
-    FreeCAD.Console.PrintError(f"{text}\n")
+    FreeCAD.Console.PrintWarning(f"{text}\n")
     box = QtGui.QMessageBox(Gui.getMainWindow())
     box.setObjectName("BeltGrinding_Error")
     box.setIcon(QtGui.QMessageBox.Warning)

@@ -57,7 +57,7 @@ class Panel:
             self.check()
         except InputError as error:
             self.tell(error_text(error), True)
-            FreeCAD.Console.PrintError(f"{self.obj.Label}: {error_text(error)}\n")
+            FreeCAD.Console.PrintWarning(f"{self.obj.Label}: {error_text(error)}\n")
             return False
         self.close()
         self.document.recompute()

@@ -99,7 +99,7 @@ class RunPanel:
         if not isinstance(error, InputError):
             lines = traceback.format_exception(type(error), error, error.__traceback__)
             FreeCAD.Console.PrintError("".join(lines))
-        FreeCAD.Console.PrintError(f"{error_text(error)}\n")
+        FreeCAD.Console.PrintWarning(f"{error_text(error)}\n")
         self._say(error_text(error), True)
 
     def _say(self, text, error=False):

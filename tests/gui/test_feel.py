@@ -420,3 +420,39 @@ assert not dock.isVisible()
 """,
         window=True,
     )
+
+
+def test_a_copied_job_claims_no_members_of_another(freecad):
+    freecad.run(
+        PREPARE
+        + """
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+log = widgets(QtGui.QTextEdit, "Report view")[0]
+members = [member.Name for member in job.Group]
+for objects, all_of_it in (([job], False), ([job], True), ([job, *job.OutListRecursive], False)):
+    log.clear()
+    made = doc.copyObject(objects, all_of_it)
+    copy = made[0] if isinstance(made, (list, tuple)) else made
+    doc.recompute()
+    settle()
+    time.sleep(0.2)
+    settle()
+    assert "single Group" not in log.toPlainText(), log.toPlainText()
+    assert copy.Proxy is not job.Proxy
+    assert len(copy.Group) == (0 if objects == [job] and not all_of_it else len(members))
+    assert not {member.Name for member in copy.Group} & set(members)
+    assert [member.Name for member in job.Group] == members
+    assert all(member.getParentGroup() == job for member in job.Group)
+doc.saveAs("copies.FCStd")
+FreeCAD.closeDocument(doc.Name)
+log.clear()
+doc = FreeCAD.openDocument("copies.FCStd")
+settle()
+assert "single Group" not in log.toPlainText()
+assert [member.Name for member in doc.BeltGrindingJob.Group] == members
+""",
+        window=True,
+    )

@@ -27,6 +27,14 @@ class BeltGrindingJob(Proxy):
             )
         add_keys(obj, KEYS)
 
+    def onDocumentRestored(self, obj):
+        super().onDocumentRestored(obj)
+        # A job that was copied without its members claims those of the job it is a copy of, and FreeCAD
+        # lets none be in two groups.
+        own = [member for member in obj.Group if member.getParentGroup() in (None, obj)]
+        if len(own) < len(obj.Group):
+            obj.Group = own
+
     def execute(self, obj):
         """Marks the result out of date or up to date, and recolours it; never simulates. Raises
         InputError for settings that cannot be, so that the tree shows where the mistake is.

@@ -265,3 +265,52 @@ assert arrows(drawn) == clipped, (arrows(drawn), doc.Deviation.Minimum)
 """,
         window=True,
     )
+
+
+def test_two_legends_stand_side_by_side(freecad):
+    freecad.run(
+        """
+from pivy import coin
+from support.hands import *
+from beltgrinding.gui.scene import legend
+
+def column(obj):
+    search = coin.SoSearchAction()
+    search.setName(legend.PLACE)
+    search.setSearchingAll(True)
+    search.apply(obj.ViewObject.Proxy.legend)
+    place = coin.cast(search.getPath().getTail(), "SoTranslation").translation.getValue()[0]
+    return round((place + 0.95) / legend.COLUMN)
+
+job = prepare()
+doc = job.Document
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+menu("Ground part as mesh")
+settle()
+deviation, ground = doc.Deviation, doc.GroundPart
+deviation.ViewObject.Visibility = ground.ViewObject.Visibility = True
+assert (column(deviation), column(ground)) == (0, 1)
+deviation.ViewObject.Visibility = False
+assert column(ground) == 0
+deviation.ViewObject.Visibility = True
+job.ToleranceUpper = "0.1 mm"  # makes both anew
+doc.recompute()
+assert (column(deviation), column(ground)) == (0, 1)
+
+# The arrows have the colour of the bar's ends, whatever the mesh behind is drawn with.
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.saveImage("legends.png", 1000, 800, "White")
+image = QtGui.QImage("legends.png")
+x = round(1000 * (0.5 * (-0.95 + legend.COLUMN + 0.5 * legend.WIDTH) + 0.5))
+for end, way in ((0.5, 1), (-0.5, -1)):
+    bar = round(800 * (0.5 - 0.5 * (end * legend.HEIGHT - 0.01 * way)))
+    tip = round(800 * (0.5 - 0.5 * (end * legend.HEIGHT + 0.5 * legend.TIP * way)))
+    colours = [image.pixelColor(x, y).getRgb()[:3] for y in (bar, tip)]
+    assert all(abs(a - b) < 12 for a, b in zip(*colours)), (end, colours)
+""",
+        window=True,
+    )

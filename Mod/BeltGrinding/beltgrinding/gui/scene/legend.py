@@ -17,14 +17,25 @@ RIGHT = 0.36  # of its ground: room for a line of 14 letters in a view of 600 pi
 LETTERS = 15  # of a line
 LINE = 0.055  # from line to line, in a view of 600 pixels
 TIP = 0.05  # height of an arrow
-OPEN = (
-    True,
-    True,
-)  # whether values lie beyond the lower end, the upper one; true, too, where not known
+COLUMN = RIGHT + 0.08  # from a legend to the next one beside it
+PLACE = "BeltGrinding_LegendPlace"  # name of the node that says where it is
+# Whether values lie beyond the lower end and the upper one; true, too, where that is not known.
+OPEN = (True, True)
 
 
 def _rgb(packed):
     return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
+
+
+def put_in_column(node, column):
+    """Puts a legend, or a group that holds one, beside ``column`` others."""
+    search = coin.SoSearchAction()
+    search.setName(PLACE)
+    search.setSearchingAll(True)
+    search.apply(node)
+    if search.getPath() is not None:
+        place = coin.cast(search.getPath().getTail(), "SoTranslation")
+        place.translation = (-0.95 + COLUMN * column, -0.5 * HEIGHT, 0)
 
 
 def scan_node(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
@@ -117,6 +128,7 @@ def _legend(colours, labels, title, out_of_date, beyond, words):
     light.model = coin.SoLightModel.BASE_COLOR
     group.addChild(light)
     shift = coin.SoTranslation()
+    shift.setName(PLACE)
     shift.translation = (-0.95, -0.5 * HEIGHT, 0)
     group.addChild(shift)
     titles = [*_lines(title), words[1]] if words[1] else _lines(title)
@@ -201,6 +213,8 @@ def _label(text, x, y):
 def _arrow(colour, end, way):
     """A tip on the bar: its base at the height ``end``, its point ``way`` from there."""
     group = coin.SoSeparator()
+    binding = coin.SoMaterialBinding()  # the mesh behind has a colour a vertex
+    binding.value = coin.SoMaterialBinding.OVERALL
     base = coin.SoBaseColor()
     base.rgb = colour
     points = coin.SoCoordinate3()
@@ -208,7 +222,7 @@ def _arrow(colour, end, way):
     points.point.setValues(0, 3, corners)
     face = coin.SoFaceSet()
     face.numVertices = 3
-    for node in (base, points, face):
+    for node in (binding, base, points, face):
         group.addChild(node)
     return group
 

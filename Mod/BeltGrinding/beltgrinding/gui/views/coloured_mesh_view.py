@@ -7,6 +7,7 @@ is framed, not painted.
 from pivy import coin
 
 from ..common.compat import make_matt
+from ..scene import legend
 from .view import View
 
 
@@ -59,6 +60,13 @@ class ColouredMeshView(View):
     def _show_legend(self):
         shown = self.view.Visibility
         self.legend.whichChild = coin.SO_SWITCH_ALL if shown else coin.SO_SWITCH_NONE
+        column = 0  # one legend beside the other
+        for obj in self.view.Object.Document.Objects:
+            proxy = getattr(obj.ViewObject, "Proxy", None)
+            if isinstance(proxy, ColouredMeshView) and obj.ViewObject.Visibility:
+                if getattr(proxy, "legend", None) is not None:
+                    legend.put_in_column(proxy.legend, column)
+                    column += 1
 
 
 def frame_selected(view):

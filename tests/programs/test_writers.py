@@ -1,6 +1,8 @@
 """New programs: what is written reads back the same, in every language."""
 
+import dataclasses
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -12,10 +14,11 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding import cli  # noqa: E402
 from beltgrinding.base import frames  # noqa: E402
+from beltgrinding.base.messages import sentence  # noqa: E402
 from beltgrinding.programs.program import Motion, ProgramError  # noqa: E402
 from beltgrinding.programs.registry import read_program  # noqa: E402
 from beltgrinding.programs.writers.writer import write_program  # noqa: E402
-from beltgrinding.programs.writers.writer import frame_in_words  # noqa: E402
+from beltgrinding.programs.writers.frames import frame_in_words  # noqa: E402
 from beltgrinding.programs.writers.text import identifier  # noqa: E402
 from support.cost import growth  # noqa: E402
 
@@ -31,6 +34,17 @@ SAME_PATH = [
     "crs_part5.apt",
 ]
 LANGUAGES = [".src", ".mod", ".script"]
+# What reading tells of a program that leaves its frames to the controller.
+LEFT_OUT = {
+    ".src": [],
+    ".mod": ["programs.rapid.kept_as_programmed"] * 2,
+    ".script": ["programs.urscript.ref_frame_elsewhere"],
+    ".csv": [],
+}
+
+
+def problem_codes(program):
+    return [problem.code for problem in program.problems]
 
 
 def angle_deg(a, b):
@@ -80,7 +94,7 @@ def test_real_paths_go_round(tmp_path, name, suffix):
     file = tmp_path / f"path{suffix}"
     write_program(file, None, before)
     after = read_program(file)
-    assert not after.problems
+    assert problem_codes(after) == LEFT_OUT[suffix]
     assert_same(before.motions, after.motions, kinds=suffix == ".src")
     # The second time round nothing changes any more.
     write_program(tmp_path / f"again{suffix}", None, after, name="path")
@@ -96,6 +110,10 @@ def test_generated_motions_go_round(tmp_path, suffix):
     for seed in range(4):
         motions = some_motions(np.random.default_rng(seed), 200)
         write_program(tmp_path / f"p{suffix}", None, motions)
+        after = read_program(tmp_path / f"p{suffix}")
+        assert problem_codes(after) == LEFT_OUT[suffix]
+        assert_same(motions, after.motions, kinds=suffix == ".src")
+        write_program(tmp_path / f"p{suffix}", None, motions, tools=np.eye(4), bases=np.eye(4))
         after = read_program(tmp_path / f"p{suffix}")
         assert not after.problems
         assert_same(motions, after.motions, kinds=suffix == ".src")
@@ -153,16 +171,147 @@ def test_tools_and_bases_by_their_matrices(tmp_path):
         np.testing.assert_allclose(frame_in_words(after.motions[0].base), base, atol=2e-3)
 
 
+SETS = re.compile(  # active code that sets a frame
+    r"^\s*(?:\$(?:BASE|TOOL)\s*=|BAS\s*\(#(?:BASE|TOOL)|(?:PERS|VAR|CONST)\s|set_tcp|ref_frame\s*=)",
+    re.M,
+)
+TOOL = frames.from_abc((10, 20, 300.5), (0, 90, 0))
+BASE = frames.from_abc((1500, -250, 420.125), (30, 0, 0))
+TOLD = {"tool": f"gripper {frames.in_words(TOOL)}", "base": f"table {frames.in_words(BASE)}"}
+
+
+def told_motions(count=5):
+    motions = some_motions(np.random.default_rng(8), count, ("LIN",))
+    return [dataclasses.replace(m, **TOLD) for m in motions]
+
+
+@pytest.mark.parametrize("suffix", [*LANGUAGES, ".csv"])
+def test_no_frame_is_set_unasked(tmp_path, suffix):
+    file = tmp_path / f"p{suffix}"
+    for motions in (some_motions(np.random.default_rng(8), 5, ("LIN",)), told_motions()):
+        notes = write_program(file, None, motions)
+        text = file.read_text()
+        assert not SETS.search(text), text
+        assert not re.search(r"\b(?:tool0|wobj0)\b", text)
+        assert problem_codes(read_program(file)) == LEFT_OUT[suffix]
+        assert_same(motions, read_program(file).motions)
+        assert len(notes) == (0 if suffix == ".csv" else 2)
+        for note in notes:
+            assert sentence(note, "de") != str(note)
+    head = text[: text.index(SAYS_MOTION[suffix])]
+    assert TOLD["tool"] in head and TOLD["base"] in head  # the numbers to be set are told
+
+
+SAYS_MOTION = {".src": "\nPTP", ".mod": "MoveJ", ".script": "movej", ".csv": "\nx_mm"}
+NUMBERS = {
+    ".src": (
+        ";   $TOOL={FRAME: X 10.000000,Y 20.000000,Z 300.500000,A 0.0000000,B 90.0000000,C 0.0000000}",
+        ";   $BASE={FRAME: X 1500.000000,Y -250.000000,Z 420.125000,A 30.0000000,B 0.0000000,C 0.0000000}",
+    ),
+    ".mod": (
+        "!   [[10.000000,20.000000,300.500000],[",
+        "!   [[1500.000000,-250.000000,420.125000],[",
+    ),
+    ".script": (
+        "#   set_tcp(p[0.010000000, 0.020000000,",
+        "#   ref_frame = p[1.500000000, -0.250000000,",
+    ),
+}
+
+
+@pytest.mark.parametrize("suffix", LANGUAGES)
+def test_known_numbers_are_told_in_the_languages_own_form_and_set_if_asked_for(tmp_path, suffix):
+    file = tmp_path / f"p{suffix}"
+    write_program(file, None, told_motions())
+    for line in NUMBERS[suffix]:
+        assert line in file.read_text()
+    assert not write_program(file, None, told_motions(), tools="as-known", bases="as-known")
+    assert len(SETS.findall(file.read_text())) == 2
+    program = read_program(file)
+    assert not program.problems
+    np.testing.assert_allclose(frame_in_words(program.motions[0].tool), TOOL, atol=1e-3)
+    np.testing.assert_allclose(frame_in_words(program.motions[0].base), BASE, atol=1e-3)
+    unknown = some_motions(np.random.default_rng(8), 3, ("LIN",))
+    with pytest.raises(ProgramError, match="numbers of the tool are not known"):
+        write_program(file, None, unknown, tools="as-known")
+
+
+def test_frames_of_the_controller_are_set_by_name(tmp_path):
+    motions = told_motions()
+    assert not write_program(tmp_path / "p.src", None, motions, tools=3, bases="5")
+    rows = (tmp_path / "p.src").read_text().splitlines()
+    assert rows.count("BAS (#TOOL,3 )") == rows.count("BAS (#BASE,5 )") == 1
+    assert rows.index("BAS (#BASE,5 )") > rows.index("BAS (#INITMOV,0 )")
+    first = read_program(tmp_path / "p.src").motions[0]
+    assert (first.tool, first.base) == ("TOOL_DATA[3]", "BASE_DATA[5]")
+
+    notes = write_program(tmp_path / "p.mod", None, motions, tools="tGrind", bases="wobj0")
+    text = (tmp_path / "p.mod").read_text()
+    assert text.count("tGrind\\WObj:=wobj0;") == 5 and not SETS.search(text)
+    assert [note.arguments["name"] for note in notes] == ["tGrind", "wobj0"]
+    first = read_program(tmp_path / "p.mod").motions[0]
+    assert first.tool == "tGrind" and first.base.startswith("wobj0")
+
+    write_program(tmp_path / "p.csv", None, motions, tools="tGrind", bases=BASE)
+    assert "# tool: tGrind (gripper X 10" in (tmp_path / "p.csv").read_text()
+
+    for suffix, name, culprit in (
+        (".src", "tGrind", "KRL's frames have numbers"),
+        (".mod", "3", "no name of RAPID"),
+        (".mod", "a;b", "no name of RAPID"),
+        (".script", "Plane_1", "URScript sets its base by numbers"),
+    ):
+        (tmp_path / f"p{suffix}").unlink(missing_ok=True)
+        with pytest.raises(ProgramError, match=culprit):
+            write_program(tmp_path / f"p{suffix}", None, motions, bases=name)
+        assert not (tmp_path / f"p{suffix}").exists()
+
+
+def test_a_program_that_changes_frames_leaves_none_to_the_controller(tmp_path):
+    """It has one frame in force: the poses in the other one would be ground in it."""
+    for kind in ("tool", "base"):
+        motions = told_motions()
+        for motion in motions[3:]:
+            setattr(motion, kind, "another")
+        for suffix in (".src", ".script"):
+            if (kind, suffix) == ("base", ".script"):
+                continue  # one frame only, whatever is known of it
+            for given in (None, {TOLD[kind]: np.eye(4)}):
+                with pytest.raises(ProgramError, match="changes between frames .*another"):
+                    write_program(tmp_path / f"p{suffix}", None, motions, **{f"{kind}s": given})
+        write_program(
+            tmp_path / "p.src", None, motions, **{f"{kind}s": {TOLD[kind]: 1, "another": 2}}
+        )
+        found = [getattr(m, kind) for m in read_program(tmp_path / "p.src").motions]
+        name = f"{kind}_data".upper()
+        assert found == [f"{name}[1]"] * 3 + [f"{name}[2]"] * 2
+        # So are frames that only the controller knows told apart when they are read.
+        with pytest.raises(ProgramError, match="changes between frames"):
+            write_program(tmp_path / "q.src", None, read_program(tmp_path / "p.src"))
+        write_program(tmp_path / "p.mod", None, motions)
+        found = [getattr(m, kind) for m in read_program(tmp_path / "p.mod").motions]
+        name = {"tool": "tBelt", "base": "wPart"}[kind]
+        assert found == [name] * 3 + [f"{name}_2"] * 2
+        write_program(tmp_path / "p.csv", None, motions)
+        rows = (tmp_path / "p.csv").read_text().splitlines()
+        assert rows[-3] == f"# {kind}: another"
+
+
 def test_a_part_in_the_hand_is_robhold(tmp_path):
     motions = some_motions(np.random.default_rng(2), 5, ("LIN",))
-    write_program(tmp_path / "p.mod", None, motions, part_in_hand=True)
+    numbers = {"tools": np.eye(4), "bases": np.eye(4)}
+    write_program(tmp_path / "p.mod", None, motions, part_in_hand=True, **numbers)
     text = (tmp_path / "p.mod").read_text()
     assert "tooldata tool_1:=[FALSE," in text and "wobjdata wobj_1:=[TRUE," in text
     program = read_program(tmp_path / "p.mod")
     assert not program.problems
     assert program.motions[0].base.endswith("held by the robot")
-    write_program(tmp_path / "q.mod", None, program)  # told by the words of its frames
+    known = {"tools": "as-known", "bases": "as-known"}
+    write_program(tmp_path / "q.mod", None, program, **known)  # told by the words of its frames
     assert "wobjdata wobj_1:=[TRUE," in (tmp_path / "q.mod").read_text()
+    write_program(tmp_path / "r.mod", None, program)
+    text = (tmp_path / "r.mod").read_text()
+    assert "this tooldata, robhold FALSE" in text and "this wobjdata, robhold TRUE" in text
     for suffix in (".src", ".script"):
         with pytest.raises(ProgramError, match="robhold"):
             write_program(tmp_path / f"p{suffix}", None, program)
@@ -256,5 +405,22 @@ def test_convert_from_the_command_line(tmp_path, capsys):
     new = tmp_path / "p.mod"
     assert cli.main(["program", "convert", str(tmp_path / "p.src"), "-o", str(new)]) == 0
     assert_same(motions, read_program(new).motions)
+    told = capsys.readouterr().err
+    assert "uses tBelt, which it does not declare" in told and "uses wPart" in told
+    again = ["--language", "de", "program", "convert", str(new), "--base", "4"]
+    assert cli.main([*again, "-o", str(tmp_path / "q.src")]) == 0
+    text = (tmp_path / "q.src").read_text()
+    assert "BAS (#BASE,4 )" in text and "; $TOOL is not set" in text
+    told = capsys.readouterr().err
+    assert "das Programm setzt kein Werkzeug" in told and "Basis" not in told
+    numbers = ["--tool", "0,0,120.5,0,90,0", "--base=-5,0,0,0,0,0", "--force"]
+    assert cli.main(["program", "convert", str(new), "-o", str(tmp_path / "q.src"), *numbers]) == 0
+    first = read_program(tmp_path / "q.src").motions[0]
+    assert first.tool == "X 0 Y 0 Z 120.5 A 0 B 90 C 0" and first.base.startswith("X -5 ")
+    assert not capsys.readouterr().err
+    assert cli.main(["program", "convert", str(new), "-o", str(new) + "x", "--tool", "1,2"]) == 2
+    assert "--tool 1,2:" in capsys.readouterr().err
+    assert cli.main(["program", str(new), "--tool", "3"]) == 2
+    assert "--tool" in capsys.readouterr().err
     assert cli.main(["program", "convert", str(new), "-o", str(tmp_path / "p.xyz")]) == 2
     assert "no program is written as '.xyz'" in capsys.readouterr().err

@@ -112,6 +112,12 @@ def to_abc(frame):
     return tuple(math.degrees(angle) for angle in (a, b, c))
 
 
+def in_words(frame):
+    """A 4 x 4 as programs tell it: X, Y, Z in mm, A, B, C in degrees."""
+    values = [*np.round(frame[:3, 3], 6), *np.round(to_abc(frame), 7)]
+    return " ".join(f"{k} {v + 0.0:.10g}" for k, v in zip("XYZABC", values))
+
+
 def from_data(data):
     """4 x 4 from a job file's frame; missing (None) is the identity. Raises InputError."""
     if not data:

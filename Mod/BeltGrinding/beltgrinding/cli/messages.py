@@ -43,6 +43,14 @@ class Messages:
             name = word("cli.warning", "warning", self.language)
             _to_stderr(f"{name}: {' '.join(self._sentence(warning).split())}")
 
+    def print_notes(self, notes):
+        """Facts that are no warnings, a line each."""
+        from ..base.messages import word
+
+        for note in notes:
+            name = word("cli.note", "note", self.language)
+            _to_stderr(f"{name}: {' '.join(self._sentence(note).split())}")
+
     def _sentence(self, told):
         from ..base.messages import sentence
 

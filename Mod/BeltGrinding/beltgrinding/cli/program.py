@@ -1,6 +1,7 @@
 """Robot programs: read, changed, converted, laid out, reached."""
 
 import json
+import math
 from pathlib import Path
 
 from . import background, outputs
@@ -19,6 +20,7 @@ def add(commands):
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
+    _add_frames(program)
     outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
@@ -30,6 +32,7 @@ def add(commands):
     raster.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
+    _add_frames(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
     reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
@@ -37,6 +40,54 @@ def add(commands):
     reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
     outputs.add(reach)
     reach.set_defaults(do=_reach)
+
+
+def _add_frames(command):
+    """The options ``--base`` and ``--tool`` of a new program."""
+    for what, name, example in (("base", "BASE", "BASE_DATA"), ("tool", "TOOL", "TOOL_DATA")):
+        command.add_argument(
+            f"--{what}",
+            metavar=name,
+            help=f"what a new program sets as its {what}: the controller's own (KRL: n of {example}[n]; "
+            "RAPID: a name), numbers X,Y,Z,A,B,C in mm and degrees, or as-known: the numbers that are "
+            "known of it (default: nothing; the program's head says what to set)",
+        )
+
+
+def _frames(arguments):
+    """The options as ``write_program`` takes them."""
+    return {"bases": _frame("base", arguments.base), "tools": _frame("tool", arguments.tool)}
+
+
+def _frame(what, given):
+    from ..base.frames import from_abc
+    from ..engine import InputError
+
+    if given is None or "," not in given:
+        return given
+    try:
+        values = [float(value) for value in given.split(",")]
+        if len(values) != 6 or not all(map(math.isfinite, values)):
+            raise ValueError
+    except ValueError:
+        raise InputError(
+            "cli.frame_numbers",
+            "--{what} {given}: write X,Y,Z,A,B,C, mm and degrees, as in --{what}=0,0,120.5,0,90,0",
+            what=what,
+            given=given,
+        ) from None
+    return from_abc(values[:3], values[3:])
+
+
+def _frame_words(job):
+    """What a job tells of the frames of its programs."""
+    from ..presets import robot as robots
+    from ..programs.writers.frames import words_of_cell
+
+    if not robots.given(job["robot"]):
+        return {}
+    keys = ("base_from_robot", "flange_from_tcp")
+    return words_of_cell(*(robots.robot_frame(job["robot"], key) for key in keys))
 
 
 def _program(arguments):
@@ -62,7 +113,14 @@ def _program(arguments):
         raise InputError(
             "cli.program_output", "program {action}: say by -o what file to write", action=action
         )
+    if action != "convert" and (arguments.base or arguments.tool):
+        raise InputError(
+            "cli.frames_of_new_programs",
+            "program {action}: --base and --tool are convert's",
+            action=action,
+        )
     outputs.check(arguments, [arguments.output], files)
+    notes = []
     try:
         if action == "write":
             changed = patch(*files, arguments.output)
@@ -70,11 +128,12 @@ def _program(arguments):
             return
         program = read_program(files[0])
         if action == "convert":
-            write_program(arguments.output, None, program)
+            notes = write_program(arguments.output, None, program, **_frames(arguments))
         elif arguments.output:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
+    arguments.messages.print_notes(notes)
     print(json.dumps(table.summary(program), indent=2))
 
 
@@ -104,10 +163,12 @@ def _raster(arguments):
     job = raster.load_job(arguments.job)
     found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
     try:
-        write_program(arguments.output, None, raster.program(found))
+        made = raster.program(found, **_frame_words(job))
+        notes = write_program(arguments.output, None, made, **_frames(arguments))
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
     arguments.messages.print_warnings(found["warnings"])
+    arguments.messages.print_notes(notes)
     print(json.dumps(raster.summary(found)))
 
 

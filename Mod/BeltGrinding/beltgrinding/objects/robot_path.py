@@ -13,6 +13,7 @@ from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
 from ..programs.registry import read_program
+from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
 from . import freecad_path, stored_facts
 from .geometry import matrix
@@ -46,6 +47,18 @@ LISTS = (
         "mm around each pose in which the corner is rounded; negative: not known",
     ),
 )
+FRAMES = (
+    (
+        "ProgramBase",
+        "the base that an exported program sets: the controller's own by number (KRL) or name (RAPID), "
+        "as-known (the numbers of the cell), or nothing: it must be in force",
+    ),
+    (
+        "ProgramTool",
+        "the tool that an exported program sets: the controller's own by number (KRL) or name (RAPID), "
+        "as-known (the numbers of the cell), or nothing: it must be in force",
+    ),
+)
 
 
 class RobotPath(Proxy):
@@ -68,6 +81,8 @@ class RobotPath(Proxy):
         add("LinkGlobal", "SourceObject", "Program", text)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
+        for name, text in FRAMES:
+            add("String", name, "Export", text)
         if add("Link", "Machine", "Program", "the belt machine, for the cell's frames"):
             obj.setEditorMode("Machine", 2)
         for name, kind, text in LISTS:
@@ -226,13 +241,16 @@ def load_program(obj, path, **values):
 
 
 def write(obj, file, **options):
-    """Writes a RobotPath as a robot program. Raises InputError."""
+    """Writes a RobotPath as a robot program; what ``write_program`` returns. Raises InputError."""
     arrays = obj.Proxy.arrays(obj)
     feeds, forces = arrays["feeds"], arrays["forces"]
     if obj.FeedOverride.Value > 0:
         feeds = np.full(len(feeds), obj.FeedOverride.Value)
     if obj.ForceOverride.Value > 0:
         forces = np.full(len(forces), obj.ForceOverride.getValueAs("N").Value)
+    words = {}
+    if obj.Machine is not None and obj.Machine.Robot:
+        words = words_of_cell(matrix(obj.Machine.BaseFromRobot), matrix(obj.Machine.FlangeFromTcp))
     motions = [
         Motion(
             "PTP" if fast else "LIN",
@@ -241,13 +259,13 @@ def write(obj, file, **options):
             obj.Label,
             None if fast else float(feed),
             float(force) if force >= 0 else None,
+            **words,
         )
         for frame, feed, force, fast, line in zip(
             arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"]
         )
     ]
-    if obj.Machine is not None and obj.Machine.Robot:
-        options.setdefault("tools", matrix(obj.Machine.FlangeFromTcp))
-        options.setdefault("bases", np.linalg.inv(matrix(obj.Machine.BaseFromRobot)))
+    options.setdefault("tools", obj.ProgramTool.strip() or None)
+    options.setdefault("bases", obj.ProgramBase.strip() or None)
     options.setdefault("comment", f"{obj.Label}, {len(motions)} poses")
     return write_program(file, None, motions, **options)

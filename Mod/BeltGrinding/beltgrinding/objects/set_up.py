@@ -151,7 +151,8 @@ def make_raster(job, faces=(), compute=True, **properties):
 def export_program(path, file, **options):
     """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
 
-    Poses are written as they are, arcs as the chords they were cut into; the robot's tool and base
-    come from the belt machine where it has a robot. ``options``: of ``programs.write_program``.
+    Poses are written as they are, arcs as the chords they were cut into. Tool and base are set as the
+    path's ``ProgramTool`` and ``ProgramBase`` say; where the belt machine has a robot, their numbers are
+    told in the program. ``options``, and what is returned: of ``programs.write_program``.
     """
     return robot_path.write(path, file, **options)

@@ -332,14 +332,16 @@ def _fit(job, settings, surfaces, result, warnings, context):
     return fit
 
 
-def program(result):
-    """The path as a ``programs.Program``, for ``programs.write_program``."""
+def program(result, tool="", base=""):
+    """The path as a ``programs.Program``, for ``programs.write_program``. ``tool``, ``base``: what its
+    frames are, in words.
+    """
     rows = zip(result["frames"], result["feeds"].tolist(), result["forces"].tolist())
     made = Program("raster", "raster")
     for (pose, feed, force), rapid in zip(rows, result["rapid"].tolist()):
         kind = "PTP" if rapid else "LIN"
         given = None if force < 0 else force
-        made.motions.append(Motion(kind, pose, 0, "", feed, given))
+        made.motions.append(Motion(kind, pose, 0, "", feed, given, tool, base))
     return made
 
 

@@ -1,7 +1,7 @@
 """Poses as CSV (docs/programs.md); arcs as chords, splines as lines."""
 
 from ...base.cells import comment_cells
-from ...base.frames import to_quaternions
+from ...base.frames import in_words, to_quaternions
 from ..patch.text import decimal
 from ..program import _arc
 from .text import MM_DIGITS, SPEED_DIGITS, UNIT_DIGITS, rounded
@@ -13,8 +13,8 @@ ROW = ",".join([f"%.{MM_DIGITS}f"] * 3 + [f"%.{UNIT_DIGITS}f"] * 4)
 def text(sheet):
     """The bytes of a .csv file."""
     lines = [f"# {comment_cells(comment)}" for comment in sheet.comments]
-    for what, frames in (("tool", sheet.tools), ("base", sheet.bases)):
-        lines += [f"# {what} {comment_cells(words)}" for _, words in frames]
+    tool, base = 0, 0
+    lines += _told(sheet.tools[0]) + _told(sheet.bases[0])
     lines.append(HEAD)
     positions = rounded(sheet.positions, MM_DIGITS).tolist()
     quaternions = rounded(sheet.quaternions, UNIT_DIGITS).tolist()
@@ -25,6 +25,12 @@ def text(sheet):
         tail = f",{speed},{force},{'PTP' if step.kind == 'PTP' else 'LIN'}"
         if step.note:
             lines.append(f"# {comment_cells(step.note)}")
+        if step.tool != tool:
+            tool = step.tool
+            lines += _told(sheet.tools[tool])
+        if step.base != base:
+            base = step.base
+            lines += _told(sheet.bases[base])
         if step.kind == "CIRC" and before is not None:
             ends = _arc(*(sheet.frames[k] for k in (before, step.aux, step.pose)))
             for frame in ends[:-1]:
@@ -33,3 +39,12 @@ def text(sheet):
         lines.append(ROW % (*positions[step.pose], *quaternions[step.pose]) + tail)
         before = step.pose
     return "\n".join([*lines, ""]).encode("ascii")
+
+
+def _told(frame):
+    """Comments: the frame of the rows that follow. The table itself has none."""
+    words = frame.told if frame.name is None else f"{frame.name} ({frame.told})"
+    lines = [f"# {frame.what}: {comment_cells(words)}"]
+    if frame.given and frame.words:
+        lines.append(f"# {frame.what}: {comment_cells(in_words(frame.pose))}")
+    return lines

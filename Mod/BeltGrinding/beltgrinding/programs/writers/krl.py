@@ -6,11 +6,13 @@ import re
 from ...base.frames import to_abc
 from ..patch.text import decimal
 from ..program import ProgramError
+from .frames import check_all_set, taken_for_granted
 from .text import DEGREE_DIGITS, MM_DIGITS, SPEED_DIGITS, rounded
 
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
 POSE = ",".join([f"{k} %.{MM_DIGITS}f" for k in "XYZ"] + [f"{k} %.{DEGREE_DIGITS}f" for k in "ABC"])
 POSE = "{" + POSE + "}"
+VARIABLES = {"tool": "$TOOL", "base": "$BASE"}
 
 
 def text(sheet):
@@ -30,11 +32,17 @@ def text(sheet):
             "poses of the part in the room",
             language="KRL",
         )
+    for frames in (sheet.bases, sheet.tools):
+        check_all_set(frames, "KRL")
+    left_out = [frame for frame in (sheet.bases[0], sheet.tools[0]) if frame.left_out]
+    sheet.notes += taken_for_granted(left_out)
     places = [_pose(frame) for frame in sheet.frames]
     lines = ["&ACCESS RVP", "&REL 1"]
     lines += [f"&COMMENT {comment}" for comment in sheet.comments[:1]]
     lines.append(f"DEF {sheet.name} ( )")
     lines += [f"; {comment}" for comment in sheet.comments[1:]]
+    for frame in left_out:
+        lines += _asked_for(frame)
     lines += [
         ";FOLD INI",
         "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
@@ -52,16 +60,10 @@ def text(sheet):
             head.append(f"; {step.note}")
         if step.base != base:
             base = step.base
-            head += [
-                f"; base {sheet.bases[base][1]}".rstrip(),
-                f"$BASE={_frame(sheet.bases[base][0])}",
-            ]
+            head += _setting(sheet.bases[base])
         if step.tool != tool:
             tool = step.tool
-            head += [
-                f"; tool {sheet.tools[tool][1]}".rstrip(),
-                f"$TOOL={_frame(sheet.tools[tool][0])}",
-            ]
+            head += _setting(sheet.tools[tool])
         if step.force != force:
             force = step.force
             head.append("; force as set" if force is None else f"; force {force:g} N")
@@ -97,3 +99,32 @@ def _pose(frame):
 
 def _frame(frame):
     return "{FRAME: " + _pose(frame)[1:]
+
+
+def _asked_for(frame):
+    """Comments: a frame that the program does not set."""
+    variable = VARIABLES[frame.what]
+    lines = [
+        f"; {variable} is not set in this program. Set it behind INI, or before, if your BAS(#INITMOV,0)",
+        f"; keeps it. The poses mean: {frame.told}",
+    ]
+    if frame.pose is not None:
+        lines.append(f";   {variable}={_frame(frame.pose)}")
+    return lines
+
+
+def _setting(frame):
+    """Statements that set a frame; none where it is left out."""
+    if frame.left_out:
+        return []
+    comment = f"; {frame.what} {frame.told}"
+    if frame.given:
+        return [comment, f"{VARIABLES[frame.what]}={_frame(frame.pose)}"]
+    if not re.fullmatch(r"\d{1,3}", frame.name, re.ASCII):
+        raise ProgramError(
+            "programs.writers.krl_number",
+            "'{name}': KRL's frames have numbers; give the n of TOOL_DATA[n] or BASE_DATA[n], or the "
+            "frame's own numbers",
+            name=frame.name,
+        )
+    return [comment, f"BAS (#{frame.what.upper()},{int(frame.name)} )"]

@@ -1,9 +1,13 @@
 """ABB RAPID as text: a module with tools, work objects and a PROC main. After ABB's Technical
 reference manual, RAPID instructions, functions and data types; names of at most 32 characters."""
 
+import re
+
 from ...base.frames import to_quaternions
 from ..patch.text import decimal
+from ..program import ProgramError
 from ..readers.rapid.data import SPEEDS
+from .frames import undeclared
 from .text import MM_DIGITS, SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
 
 MOST = 32  # characters of an identifier
@@ -11,6 +15,11 @@ ZONES = (0.3, 1, 5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150, 200)  # mm: z0, z1
 PLACE = f"[%.{MM_DIGITS}f,%.{MM_DIGITS}f,%.{MM_DIGITS}f]"
 TURN = "[" + ",".join([f"%.{UNIT_DIGITS}f"] * 4) + "]"
 AXES = "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
+TYPES = {"tool": "tooldata", "base": "wobjdata"}
+DECLARED = {"tool": "tool_", "base": "wobj_"}
+# Of frames that nobody has named: the controller has none of these names, and refuses the program.
+LEFT_OUT = {"tool": "tBelt", "base": "wPart"}
 MOVES = {"PTP": "MoveJ", "LIN": "MoveL", "SPL": "MoveL", "CIRC": "MoveC"}
 
 
@@ -19,19 +28,17 @@ def text(sheet):
     held = sheet.part_in_hand
     lines = [f"MODULE {identifier(sheet.name, MOST)}"]
     lines += [f"  ! {comment}" for comment in sheet.comments]
-    lines.append("  ! Enter the loads (tload) before the program runs.")
-    for k, (frame, words) in enumerate(sheet.tools, 1):
-        lines.append(f"  ! tool {words}")
-        lines.append(
-            f"  PERS tooldata tool_{k}:=[{_flag(not held)},{_pose(frame)},"
-            "[1,[0,0,1],[1,0,0,0],0,0,0]];"
-        )
-    for k, (frame, words) in enumerate(sheet.bases, 1):
-        lines.append(f"  ! work object {words}")
-        lines.append(
-            f'  PERS wobjdata wobj_{k}:=[{_flag(held)},TRUE,"",{_pose(frame)},'
-            "[[0,0,0],[1,0,0,0]]];"
-        )
+    names = {"tool": [], "base": []}
+    for frames in (sheet.tools, sheet.bases):
+        for number, frame in enumerate(frames, 1):
+            name = _name(frame, number)
+            known = name in names[frame.what]  # one of the controller's may be given for several
+            names[frame.what].append(name)
+            if frame.given:
+                lines += _declaration(frame, name, held)
+            elif not known:
+                lines += _asked_for(frame, name, held)
+                sheet.notes.append(undeclared(frame, name))
     lines += ["  PROC main()", "    ConfL\\Off;", "    ConfJ\\Off;"]
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
@@ -56,10 +63,54 @@ def text(sheet):
         rounds = "fine" if k + 1 == len(sheet.steps) else zone
         lines.append(
             f"    {MOVES[step.kind]} {target},{_speed(speed)},{rounds},"
-            f"tool_{step.tool + 1}\\WObj:=wobj_{step.base + 1};"
+            f"{names['tool'][step.tool]}\\WObj:={names['base'][step.base]};"
         )
     lines += ["  ENDPROC", "ENDMODULE", ""]
     return "\r\n".join(lines).encode("ascii")
+
+
+def _name(frame, number):
+    """What the instructions call a frame, which is the number ``number`` of its kind."""
+    if frame.given:
+        return f"{DECLARED[frame.what]}{number}"
+    if frame.left_out:
+        return LEFT_OUT[frame.what] + ("" if number == 1 else f"_{number}")
+    if not NAME.fullmatch(frame.name):
+        raise ProgramError(
+            "programs.writers.rapid_name",
+            "'{name}' is no name of RAPID: a letter, then at most 31 letters, digits or _",
+            name=frame.name,
+        )
+    return frame.name
+
+
+def _declaration(frame, name, held):
+    words = f"  ! {'tool' if frame.what == 'tool' else 'work object'} {frame.told}"
+    if frame.what == "tool":
+        return [
+            words,
+            "  ! Enter its load before the program runs.",
+            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(frame.pose)},"
+            "[1,[0,0,1],[1,0,0,0],0,0,0]];",
+        ]
+    return [
+        words,
+        f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(frame.pose)},'
+        "[[0,0,0],[1,0,0,0]]];",
+    ]
+
+
+def _asked_for(frame, name, held):
+    """Comments: a frame that the program does not declare."""
+    kind = TYPES[frame.what]
+    flag = _flag(held == (frame.what == "base"))
+    lines = [
+        f"  ! {name} is not declared in this module: the controller must have this {kind}, robhold {flag}.",
+        f"  ! The poses mean: {frame.told}",
+    ]
+    if frame.pose is not None:
+        lines.append(f"  !   {_pose(frame.pose)}")
+    return lines
 
 
 def _flag(value):

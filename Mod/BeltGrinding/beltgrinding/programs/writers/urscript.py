@@ -5,6 +5,7 @@ import numpy as np
 from ...base.frames import to_quaternions
 from ..patch.text import decimal
 from ..program import ProgramError
+from .frames import WHAT, check_all_set, taken_for_granted, undeclared
 from .text import SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
 
 POSE = "p[" + ", ".join([f"%.{UNIT_DIGITS}f"] * 6) + "]"
@@ -30,10 +31,28 @@ def text(sheet):
             "programs.writers.one_frame",
             "a URScript program has its poses in one frame; write one a base",
         )
-    frame, words = sheet.bases[0]
+    check_all_set(sheet.tools, "URScript")
+    for one in (*sheet.bases, *sheet.tools):
+        _check_numbers(one)
+    base, first = sheet.bases[0], sheet.tools[0]
     lines = [f"def {identifier(sheet.name, MOST)}():"]
     lines += [f"  # {comment}" for comment in sheet.comments]
-    lines += [f"  # base {words}", f"  ref_frame = {POSE % tuple(_vectors(frame[None])[0])}"]
+    if base.left_out:
+        sheet.notes.append(undeclared(base, "ref_frame"))
+        lines += [
+            "  # ref_frame is not assigned in this program: assign it before, in the robot's base.",
+            f"  # The poses mean: {base.told}",
+        ]
+        lines += [f"  #   ref_frame = {_one(base.pose)}"] if base.pose is not None else []
+    else:
+        lines += [f"  # base {base.told}", f"  ref_frame = {_one(base.pose)}"]
+    if first.left_out:
+        sheet.notes += taken_for_granted([first])
+        lines += [
+            "  # The TCP is not set in this program: set it before.",
+            f"  # The poses mean: {first.told}",
+        ]
+        lines += [f"  #   set_tcp({_one(first.pose)})"] if first.pose is not None else []
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("  # URScript has no splines: their points are joined by lines.")
     places = [
@@ -46,8 +65,9 @@ def text(sheet):
             lines.append(f"  # {step.note}")
         if step.tool != tool:
             tool = step.tool
-            lines.append(f"  # tool {sheet.tools[tool][1]}")
-            lines.append(f"  set_tcp({POSE % tuple(_vectors(sheet.tools[tool][0][None])[0])})")
+            if not sheet.tools[tool].left_out:
+                lines.append(f"  # tool {sheet.tools[tool].told}")
+                lines.append(f"  set_tcp({_one(sheet.tools[tool].pose)})")
         if step.force != force:
             force = step.force
             lines.append("  # force as set" if force is None else f"  # force {force:g} N")
@@ -63,6 +83,20 @@ def text(sheet):
             lines.append(f"  movel({place}, {tail})")
     lines += ["end", ""]
     return "\n".join(lines).encode("ascii")
+
+
+def _check_numbers(frame):
+    if frame.name is not None:
+        raise ProgramError(
+            "programs.writers.no_names",
+            "'{name}': URScript sets its {what} by numbers; give these, or none and set it before",
+            name=frame.name,
+            what=WHAT[frame.what],
+        )
+
+
+def _one(frame):
+    return POSE % tuple(_vectors(frame[None])[0])
 
 
 def _vectors(frames):

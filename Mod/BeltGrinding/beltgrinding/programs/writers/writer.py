@@ -5,21 +5,16 @@ and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The contro
 their own arithmetic (32 bit in KRL and RAPID) is what limits them.
 """
 
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Optional
 
 import numpy as np
 
-from ...base.frames import from_abc, from_quaternions, to_quaternions
 from ..program import Motion, Program, ProgramError
+from .frames import Frames, checked
 from .text import printable
 
-RIGID = 1e-6  # how far a pose's matrix may be off a rotation
-NUMBER = r"\s*([-+]?[\d.]+(?:e[-+]?\d+)?)"
-WORDS = re.compile(r"\bX" + NUMBER + "".join(rf"\s+{k}{NUMBER}" for k in "YZABC"))
-METRES = re.compile(r"p\[" + ",".join([NUMBER] * 6) + r"\]")
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 
@@ -47,12 +42,13 @@ class Sheet:
     positions: np.ndarray  # (n, 3) mm
     quaternions: np.ndarray  # (n, 4) w, x, y, z
     frames: np.ndarray  # (n, 4, 4)
-    tools: list  # (4 x 4 flange_from_tcp, words)
-    bases: list  # (4 x 4, words)
+    tools: list  # of Frame; flange_from_tcp
+    bases: list  # of Frame; robot_from_base
     speed_mm_s: float  # where a motion has none
     ptp_speed_mm_s: float
     blend_mm: float
     part_in_hand: bool
+    notes: list = field(default_factory=list)  # Facts: what the program takes for granted
 
 
 def write_program(
@@ -76,9 +72,12 @@ def write_program(
     base_from_tcp in mm), ``feed_mm_s`` and, optionally, ``force_N``: the first pose of a pass is
     reached by PTP, the others by LIN.
     name: of the module, None: the stem of ``path``. comment: a text for its head.
-    tools, bases: a 4 x 4 in mm for all motions, or a dict of them by ``Motion.tool``,
-    ``Motion.base``; None: what these words tell, else the identity with a comment.
-    tools is flange_from_tcp, bases robot_from_base.
+    tools, bases: what the program sets, for all motions, or a dict by ``Motion.tool``, ``Motion.base``.
+    None: nothing; the controller must have the right one in force, and the head of the program says
+    which. A name or a number: the controller's own (KRL: n of TOOL_DATA[n], BASE_DATA[n]; RAPID: the
+    name of a tooldata or wobjdata that is declared there; URScript has none). A 4 x 4 in mm, tools
+    being flange_from_tcp, bases robot_from_base: these numbers. "as-known": the numbers that
+    ``Motion.tool``, ``Motion.base`` tell.
     speed_mm_s: of path motions without a speed; ptp_speed_mm_s: of PTP where the language has it.
     blend_mm: how far from a pose the robot may round the corner; 0: it stops.
     part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
@@ -86,6 +85,8 @@ def write_program(
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
+
+    Returns a list of Facts: which frames the program leaves to the controller.
     """
     path = Path(path)
     suffix = (language or path.suffix).lower()
@@ -107,6 +108,7 @@ def write_program(
     from ...base.files import write_whole
 
     write_whole(path, data)
+    return sheet.notes
 
 
 def _writer(suffix, path):
@@ -147,7 +149,7 @@ def motions_of(program):
 
 def _sheet(motions, tools, bases):
     """Motions as Steps, poses as arrays."""
-    tool_rows, base_rows = _Frames(tools, "tool"), _Frames(bases, "base")
+    tool_rows, base_rows = Frames(tools, "tool"), Frames(bases, "base")
     poses, steps, aux, gap = [], [], None, []
     for number, motion in enumerate(motions):
         if motion.pose is None:
@@ -192,73 +194,8 @@ def _sheet(motions, tools, bases):
             "programs.writers.no_pose", "the program has no pose; there is nothing to write"
         )
     frames = np.array(poses, dtype=float).reshape(-1, 4, 4)
-    quaternions = _checked(frames)
+    quaternions = checked(frames)
     return Sheet(
         "", [], steps, frames[:, :3, 3], quaternions, frames, tool_rows.rows, base_rows.rows,
         0.0, 0.0, 0.0, False,
     )  # fmt: skip
-
-
-def _checked(frames):
-    """Quaternions of the poses. Raises ProgramError for what is no rigid pose."""
-    if not np.isfinite(frames).all():
-        raise ProgramError("programs.writers.not_finite", "a pose is not finite")
-    quaternions = to_quaternions(frames[:, :3, :3])
-    again = from_quaternions(frames[:, :3, 3], quaternions)
-    wrong = np.flatnonzero(np.abs(again - frames).max(axis=(1, 2)) > RIGID)
-    if len(wrong):
-        raise ProgramError(
-            "programs.writers.no_rotation",
-            "pose {number}: its matrix is no rotation with a position",
-            number=int(wrong[0]),
-        )
-    return quaternions
-
-
-class _Frames:
-    """Tools or bases by their words."""
-
-    def __init__(self, given, what):
-        self.given, self.what = given, what
-        self.rows, self.numbers = [], {}
-
-    def row(self, words):
-        if words not in self.numbers:
-            self.numbers[words] = len(self.rows)
-            self.rows.append(self.frame(words))
-        return self.numbers[words]
-
-    def frame(self, words):
-        given = self.given.get(words) if isinstance(self.given, dict) else self.given
-        if given is not None:
-            frame = np.asarray(given, dtype=float)
-            if frame.shape != (4, 4):
-                raise ProgramError(
-                    "programs.writers.no_matrix",
-                    "the {what} {words} is no 4 x 4",
-                    what=self.what,
-                    words=words,
-                )
-            _checked(frame[None])
-            return frame, printable(words)
-        found = frame_in_words(words)
-        if found is not None:
-            return found, printable(words)
-        text = printable(words)
-        return np.eye(4), f"{text or 'not given'}: enter this {self.what}"
-
-
-def frame_in_words(words):
-    """4 x 4 in mm that the words of a Motion's tool or base tell, to their six digits, or None."""
-    found = WORDS.search(words)
-    if found:
-        values = [float(v) for v in found.groups()]
-        return from_abc(values[:3], values[3:])
-    found = METRES.search(words)
-    if found:
-        from ..readers.urscript.expression import pose_of
-
-        frame = pose_of([float(v) for v in found.groups()]).frame.copy()
-        frame[:3, 3] *= 1000.0
-        return frame
-    return None

@@ -4,6 +4,7 @@ Poses are those of $TOOL in $BASE; A, B, C turn about Z, Y', X'' (Rz(A) Ry(B) Rx
 System Software operating manuals. What only the controller can know is a Problem.
 """
 
+import contextlib
 import math
 import re
 from pathlib import Path
@@ -34,6 +35,8 @@ from .values import Values
 MAX_MOTIONS = 1_000_000
 MAX_CALLS = 20
 MAX_NESTING = 60
+MAX_NAME = 60  # characters of a frame's
+FRAMES = ("$tool", "$base")
 MAX_SPEED = 1e6  # m/s; beyond, the file is damaged
 ASSIGN = re.compile(
     r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:(\w+)\s+)?([$\w.]+)\s*(?:(\[[^\]]*\])\s*)?=(?!=)(.*)$", re.I
@@ -106,6 +109,7 @@ class _Interpreter:
         self.program = Program("KUKA KRL", name)
         self.file = name
         self.values = Values()
+        self.named = {}  # $tool, $base: the controller's own, by name
         self.here = None  # components of the current pose, None: unknown
         self.speed = self.around = None  # around: before the spline block
         self.spline = False  # within a SPLINE block
@@ -180,8 +184,11 @@ class _Interpreter:
                     reason=unknown.fact,
                 )
                 self.speed = None if name == "$vel.cp" else self.speed
+            if name in FRAMES:
+                self.named[name] = " ".join(text.split())[:MAX_NAME].upper()
             return
         self.values[name, indices] = value
+        self.named.pop(name, None)
         head, _, component = name.rpartition(".")
         inner = self.values.get((head, ())) if head else None
         if isinstance(inner, dict) and (component in inner or len(inner) < MAX_COMPONENTS):
@@ -341,6 +348,8 @@ class _Interpreter:
             match = ASSIGN.match(text)
             if match:
                 self.values.forget(match.group(2).lower())
+                if match.group(2).lower() in FRAMES:
+                    self.named[match.group(2).lower()] = f"as line {line} may set it"
             if SETS_SPEED.match(text) and self.speed is not None:
                 self.problem(
                     line,
@@ -464,6 +473,8 @@ class _Interpreter:
                 distance = self.component("ldat_act", "apo_dist")
                 if isinstance(distance, float):  # what BAS makes of an inline form's CONT
                     self.values["$apo.cdis", ()] = distance
+            elif what.strip().lower() in ("#tool", "#base"):
+                self.set_frame(what.strip()[1:].lower(), value.strip())
         elif name in self.routines and not arguments.strip():
             if self.calls >= MAX_CALLS:
                 self.problem(
@@ -486,6 +497,13 @@ class _Interpreter:
                 name=name,
             )
             self.here = None
+
+    def set_frame(self, what, index):
+        """BAS(#TOOL, n), BAS(#BASE, n): as $TOOL=TOOL_DATA[n]."""
+        with contextlib.suppress(Unknown):
+            index = f"{number(self.evaluate(index)):.0f}"
+        self.values.pop((f"${what}", ()), None)
+        self.named[f"${what}"] = f"{what}_data[{index}]".upper()[:MAX_NAME]
 
     def motion(self, line, kind, text, whole=None):
         """``whole``: the statement with what stands behind WITH."""
@@ -591,5 +609,5 @@ class _Interpreter:
     def named_frame(self, name):
         value = self.values.get((name, ()))
         if not isinstance(value, dict):
-            return ""
+            return self.named.get(name, "")
         return " ".join(f"{k.upper()} {v:g}" for k, v in value.items() if isinstance(v, float))

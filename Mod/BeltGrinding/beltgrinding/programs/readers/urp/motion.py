@@ -29,6 +29,7 @@ class Waypoints:
         self.file, self.root, self.line = name, root, 1
         self.positions = Positions()
         self.script = Interpreter(name)  # script nodes share its variables
+        self.script.free_reference = False  # PolyScope has features in its place
         self.said, self.indices = set(), {}
         self.tool, self.tools = "", {}
 

@@ -71,6 +71,17 @@ class Pose:
         return "p[" + ", ".join(f"{v:g}" for v in self.components()) + "]"
 
 
+class InReference(Pose):
+    """A pose in ref_frame, of which only the controller knows where it is: only another pose in it goes
+    with it.
+    """
+
+    def components(self):
+        raise Unknown("programs.urscript.in_ref_frame", "where ref_frame is, is not known here")
+
+    inverse = components
+
+
 def pose_of(values):
     """Pose of six numbers in metres and radians."""
     if len(values) != 6:
@@ -292,11 +303,14 @@ def _call(node, lookup, call):
         if name == "pose_inv":
             return poses[0].inverse()
         frame = poses[0].frame @ poses[1].frame
+        inside = isinstance(poses[0], InReference)
+        if isinstance(poses[1], InReference) or (inside and name == "pose_add"):
+            poses[0 if inside else 1].components()
         if name == "pose_add":  # positions add up, rotations follow each other
             frame[:3, 3] = poses[0].frame[:3, 3] + poses[1].frame[:3, 3]
         if not np.abs(frame[:3, 3]).max() < 1e6:
             raise Unknown("programs.urscript.pose_out_of_bounds", "the pose is out of all bounds")
-        return Pose(frame)
+        return InReference(frame) if inside else Pose(frame)
     if name in FUNCTIONS and not node.keywords:
         return number(FUNCTIONS[name](*(number(_value(v, lookup, call)) for v in node.args)))
     if name in ("length", "get_list_length") and len(node.args) == 1 and not node.keywords:

@@ -14,6 +14,8 @@ import math
 import re
 import warnings
 
+import numpy as np
+
 from ....base.stopping import check
 from ...program import (
     LOOPED,
@@ -30,7 +32,7 @@ from ...program import (
     name_of,
     work_of,
 )
-from .expression import Pose, a_pose, evaluate, number, parse, pose_of
+from .expression import InReference, Pose, a_pose, evaluate, number, parse, pose_of
 
 MAX_MOTIONS = 1_000_000
 MAX_IDLE = 25_000  # units of work since the last motion, in a loop
@@ -41,6 +43,7 @@ DEFAULT_SPEED = 0.25  # m/s, without v
 MOVE = re.compile(r"\b(?:move[jlpc]|optimove[jl]|servo[jc]|speed[jl])\s*\(")
 ASSIGN = re.compile(r"^(?:(global|local)\s+)?([A-Za-z_]\w*)\s*(?:(\[.*?\])\s*)?=(?!=)\s*(.+)$")
 DEFINE = re.compile(r"^def\s+([A-Za-z_]\w*)\s*\((.*)\)\s*:?$")
+IN_REFERENCE = "ref_frame"  # the base of poses in a ref_frame that the file does not assign
 COMMENT = re.compile(r'("[^"]*")|#.*')
 PARAMETERS = {
     "movej": ("q", "a", "v", "t", "r"),
@@ -78,6 +81,12 @@ def read(path):
     return interpreter.program
 
 
+def assigned(text):
+    """The name of what a statement assigns, or None."""
+    match = ASSIGN.match(text)
+    return match and match.group(2)
+
+
 class _Block:
     """A statement, or one with blocks in it: ``parts`` holds (line, condition, statements)."""
 
@@ -98,6 +107,7 @@ class Interpreter:
         self.called = False
         self.calls = 0  # of routines in each other
         self.missing = set()
+        self.free_reference = True  # the file gives ref_frame no value: another one does
         self.inverse = None  # of the frame all poses are given in, 4 x 4 in metres
         self.base = self.tool = ""
         self.here = self.returned = None  # here: position in mm, None: unknown
@@ -120,6 +130,8 @@ class Interpreter:
                 continue
             self.rounds -= LOOPED * work_of(text)
             word = re.match(r"\w*", text).group(0)
+            if "ref_frame" in text and (word == "def" or assigned(text) == "ref_frame"):
+                self.free_reference = False
             inner = open_blocks[-1].parts[-1][2] if open_blocks else root
             if word in ("def", "while", "if", "thread", "sec"):
                 if len(open_blocks) >= MAX_NESTING:
@@ -309,6 +321,15 @@ class Interpreter:
                 return scope[name]
         if name in ("true", "false"):
             return name == "true"
+        if name == "ref_frame" and self.free_reference:
+            if "ref_frame" not in self.missing:
+                self.missing.add("ref_frame")
+                self.problem(
+                    self.line,
+                    "programs.urscript.ref_frame_elsewhere",
+                    "ref_frame has no value that this file gives; the poses are kept as they are in it",
+                )
+            return InReference(np.eye(4))
         raise Unknown(
             "programs.urscript.no_value", "{name} has no value that this file gives", name=name
         )
@@ -514,12 +535,15 @@ class Interpreter:
 
     def in_base(self, pose):
         """4 x 4 in mm in the frame all poses are given in."""
+        inside = isinstance(pose, InReference)
         if self.inverse is None:
             reference = self.scopes[-1].get("ref_frame", self.scopes[0].get("ref_frame"))
             if isinstance(reference, Pose):
                 self.inverse, self.base = reference.inverse().frame, f"ref_frame {reference}"
             else:
-                self.inverse = False
+                self.inverse, self.base = False, IN_REFERENCE if inside else ""
+        if inside != (self.base == IN_REFERENCE):
+            InReference(pose.frame).components()
         frame = pose.frame.copy() if self.inverse is False else self.inverse @ pose.frame
         frame[:3, 3] *= 1000.0
         return frame

@@ -35,15 +35,42 @@ before = doc.Simulation.RemovedVolume.Value
 doc.BeltMachine.Force = "20 N"
 doc.recompute()
 opened.clear()
+name_file(Path("new.html").resolve(), "HTML (*.html)")
+menu("Report...")
+wait(lambda: opened, 120)
+assert "An input has changed" in Path("new.html").read_text()
+
+opened.clear()
+Path("told.html").write_text("mine")
+files = sorted(path.name for path in Path().iterdir())
 name_file(Path("told.pdf").resolve(), "PDF (*.pdf)")
+doc.recompute()  # FreeCAD asks whether an entry can be chosen when something has happened
 menu("Report...")
 wait(lambda: opened or widgets(QtGui.QMessageBox), 120)
-assert "An input has changed" in Path("told.html").read_text()
+assert Path("told.html").read_text() == "mine"  # lies beside it, and is another file
 try:
     import weasyprint
     assert Path("told.pdf").read_bytes().startswith(b"%PDF") and opened
+    files.append("told.pdf")
 except ImportError:
     assert not Path("told.pdf").exists()
+assert sorted(path.name for path in Path().iterdir()) == sorted(files)
+
+asked = []
+def answer(parent, title, text, *rest):
+    asked.append(text)
+    return QtGui.QMessageBox.No
+patch(QtGui.QMessageBox, "question", staticmethod(answer))
+opened.clear()
+for box in widgets(QtGui.QMessageBox):
+    box.close()
+    box.deleteLater()
+settle()
+name_file(Path("told").resolve(), "HTML (*.html)")  # the dialog asks for the name as it was typed
+doc.recompute()
+menu("Report...")
+settle()
+assert "told.html is there already" in asked[0] and Path("told.html").read_text() == "mine"
 """,
         window=True,
     )

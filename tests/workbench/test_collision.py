@@ -230,6 +230,21 @@ assert given["clearance_mm"] == machine.Clearance.Value == 2.0
 result = beltgrinding.run("job.json")
 assert [e["bodies"] for e in result.events if e["kind"] == "collision"] == [["clamp", "wheel"]]
 
+# Its meshes lie beside it under its name, and replace nothing.
+meshes = lambda: sorted(path.name for path in Path().glob("*.ply"))
+assert meshes() == ["job_body2.ply"]
+first_file = Path("job_body2.ply").read_bytes()
+beltgrinding.export_job(job, "job.json")
+assert meshes() == ["job_body2.ply"]
+Path("body2.ply").write_text("mine")
+Path("next_body2.ply").write_text("mine")
+beltgrinding.export_job(job, "next.json")
+assert meshes() == ["body2.ply", "job_body2.ply", "next_body2.ply", "next_body2_2.ply"]
+assert Path("body2.ply").read_text() == Path("next_body2.ply").read_text() == "mine"
+assert Path("next_body2_2.ply").read_bytes() == Path("job_body2.ply").read_bytes() == first_file
+written = json.loads(Path("next.json").read_text())["cell"]["bodies"]
+assert [b["file"] for b in written if "file" in b] == ["next_body2_2.ply"]
+
 # The job's file makes the same document.
 other = FreeCAD.newDocument("again")
 again = beltgrinding.open_job(other, "job.json")

@@ -366,6 +366,15 @@ def test_command_line_writes_html_and_pdf(ground, tmp_path):
             ["pdftotext", "-layout", tmp_path / "r.pdf", "-"], capture_output=True, text=True
         ).stdout
         assert "Not in tolerance" in text and "How to repeat it" in text
+    (tmp_path / "alone").mkdir()
+    (tmp_path / "alone" / "r.html").write_text("mine")
+    before = sorted((ground / "out").iterdir())
+    done = cli(ground / "out", "-o", tmp_path / "alone" / "r.PDF")
+    assert done.returncode == 0, done.stderr
+    assert Path(done.stdout.strip()).read_bytes().startswith(b"%PDF")
+    assert (tmp_path / "alone" / "r.html").read_text() == "mine"
+    assert len(list((tmp_path / "alone").iterdir())) == 2
+    assert sorted((ground / "out").iterdir()) == before
     assert cli(tmp_path / "absent").returncode == 2
     done = cli(ground / "out", "-o", tmp_path / "no" / "r.html")
     assert done.returncode == 2 and "cannot be written" in done.stderr

@@ -1,6 +1,8 @@
 """Jobs as files: writes one, and makes the objects of one. Offered by ``api``."""
 
+import itertools
 import json
+import os
 from pathlib import Path
 
 import FreeCAD
@@ -17,19 +19,38 @@ from .set_up import import_program, make_belt, make_belt_machine, make_job, make
 
 
 def export_job(job, path):
-    """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD; a mesh stock is
-    written beside it.
+    """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD. Meshes of the document
+    (stock, bodies) are written beside it, under names that begin as its own; none takes the place of a
+    file that is there.
     """
     path = Path(path)
+    folder = path.resolve().parent
     try:
-        data = job_inputs.to_data(job, path.resolve().parent)
-        for holder in (data["stock"], *data["cell"]["bodies"]):
-            if "file" in holder:
-                holder["file"] = _relative(holder["file"], path.resolve().parent)
+        with job_inputs.scratch_folder() as scratch:
+            data = job_inputs.to_data(job, folder, scratch)
+            for holder in (data["stock"], *data["cell"]["bodies"]):
+                if "file" not in holder:
+                    continue
+                file = Path(holder["file"])
+                if os.path.realpath(file.parent) == os.path.realpath(scratch):
+                    file = _kept(file.read_bytes(), folder / f"{path.stem}_{file.name}")
+                holder["file"] = _relative(file, folder)
         write_whole(path, (json.dumps(data) + "\n").encode())
     except OSError as error:
         raise cannot_be_written(path, error) from None
     return path
+
+
+def _kept(data, path):
+    """The path of a file with these bytes: ``path``, or the next number of it that is free."""
+    for number in itertools.count(2):
+        if not os.path.lexists(path):
+            write_whole(path, data)
+            return path
+        if path.is_file() and path.read_bytes() == data:
+            return path
+        stem = path.stem if number == 2 else path.stem.rpartition("_")[0]
+        path = path.with_name(f"{stem}_{number}{path.suffix}")
 
 
 def _relative(path, folder):

@@ -66,8 +66,9 @@ def fingerprint(job):
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 
-def to_data(job, folder):
-    """The whole job as validated plain data; a mesh stock is written to ``folder``.
+def to_data(job, folder, meshes=None):
+    """The whole job as validated plain data for a file in ``folder``; meshes of the document are written
+    to the folder ``meshes``, by default there.
 
     Raises InputError naming the object and what is wrong with it.
     """
@@ -75,8 +76,8 @@ def to_data(job, folder):
     shape, data["design"]["faces"] = design(job)
     data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
     stock = required(job, Stock, "stock")
-    data["stock"] = stock.Proxy.to_job(stock, folder)
-    data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), folder)
+    data["stock"] = stock.Proxy.to_job(stock, meshes or folder)
+    data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), meshes or folder)
     paths = _paths(job)
     data["programs"] = [{"poses": []} for _ in paths]
     # The poses come from properties that hold nothing but numbers, and they may be many.

@@ -30,26 +30,29 @@ class Content(NamedTuple):
 
 
 def report(result, output=None, pdf=None, language="en", title=None, context=None, notes=()):
-    """Writes the report of a result as one self-contained HTML file.
+    """Writes the report of a result as one self-contained HTML file, as a PDF, or as both.
 
     ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default
-    report.html in that folder; ``pdf``: a file for the same as PDF (needs WeasyPrint); ``language``:
-    "en" or "de"; ``title``: what the part is called; ``notes``: sentences to be shown on top. Returns the path of the HTML file. Raises
-    InputError, Cancelled.
+    report.html in that folder; one that ends in .pdf is a PDF, beside which nothing is written (needs
+    WeasyPrint); ``pdf``: a file for the same as PDF; ``language``: "en" or "de"; ``title``: what the
+    part is called; ``notes``: sentences to be shown on top. Returns ``output``. Raises InputError,
+    Cancelled.
     """
     folder = None if isinstance(result, Result) else Path(result)
     if output is None and folder is None:
         raise InputError("reporting.no_output", "report: say by output what file to write")
     output = Path(output) if output is not None else folder / "report.html"
     words = Language(language)
-    printer = _printer() if pdf is not None else None
+    only_pdf = output.suffix.lower() == ".pdf"
+    printer = _printer() if only_pdf or pdf is not None else None
     context = context or core.RunContext()
     content = load(result, title, notes, context)
     html = render(content, words, context)
     context.throw_if_cancelled()
-    files = {output: html.encode()}
-    if printer is not None:
-        files[Path(pdf)] = printer(html)
+    printed = None if printer is None else printer(html)
+    files = {output: printed if only_pdf else html.encode()}
+    if pdf is not None:
+        files[Path(pdf)] = printed
     _write(content.result, files)
     return output
 
@@ -62,7 +65,7 @@ def _write(result, files):
     if own:
         result.update(others=own)
     for path, data in files.items():
-        if path.name in own:
+        if own and os.path.realpath(path.parent) == folder:
             continue
         try:
             write_whole(path, data)

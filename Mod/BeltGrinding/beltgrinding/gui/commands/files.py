@@ -7,6 +7,7 @@ import FreeCADGui as Gui
 
 from ...objects import api
 from ..common.compat import QtGui, translate
+from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from .base import Command, active_job, expand
 
@@ -43,9 +44,7 @@ class ExportJob(Command):
 
     def run(self):
         title = translate("BeltGrinding", "Export job file")
-        path = QtGui.QFileDialog.getSaveFileName(
-            Gui.getMainWindow(), title, "job.json", _jobs_filter()
-        )[0]
+        path = file_to_write(title, "job.json", _jobs_filter())
         if path:
             api.export_job(active_job(), path)
 

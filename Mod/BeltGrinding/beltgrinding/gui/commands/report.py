@@ -7,7 +7,8 @@ import FreeCADGui as Gui
 
 from ...objects import api, simulation
 from ...objects.job_data import child
-from ..common.compat import QtGui, translate
+from ..common.compat import translate
+from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from .base import Command, active_job
 
@@ -38,22 +39,13 @@ class Report(_OfResult):
         from ..common.report_writer import ReportWriter
 
         job = active_job()
-        path, kind = QtGui.QFileDialog.getSaveFileName(
-            Gui.getMainWindow(),
+        path = file_to_write(
             translate("BeltGrinding", "Report"),
             f"{Path(job.Document.FileName or job.Document.Name).stem}.html",
-            "HTML (*.html);;PDF (*.pdf)",
+            "HTML (*.html *.htm);;PDF (*.pdf)",
         )
         if path:
-            ReportWriter(job, _with_suffix(path, kind))
-
-
-def _with_suffix(path, kind):
-    """The path with the suffix of the chosen filter, where it has none of the two."""
-    path = Path(path)
-    if path.suffix.lower() in (".html", ".htm", ".pdf"):
-        return path
-    return path.with_name(path.name + (".pdf" if "pdf" in kind else ".html"))
+            ReportWriter(job, path)
 
 
 class CheckSettings(Command):

@@ -26,13 +26,11 @@ class ReportWriter(Background):
         self.path = Path(path)
         self.folder = job_inputs.scratch_folder()
         result, title, notes = reports.result_to_report(job, self.folder.name)
-        pdf = self.path if self.path.suffix.lower() == ".pdf" else None
-        html = self.path.with_suffix(".html") if pdf else self.path
         words = language()
         self.status = StatusProgress(self.cancel)
         self.begin = time.monotonic()
         super().__init__(
-            lambda context: reporting.report(result, html, pdf, words, title, context, notes),
+            lambda context: reporting.report(result, self.path, None, words, title, context, notes),
             self._finish,
         )
         ReportWriter.running = self

@@ -11,6 +11,7 @@ from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..common.save_dialog import file_to_write
 from .object_dock import ObjectDock
 from ..widgets.steady import steady
 
@@ -313,12 +314,11 @@ class SectionDock(ObjectDock):
         """Asks for a file and writes the section as "csv" or "svg"."""
         if not self.alive():
             return
-        path = QtGui.QFileDialog.getSaveFileName(
-            Gui.getMainWindow(),
+        path = file_to_write(
             translate("BeltGrinding", "Export cross-section"),
             f"{self.obj.Label}.{kind}",
             f"{kind.upper()} (*.{kind})",
-        )[0]
+        )
         if not path:
             return
         try:

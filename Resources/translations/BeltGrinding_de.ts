@@ -1087,6 +1087,14 @@
         <source>SHA-256 of the files of the result, as JSON</source>
         <translation>SHA-256 der Dateien des Ergebnisses, als JSON</translation>
     </message>
+    <message>
+        <source>the base that an exported program sets: the controller&apos;s own by number (KRL) or name (RAPID), as-known (the numbers of the cell), or nothing: it must be in force</source>
+        <translation>die Basis, die ein exportiertes Programm setzt: die der Steuerung, mit Nummer (KRL) oder Namen (RAPID), as-known (die Zahlen der Zelle), oder nichts: Sie muss gelten</translation>
+    </message>
+    <message>
+        <source>the tool that an exported program sets: the controller&apos;s own by number (KRL) or name (RAPID), as-known (the numbers of the cell), or nothing: it must be in force</source>
+        <translation>das Werkzeug, das ein exportiertes Programm setzt: das der Steuerung, mit Nummer (KRL) oder Namen (RAPID), as-known (die Zahlen der Zelle), oder nichts: Es muss gelten</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3215,6 +3223,14 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>good</source>
         <translation>gut</translation>
+    </message>
+    <message>
+        <source>{} is there already. Replace it?</source>
+        <translation>{} ist schon da. Ersetzen?</translation>
+    </message>
+    <message>
+        <source>To have the program set them, enter their names or numbers on the controller in the path&apos;s properties ProgramBase and ProgramTool.</source>
+        <translation>Damit das Programm sie setzt, ihre Namen oder Nummern auf der Steuerung in den Eigenschaften ProgramBase und ProgramTool der Roboterbahn eintragen.</translation>
     </message>
 </context>
 <context>

@@ -191,10 +191,47 @@ patch(QtGui.QFileDialog, "getSaveFileName", staticmethod(answer))
 menu("Export robot program...")
 assert asked and Path("out.mod").exists()
 program = read_program("out.mod")
-assert program.language == "ABB RAPID" and not program.problems, program.problems
+assert program.language == "ABB RAPID"
+# What the program takes for granted is said, and nothing is set to zero.
+(box,) = [b for b in widgets(QtGui.QMessageBox) if b.objectName() == "BeltGrinding_Note"]
+assert "tBelt" in box.text() and "wPart" in box.text() and "ProgramBase" in box.text(), box.text()
+assert "PERS" not in Path("out.mod").read_text()
+told = [problem.arguments["reason"] for problem in program.problems]
+assert len(told) == 2 and "tBelt" in told[0] and "wPart" in told[1], program.problems
 poses = np.array([m.pose for m in program.motions])
 assert np.allclose(poses, path.Proxy.arrays(path)["frames"], atol=1e-6)
 assert [m.speed_mm_s for m in program.motions][1:] == [20] * 8
+
+def close_boxes():
+    for box in widgets(QtGui.QMessageBox):
+        box.close()
+        box.deleteLater()
+    settle()
+
+close_boxes()
+yes = []
+def agree(*arguments):
+    yes.append(arguments)
+    return QtGui.QMessageBox.Yes
+patch(QtGui.QMessageBox, "question", staticmethod(agree))
+
+# Frames of the controller by name; the cell's numbers where it has a robot.
+path.ProgramBase, path.ProgramTool = "wBlade", " tWheel "
+menu("Export robot program...")
+assert "tWheel\\WObj:=wBlade;" in Path("out.mod").read_text()
+assert len(yes) == 1  # "out" was typed, out.mod is there
+close_boxes()
+machine.Robot = "kuka_kr16_2"
+machine.FlangeFromTcp = FreeCAD.Placement(FreeCAD.Vector(0, 0, 150.25), FreeCAD.Rotation())
+path.ProgramBase = path.ProgramTool = "as-known"
+menu("Export robot program...")
+assert not visible(QtGui.QMessageBox), [b.text() for b in visible(QtGui.QMessageBox)]
+text = Path("out.mod").read_text()
+assert text.count("PERS ") == 2 and "[0.000000,0.000000,150.250000]" in text
+path.ProgramTool = ""
+menu("Export robot program...")
+text = Path("out.mod").read_text()
+assert "tBelt" in text and "!   [[0.000000,0.000000,150.250000]" in text
 """,
         window=True,
     )

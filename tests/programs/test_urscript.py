@@ -101,6 +101,44 @@ def test_poses_are_given_in_the_first_ref_frame(tmp_path):
     assert program.motions[0].base == "ref_frame p[1, 0, 0, 0, 0, 0]"
 
 
+@pytest.mark.parametrize("reference_first", [True, False])
+def test_poses_in_a_ref_frame_from_elsewhere_are_kept(tmp_path, reference_first):
+    inside = "movel(pose_trans(pose_trans(ref_frame, p[0.1,0,0,0,0,0]), p[0,0.2,0,0,0,0]))"
+    lines = [inside, "movel(p[1,0,0.5,0,0,0])"]  # how they lie to each other, the file does not say
+    if not reference_first:
+        lines.reverse()
+    program = script(tmp_path, "\n".join(lines) + "\n")
+    known, lost = program.motions
+    assert known.pose[:3, 3].tolist() == ([100, 200, 0] if reference_first else [1000, 0, 500])
+    assert known.base == ("ref_frame" if reference_first else "") and lost.pose is None
+    assert sorted(p.code for p in program.problems) == [
+        "programs.left_out",
+        "programs.urscript.ref_frame_elsewhere",
+    ]
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        "pose_inv(ref_frame)",
+        "pose_add(ref_frame, p[0,0,1,0,0,0])",
+        "pose_trans(p[0,0,1,0,0,0], ref_frame)",
+    ],
+)
+def test_what_depends_on_where_ref_frame_is_is_left_out(tmp_path, target):
+    program = script(tmp_path, f"movel({target})\nx = ref_frame[0]\nmovel(p[x,0,0,0,0,0])\n")
+    assert [m.pose for m in program.motions] == [None, None]
+
+
+def test_a_ref_frame_that_is_assigned_anywhere_is_not_from_elsewhere(tmp_path):
+    program = script(
+        tmp_path,
+        "if get_digital_in(1):\n  ref_frame = p[1,0,0,0,0,0]\nend\n"
+        "movel(pose_trans(ref_frame, p[0.1,0,0,0,0,0]))\n",
+    )
+    assert [m.pose for m in program.motions] == [None]
+
+
 def test_arcs_times_and_tools(tmp_path):
     program = script(
         tmp_path,

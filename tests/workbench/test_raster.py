@@ -277,6 +277,25 @@ def test_the_command_line_writes_a_program(tmp_path):
     krl = read_program(tmp_path / "path.src").path_arrays(100.0)
     assert krl["frames"] == pytest.approx(expected["frames"], abs=1e-3)
     assert krl["rapid"].tolist() == expected["rapid"].tolist()
+    text = (tmp_path / "path.src").read_text()
+    assert "$TOOL=" not in text and "$BASE=" not in text and done.stderr.count("note: ") == 2
+    # The cell's numbers are told, and set where they are asked for.
+    job["robot"] = {
+        "preset": "kuka_kr16_2",
+        "base_from_robot": {"position_mm": [-900, 0, -500]},
+        "flange_from_tcp": {"position_mm": [0, 0, 120.5]},
+    }
+    (tmp_path / "job.json").write_text(json.dumps(job))
+    again = ["raster", tmp_path / "job.json", "-o", tmp_path / "path.src", "--force",
+             "--settings", tmp_path / "raster.json"]  # fmt: skip
+    done = command(*again, "--base", "5")
+    assert done.returncode == 0 and done.stderr.count("note: ") == 1, done.stderr
+    text = (tmp_path / "path.src").read_text()
+    assert "BAS (#BASE,5 )" in text and ";   $TOOL={FRAME: X 0.000000,Y 0.000000,Z 120.5" in text
+    done = command(*again, "--base", "as-known", "--tool", "as-known")
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    first = read_program(tmp_path / "path.src").motions[0]
+    assert first.base.startswith("X 900 Y 0 Z 500 ") and first.tool.startswith("X 0 Y 0 Z 120.5 ")
     for bad in (["--set", "feed_mm_s=-1"], ["--set", "along"], ["-o", tmp_path / "path.xyz"]):
         done = command("raster", tmp_path / "job.json", "-o", tmp_path / "no.csv", *bad)
         assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr

@@ -1,7 +1,5 @@
 """Robot programs, in and out, and paths made here."""
 
-from pathlib import Path
-
 import FreeCAD
 import FreeCADGui as Gui
 
@@ -10,6 +8,8 @@ from ...objects import api, freecad_path, robot_path
 from ...objects.proxy import type_of
 from ..common.compat import QtGui, translate
 from ..common.file_filters import programs_filter
+from ..common.messages import error_text, inform
+from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from ..panels.panel import edit
 from .base import Command, active_job
@@ -144,10 +144,19 @@ class ExportProgram(Command):
             )
         title = translate("BeltGrinding", "Export robot program")
         kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;CSV (*.csv)"
-        path, kind = QtGui.QFileDialog.getSaveFileName(
-            Gui.getMainWindow(), title, f"{selected[0].Label}.src", kinds
-        )
+        path = file_to_write(title, f"{selected[0].Label}.src", kinds)
         if path:
-            suffix = kind.rpartition("*")[2].rstrip(")")
-            path = path if Path(path).suffix else path + suffix
-            api.export_program(selected[0], path)
+            notes = api.export_program(selected[0], path)
+            written = translate("BeltGrinding", "Written: {}").format(path)
+            if notes:
+                inform("\n\n".join([written, *map(error_text, notes), _how_to_set()]))
+            else:
+                FreeCAD.Console.PrintMessage(f"{written}\n")
+
+
+def _how_to_set():
+    return translate(
+        "BeltGrinding",
+        "To have the program set them, enter their names or numbers on the controller in the path's "
+        "properties ProgramBase and ProgramTool.",
+    )

@@ -42,9 +42,19 @@ def report(error):
 def tell(text):
     """An error in the report view and in a message that does not hold FreeCAD up."""
     FreeCAD.Console.PrintWarning(f"{text}\n")
+    _show(text, "BeltGrinding_Error", QtGui.QMessageBox.Warning)
+
+
+def inform(text):
+    """Likewise what is no error, but must not be missed."""
+    FreeCAD.Console.PrintWarning(f"{text}\n")
+    _show(text, "BeltGrinding_Note", QtGui.QMessageBox.Information)
+
+
+def _show(text, name, icon):
     box = QtGui.QMessageBox(Gui.getMainWindow())
-    box.setObjectName("BeltGrinding_Error")
-    box.setIcon(QtGui.QMessageBox.Warning)
+    box.setObjectName(name)
+    box.setIcon(icon)
     box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
     box.setText(text)
     box.setModal(False)

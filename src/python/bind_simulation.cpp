@@ -237,6 +237,14 @@ void bind_simulation(py::module_& m) {
                 return own(std::move(lines));
             },
             "(n,): of the source, 0 where unknown")
+        .def(
+            "forces",
+            [](const ToolPath& path) {
+                std::vector<double> forces;
+                for (const PathPose& pose : path.poses()) forces.push_back(pose.force);
+                return own(std::move(forces));
+            },
+            "(n,): N, negative: the job's")
         .def("duration", py::overload_cast<>(&ToolPath::duration, py::const_), "s")
         .def(
             "frame_at",

@@ -302,3 +302,33 @@ def test_a_profiled_wheel_grinds_where_it_stands_out():
     job["belt_machine"]["wheel"]["profile_mm"] = [[-5, 0.0], [5, 0.0]]
     with pytest.raises(InputError, match="profile needs points"):
         beltgrinding.run(job)
+
+
+@pytest.mark.parametrize(
+    "place, value, code",
+    [
+        (("law", "coefficient_mm2_per_N"), 0.0, "idle.coefficient"),
+        (("belt_machine", "belt_wear"), 0.0, "idle.belt_wear"),
+    ],
+)
+def test_settings_that_grind_nothing_are_told(place, value, code):
+    job = plate_job()
+    job.setdefault(place[0], {})[place[1]] = value
+    summary = beltgrinding.run(job).summary
+    assert abs(summary["removed_volume_mm3"]) < 1e-4  # float32 heights
+    assert code in [fact["code"] for fact in summary["warning_facts"]]
+    others = beltgrinding.run(plate_job()).summary["warning_facts"]
+    assert not [fact for fact in others if fact["code"].startswith("idle.")]
+
+
+def test_a_force_of_zero_is_told_with_its_program(tmp_path):
+    """Also one that stands in a program's file: the error of a wheel that touches nothing names it."""
+    table = tmp_path / "idle.csv"
+    rows = [f"{x},20,0.2,0,1,0,0,30,0" for x in (10, 50)]
+    head = "x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s,force_N"
+    table.write_text("\n".join([head, *rows]) + "\n")
+    for program in ({"file": str(table)}, {**plate_job()["programs"][0], "force_N": 0}):
+        job = plate_job()
+        job["programs"] = [program]
+        with pytest.raises(InputError, match="the force is 0 at every pose"):
+            beltgrinding.run(job)

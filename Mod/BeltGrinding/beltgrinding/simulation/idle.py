@@ -1,11 +1,14 @@
 """Settings with which nothing can be ground: allowed, and hardly meant."""
 
+import numpy as np
+
 from ..engine import core
 from ..job.poses import program_name
 
 
-def warnings(job):
-    """Facts, one for each reason that the job's settings give for grinding nothing."""
+def warnings(job, paths):
+    """Facts, one for each reason that the settings give for grinding nothing. ``paths``: the core.ToolPath
+    of each program of the validated job."""
     machine, law = job["belt_machine"], job["law"]
     found = []
     if law["model"] != "geometric":
@@ -33,14 +36,7 @@ def warnings(job):
                 "set the program's force or belt_machine.force_N",
                 program=program_name(job, index),
             )
-            for index, program in enumerate(job["programs"])
-            if not any(_forces(program, machine["force_N"]))
+            for index, path in enumerate(paths)
+            if not np.where(path.forces() < 0.0, machine["force_N"], path.forces()).any()
         ]
     return found
-
-
-def _forces(program, default):
-    """N, of a program's poses."""
-    if "force_N" in program:
-        return [program["force_N"]]
-    return (pose.get("force_N", default) for pose in program["poses"])

@@ -86,7 +86,7 @@ def _run(job, context, warnings, recording, phases):
     core.check_wheel(wheel)
     paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
-    warnings += idle.warnings(job)
+    warnings += idle.warnings(job, paths)
     ways = motions.of_paths(paths)
     phases.end("programs")
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))

@@ -20,7 +20,7 @@ def rest_of_part(job):
         return root
     ground = set(numbers)
     others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
-    deflection = DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
+    deflection = _deflection(shape)
     points, triangles = Part.Compound(others).tessellate(deflection) if others else ([], [])
     pick = coin.SoPickStyle()
     pick.style = coin.SoPickStyle.UNPICKABLE
@@ -39,6 +39,24 @@ def rest_of_part(job):
         root.addChild(node)
     root.addChild(_edges(shape, deflection))
     return root
+
+
+def edges_of_part(job):
+    """Coin node with the edges of the job's part; not picked."""
+    root = coin.SoSeparator()
+    try:
+        shape = job_data.design(job)[0]
+    except InputError:
+        return root
+    pick = coin.SoPickStyle()
+    pick.style = coin.SoPickStyle.UNPICKABLE
+    root.addChild(pick)
+    root.addChild(_edges(shape, _deflection(shape)))
+    return root
+
+
+def _deflection(shape):
+    return DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
 
 
 def _edges(shape, deflection):

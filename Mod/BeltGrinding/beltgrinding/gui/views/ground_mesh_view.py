@@ -1,8 +1,11 @@
 """View provider of the ground part's mesh: vertex colours that survive reopening, and the legend."""
 
+from pivy import coin
+
 from ..common.compat import translate
 from ..common.icons import icon
 from ..scene import legend
+from ..scene.part_context import edges_of_part
 from .coloured_mesh_view import ColouredMeshView
 
 
@@ -11,6 +14,30 @@ class GroundMeshView(ColouredMeshView):
 
     ICON = "BeltGrinding_GroundMesh"
     COMMANDS = ("BeltGrinding_GroundMesh", "BeltGrinding_Simulate")
+
+    def attach(self, view):
+        super().attach(view)
+        self.edges = coin.SoSwitch()
+        view.RootNode.insertChild(self.edges, 0)  # before the mesh's colours
+
+    def finishRestoring(self):
+        super().finishRestoring()
+        self.update_edges()
+
+    def onChanged(self, view, name):
+        if getattr(self, "edges", None) is None:
+            return
+        super().onChanged(view, name)
+        if name == "Visibility":
+            self.update_edges()
+
+    def update_edges(self):
+        """Draws the part's edges: what is not ground is of one grey."""
+        self.edges.removeAllChildren()
+        job = self.view.Object.getParentGroup()
+        if job is not None and self.view.Visibility:
+            self.edges.addChild(edges_of_part(job))
+            self.edges.whichChild = coin.SO_SWITCH_ALL
 
     def getIcon(self):
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
@@ -21,6 +48,7 @@ class GroundMeshView(ColouredMeshView):
             return
         if name == "VertexColors":
             self.colour()
+            self.update_edges()
         if name == "OutOfDate":
             self.view.signalChangeIcon()
         if name in ("VertexColors", "OutOfDate"):

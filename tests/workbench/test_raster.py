@@ -19,7 +19,7 @@ from beltgrinding.simulation import run as runs  # noqa: E402
 from beltgrinding.cell import tool_path as tool_paths  # noqa: E402
 from beltgrinding.raster import raster_path as raster  # noqa: E402
 from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.program import power, through_with  # noqa: E402
+from beltgrinding.programs.program import powers, through_with  # noqa: E402
 
 LENGTH, WIDTH = 100.0, 60.0  # mm
 WHEEL = {"radius_mm": 40, "width_mm": 16, "crown_radius_mm": 60}
@@ -161,7 +161,9 @@ def test_both_holdings_bring_the_contact_to_the_same_places():
         for one in found["passes"]:
             for k in range(one["first"], one["last"]):
                 p, q = found["frames"][k : k + 2]
-                half = through_with(p, p @ _rotation(power((p[:3, :3].T @ q[:3, :3]), 0.5)))
+                half = through_with(
+                    p, p @ _rotation(powers(p[:3, :3].T @ q[:3, :3], np.array([0.5]))[0])
+                )
                 half[:3, 3] = 0.5 * (p[:3, 3] + q[:3, 3])
                 at = np.linalg.inv(a) @ half @ b if cell is tool else np.linalg.inv(half @ a) @ b
                 assert abs(at[2, 3] - 0.002 * (at[0, 3] - 50) ** 2) < 0.08

@@ -286,16 +286,12 @@ def _arc(start, through, end):
     angle = math.atan2((c - centre) @ y_axis, (c - centre) @ x_axis) % (2.0 * math.pi)
     step = 2.0 * math.acos(max(-1.0, 1.0 - CHORD_ERROR / radius)) if radius > CHORD_ERROR else 1.0
     count = min(MAX_CHORDS, max(2, math.ceil(angle / step)))
-    relative = start[:3, :3].T @ end[:3, :3]
-    poses = []
-    for k in range(1, count):
-        t = k / count
-        pose = np.eye(4)
-        pose[:3, :3] = start[:3, :3] @ power(relative, t)
-        pose[:3, 3] = centre + radius * (
-            math.cos(t * angle) * x_axis + math.sin(t * angle) * y_axis
-        )
-        poses.append(pose)
+    shares = np.arange(1, count) / count
+    at = shares[:, None] * angle
+    poses = np.zeros((count - 1, 4, 4))
+    poses[:, :3, :3] = start[:3, :3] @ powers(start[:3, :3].T @ end[:3, :3], shares)
+    poses[:, :3, 3] = centre + radius * (np.cos(at) * x_axis + np.sin(at) * y_axis)
+    poses[:, 3, 3] = 1.0
     return [*poses, end]
 
 
@@ -306,13 +302,14 @@ def through_with(through, orientation):
     return pose
 
 
-def power(rotation, t):
-    """The rotation by t times the angle of ``rotation`` (3 x 3): slerp from the identity."""
+def powers(rotation, shares):
+    """The rotations (n, 3, 3) by ``shares`` (n,) of the angle of ``rotation`` (3, 3): slerp from the
+    identity."""
     quaternion = to_quaternions(rotation[None])[0]
     sine = float(np.linalg.norm(quaternion[1:]))
     if sine < 1e-12:
-        return np.eye(3)
-    half = math.atan2(sine, quaternion[0]) * t
+        return np.broadcast_to(np.eye(3), (len(shares), 3, 3))
+    turns = 2.0 * math.atan2(sine, quaternion[0]) * shares[:, None, None]
     x, y, z = quaternion[1:] / sine
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + math.sin(2 * half) * k + (1 - math.cos(2 * half)) * (k @ k)
+    return np.eye(3) + np.sin(turns) * k + (1 - np.cos(turns)) * (k @ k)

@@ -143,6 +143,11 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     });
     double area = 0, border = 0;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (std::isinf(jobs[i].area))  // so the reader tells what it could not find in time
+            throw InputError("brep.area_endless",
+                             "the area of face {face} of {shape} was not found in the time that a "
+                             "face is given; repair the shape or leave the face out",
+                             {{"face", jobs[i].face + 1}, {"shape", impl.name}});
         if (!std::isfinite(jobs[i].area))
             throw InputError("brep.area_not_finite",
                              "face {face} of {shape} has an area that is not a number: its surface "

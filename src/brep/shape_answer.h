@@ -2,6 +2,7 @@
 
 // Private to this room: what goes between the reader's process and its host beside a shape's bytes.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,8 @@
 namespace beltgrinding {
 
 constexpr double kNoArea = -1.0;  ///< of a face that OpenCASCADE cannot integrate
+/// Of a face whose area was not found in time; one that evaluates to no number is NaN.
+constexpr double kEndlessArea = std::numeric_limits<double>::infinity();
 
 /// What the reader has asked of a shape.
 struct TriedShape {

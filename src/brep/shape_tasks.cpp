@@ -10,6 +10,7 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <limits>
@@ -30,7 +31,7 @@ constexpr int kNoMemory = 3;      // status of a trial
 
 /// What a trial says of one face, through a pipe.
 struct TriedFace {
-    double area = std::numeric_limits<double>::quiet_NaN();  // mm2; nobody can find it in time
+    double area = kNoArea;  // mm2
     signed char sign = 1;
 };
 
@@ -92,6 +93,7 @@ bool hear(int pipe, T& value) {
             TriedFace told;
             try {
                 told.area = shape.face_area(face);
+                if (!std::isfinite(told.area)) told.area = std::numeric_limits<double>::quiet_NaN();
             } catch (const InputError&) {
                 told.area = kNoArea;
             }
@@ -111,7 +113,7 @@ bool hear(int pipe, T& value) {
 TriedShape tried(const TopoDS_Shape& handed_over) {
     const Shape shape = make_shape(handed_over, "shape", MissingCurves::kAreDone);
     TriedShape found;
-    found.areas.assign(shape.face_count(), std::numeric_limits<double>::quiet_NaN());
+    found.areas.assign(shape.face_count(), kEndlessArea);
     found.signs.assign(shape.impl().solids.size(), 0);
     bool whole = true;
     std::size_t face = 0;

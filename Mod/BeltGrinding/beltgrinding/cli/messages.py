@@ -37,19 +37,18 @@ class Messages:
 
     def print_warnings(self, warnings):
         """Sentences or facts, a line each."""
-        from ..base.messages import word
-
-        for warning in warnings:
-            name = word("cli.warning", "warning", self.language)
-            _to_stderr(f"{name}: {' '.join(self._sentence(warning).split())}")
+        self._print("cli.warning", "warning", warnings)
 
     def print_notes(self, notes):
         """Facts that are no warnings, a line each."""
+        self._print("cli.note", "note", notes)
+
+    def _print(self, code, form, told):
         from ..base.messages import word
 
-        for note in notes:
-            name = word("cli.note", "note", self.language)
-            _to_stderr(f"{name}: {' '.join(self._sentence(note).split())}")
+        name = word(code, form, self.language)
+        for one in told:
+            _to_stderr(f"{name}: {' '.join(self._sentence(one).split())}")
 
     def _sentence(self, told):
         from ..base.messages import sentence

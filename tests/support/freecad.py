@@ -98,7 +98,9 @@ class Server:
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(
                 ["xvfb-run", "-a", "-s", SCREEN, "freecad", str(ROOT / "tools" / "in_freecad.py")],
-                env=home.environment(BELTGRINDING_RUN=serve, ANSWERS=str(answer)),
+                env=home.environment(
+                    BELTGRINDING_RUN=serve, ANSWERS=str(answer), PATIENCE=str(TIME_LIMIT - 20)
+                ),
                 cwd=home.folder,
                 stdin=subprocess.PIPE,
                 stdout=log,
@@ -119,7 +121,14 @@ class Server:
             pass  # it says below what it died of
         answer = self._answer()
         output = self.log.read_bytes()[begin:].decode(errors="replace")[-SHOWN:]
-        return answer == b"passed\n", output + ("" if answer else "\nFreeCAD died or hangs")
+        return answer == b"passed\n", output + ("" if answer else self._end())
+
+    def _end(self):
+        """How FreeCAD ended, or that it has not."""
+        try:
+            return f"\nFreeCAD died, exit status {self.process.wait(5)}"
+        except subprocess.TimeoutExpired:
+            return f"\nFreeCAD hangs: no answer within {TIME_LIMIT} s"
 
     def _answer(self):
         """One line, b"" if FreeCAD is dead or takes too long."""

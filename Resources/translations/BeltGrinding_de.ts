@@ -1095,6 +1095,10 @@
         <source>the tool that an exported program sets: the controller&apos;s own by number (KRL) or name (RAPID), as-known (the numbers of the cell), or nothing: it must be in force</source>
         <translation>das Werkzeug, das ein exportiertes Programm setzt: das der Steuerung, mit Nummer (KRL) oder Namen (RAPID), as-known (die Zahlen der Zelle), oder nichts: Es muss gelten</translation>
     </message>
+    <message>
+        <source>how thick foot, column, upper arm, elbow, forearm, wrist and flange are, as seven radii for collisions of the arm, mm; 0: that link has no body; empty: estimated from the arm&apos;s length</source>
+        <translation>wie dick Fuß, Säule, Oberarm, Ellbogen, Unterarm, Handgelenk und Flansch sind: sieben Radien für Kollisionen des Arms, mm; 0: dieses Glied hat keinen Körper; leer: aus der Länge des Arms geschätzt</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3231,6 +3235,18 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>To have the program set them, enter their names or numbers on the controller in the path&apos;s properties ProgramBase and ProgramTool.</source>
         <translation>Damit das Programm sie setzt, ihre Namen oder Nummern auf der Steuerung in den Eigenschaften ProgramBase und ProgramTool der Roboterbahn eintragen.</translation>
+    </message>
+    <message>
+        <source>Nearest to the arm, whose thickness is estimated unless LinkRadii says it: {}, {:.0f} mm from {}</source>
+        <translation>Dem Arm, dessen Dicke geschätzt ist, wenn LinkRadii sie nicht angibt, am nächsten: {}, {:.0f} mm von {}</translation>
+    </message>
+    <message>
+        <source>What its arm runs into was not looked at: {}</source>
+        <translation>Womit sein Arm zusammenstößt, wurde nicht geprüft: {}</translation>
+    </message>
+    <message>
+        <source>looking for collisions is turned off</source>
+        <translation>die Suche nach Kollisionen ist ausgeschaltet</translation>
     </message>
 </context>
 <context>

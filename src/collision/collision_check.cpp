@@ -5,20 +5,19 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <optional>
 
+#include "arm_motion.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "collision_pair.h"
+#include "path_motion.h"
 
 namespace beltgrinding {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // motions that are followed by themselves
-
-bool carried(Carrier carrier, Holding holding) {
-    const bool with_tool = holding == Holding::kToolInHand;
-    return carrier == Carrier::kTool || carrier == (with_tool ? Carrier::kWheel : Carrier::kPart);
-}
+constexpr std::size_t kLinks = 7;
+constexpr std::size_t kAtFlange = 5;  // links from here on hold what is at the flange
 
 Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
     if (collides && rapid)
@@ -37,13 +36,8 @@ Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
 /// What was found of a pair, on the path's time and in the work frame.
 class Report {
   public:
-    Report(const ToolPath& path, const CollisionOptions& options) : path_(path), options_(options) {
-        double time = 0.0;
-        for (std::size_t i = 0; i < path.poses().size(); ++i) {
-            begins_.push_back(time);
-            time += path.duration(i);
-        }
-    }
+    Report(const ToolPath& path, const CollisionOptions& options)
+        : path_(path), options_(options) {}
 
     void add(const CollisionPair& pair, std::size_t first, std::size_t second,
              const std::vector<CollisionBody>& bodies, CollisionResult& result) const {
@@ -51,10 +45,11 @@ class Report {
         const auto nearer = [](const CollisionPair::Look& a, const CollisionPair::Look& b) {
             return a.distance < b.distance;
         };
+        const PairMotion& motion = pair.motion();
         const auto least = std::min_element(looks.begin(), looks.end(), nearer);
-        const auto [on_first, on_second] = points(pair, *least);
-        result.pairs.push_back(
-            {first, second, least->distance, pose(*least), time(*least), on_first, on_second});
+        const auto [on_first, on_second] = pair.points(*least);
+        result.pairs.push_back({first, second, least->distance, motion.pose(least->place),
+                                motion.time(least->place), on_first, on_second});
         const std::array<const CollisionBody*, 2> both = {&bodies[first], &bodies[second]};
         for (auto at = looks.begin(); at != looks.end();) {
             if (at->distance >= options_.clearance && at->distance > 0.0) {
@@ -72,24 +67,6 @@ class Report {
   private:
     using Looks = CollisionPair::Looks::const_iterator;
 
-    double time(const CollisionPair::Look& look) const {
-        const Moment at = moment_at(look.place, begins_.size() - 1);
-        return begins_[at.motion] + path_.elapsed(at.motion, at.share);
-    }
-    std::uint32_t pose(const CollisionPair::Look& look) const {
-        return static_cast<std::uint32_t>(moment_at(look.place, begins_.size() - 1).motion);
-    }
-    std::pair<Vec3, Vec3> points(const CollisionPair& pair, const CollisionPair::Look& look) const {
-        const CellFrames& cell = path_.frames();
-        const Frame base_from_work =
-            cell.holding == Holding::kToolInHand
-                ? cell.base_from_work
-                : Frame(pair.base_from_tcp(look.place) * cell.tcp_from_work);
-        const Frame work_from_base = base_from_work.inverse();
-        return {work_from_base * pair.base_from_first() * look.nearest.here,
-                work_from_base * pair.base_from_second(look.place) * look.nearest.there};
-    }
-
     /// Of a stretch nearer than the clearance: from the first touch to the last, or the whole.
     Event event(const CollisionPair& pair, Looks begin, Looks end,
                 const std::array<const CollisionBody*, 2>& bodies) const {
@@ -106,19 +83,20 @@ class Report {
                     return a.distance < b.distance;
                 });
         }
+        const PairMotion& motion = pair.motion();
         const EventKind kind = event_kind(collides ? "collision" : "near_miss");
         Event event;
         event.kind = kind.code;
         event.severity = kind.severity;
         event.unit = kind.unit;
-        event.pose = pose(*worst);
+        event.pose = motion.pose(worst->place);
         event.line = path_.poses()[event.pose].line;
-        event.time = time(*begin);
-        event.duration = time(*last) - event.time;
-        event.worst_time = time(*worst);
+        event.time = motion.time(begin->place);
+        event.duration = motion.time(last->place) - event.time;
+        event.worst_time = motion.time(worst->place);
         event.value = worst->distance;
         event.limit = collides ? 0.0 : options_.clearance;
-        const auto [on_first, on_second] = points(pair, *worst);
+        const auto [on_first, on_second] = pair.points(*worst);
         event.point = bodies[0]->carrier == Carrier::kPart   ? on_first
                       : bodies[1]->carrier == Carrier::kPart ? on_second
                                                              : Vec3(0.5 * (on_first + on_second));
@@ -131,19 +109,54 @@ class Report {
 
     const ToolPath& path_;
     const CollisionOptions& options_;
-    std::vector<double> begins_;  // s, of the motion to each pose
 };
+
+/// Whether a pair is looked at, the first standing still or, with a link, anything but a link.
+bool meets(const CollisionBody& first, const CollisionBody& second, Holding holding) {
+    const bool held = carried(first.carrier, holding);
+    if (first.carrier == Carrier::kLink) return false;
+    if (second.carrier != Carrier::kLink) return !held && carried(second.carrier, holding);
+    if (held) return second.link < kAtFlange;
+    return second.link > 0 || first.carrier != Carrier::kBase;
+}
+
+std::unique_ptr<const PairMotion> arm_motion(const ArmTravel& travel, const CollisionBody& other,
+                                             const CollisionMesh& mesh, const CollisionBody& link,
+                                             const CollisionMesh& link_mesh) {
+    const CellFrames& cell = travel.path().frames();
+    double reach = 0.0;
+    if (carried(other.carrier, cell.holding)) {
+        const Frame flange_from_other =
+            travel.arm().flange_from_tcp * holder_from(other.carrier, cell);
+        reach = mesh.reach(flange_from_other.inverse().translation());
+    } else if (link.link > 0) {
+        reach = link_mesh.reach(travel.arm().arm.point(static_cast<int>(link.link) - 1));
+    }
+    return std::make_unique<ArmMotion>(travel, other.carrier, link.link, reach);
+}
+
+void check_links(const std::vector<CollisionBody>& bodies, const ArmInCell* arm) {
+    for (const CollisionBody& body : bodies) {
+        if (body.carrier == Carrier::kLink && (arm == nullptr || body.link >= kLinks)) {
+            throw InputError("collision.link",
+                             "{body}: a link of the robot needs an arm, and a number from 0 to 6",
+                             {{"body", body.name}});
+        }
+    }
+}
 
 }  // namespace
 
 CollisionResult check_collisions(const ToolPath& path, const std::vector<CollisionBody>& bodies,
-                                 const CollisionOptions& options, const RunContext& context) {
+                                 const CollisionOptions& options, const RunContext& context,
+                                 const ArmInCell* arm) {
     if (!std::isfinite(options.clearance) || options.clearance < 0.0 ||
         !std::isfinite(options.resolution) || !(options.resolution > 0.0)) {
         throw InputError(
             "collision.options",
             "collisions: the clearance must be zero or positive, the resolution positive");
     }
+    check_links(bodies, arm);
     CollisionResult result;
     if (path.poses().size() < 2) return result;
     std::vector<CollisionMesh> meshes;
@@ -154,36 +167,54 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
             throw error.within({"collision.body", "{body}: ", {{"body", body.name}}});
         }
     }
+    const PathTravel path_travel(path);
+    std::optional<ArmTravel> arm_travel;
+    if (arm != nullptr && !arm->way.empty()) arm_travel.emplace(path, *arm);
     struct Numbers {
         std::size_t first, second;
     };
     std::vector<Numbers> numbers;
-    const Holding holding = path.frames().holding;
+    std::vector<std::unique_ptr<CollisionPair>> pairs;
     for (std::size_t a = 0; a < bodies.size(); ++a) {
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-            if (!carried(bodies[a].carrier, holding) && carried(bodies[b].carrier, holding)) {
-                numbers.push_back({a, b});
+            const CollisionBody &first = bodies[a], &second = bodies[b];
+            if (!meets(first, second, path.frames().holding)) continue;
+            std::unique_ptr<const PairMotion> motion;
+            if (second.carrier != Carrier::kLink) {
+                const Frame holder = holder_from(second.carrier, path.frames());
+                motion =
+                    std::make_unique<PathMotion>(path_travel, first.carrier, second.carrier,
+                                                 meshes[b].reach(holder.inverse().translation()));
+            } else if (arm_travel) {
+                motion = arm_motion(*arm_travel, first, meshes[a], second, meshes[b]);
+            } else {
+                continue;  // nowhere in reach
             }
+            pairs.push_back(std::make_unique<CollisionPair>(std::move(motion), meshes[a], meshes[b],
+                                                            first.margin + second.margin, options));
+            numbers.push_back({a, b});
         }
     }
-    const MotionBound bound(path);
-    std::vector<std::unique_ptr<CollisionPair>> pairs;
-    pairs.reserve(numbers.size());
-    for (const auto& [a, b] : numbers) {
-        pairs.push_back(std::make_unique<CollisionPair>(path, bound, bodies[a], meshes[a],
-                                                        bodies[b], meshes[b], options));
+    struct Task {
+        std::size_t pair, number;
+        PairMotion::Stretch stretch;
+    };
+    std::vector<Task> tasks;
+    std::vector<std::vector<CollisionPair::Looks>> looks(pairs.size());
+    double whole = 0.0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto stretches = pairs[k]->motion().stretches();
+        looks[k].resize(stretches.size());
+        for (std::size_t i = 0; i < stretches.size(); ++i) {
+            tasks.push_back({k, i, stretches[i]});
+            whole += stretches[i].end - stretches[i].begin;
+        }
     }
-    const std::size_t blocks = (bound.motions() + kBlock - 1) / kBlock;
-    std::vector<std::vector<CollisionPair::Looks>> looks(pairs.size(),
-                                                         std::vector<CollisionPair::Looks>(blocks));
     std::atomic<double> settled{0.0};
-    const double whole = static_cast<double>(bound.motions() * pairs.size());
-    parallel_blocks(pairs.size() * blocks, 1, context, [&](std::size_t at, std::size_t) {
-        const std::size_t k = at / blocks, block = at % blocks;
-        const std::size_t begin = block * kBlock;
-        const std::size_t end = std::min(begin + kBlock, bound.motions());
-        looks[k][block] = pairs[k]->follow(
-            static_cast<double>(begin), static_cast<double>(end), context, [&](double length) {
+    parallel_blocks(tasks.size(), 1, context, [&](std::size_t at, std::size_t) {
+        const Task& task = tasks[at];
+        looks[task.pair][task.number] =
+            pairs[task.pair]->follow(task.stretch, context, [&](double length) {
                 settled.fetch_add(length, std::memory_order_relaxed);
                 context.report(std::min(1.0, settled.load(std::memory_order_relaxed) / whole));
             });

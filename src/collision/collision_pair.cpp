@@ -13,57 +13,43 @@ constexpr double kLookError = 0.2;
 constexpr int kPolish = 24;      // looks around the nearest place, each cuts its stretch to 0.62
 constexpr double kStride = 2.0;  // mm between two looks at bodies that touch or nearly do
 constexpr int kFirstLooks = 8;   // evenly over a block, for a good guess of its least
-/// The body's frame in the tool's if the robot carries it, else in the base.
-Frame holder_from(Carrier carrier, const CellFrames& cell) {
-    const bool with_tool = cell.holding == Holding::kToolInHand;
-    switch (carrier) {
-        case Carrier::kWheel:
-            return with_tool ? cell.tcp_from_contact : cell.base_from_contact;
-        case Carrier::kPart:
-            return with_tool ? cell.base_from_work : cell.tcp_from_work;
-        default:
-            return Frame::Identity();
-    }
-}
 
 }  // namespace
 
-CollisionPair::CollisionPair(const ToolPath& path, const MotionBound& bound,
-                             const CollisionBody& first, const CollisionMesh& standing,
-                             const CollisionBody& second, const CollisionMesh& moving,
+CollisionPair::CollisionPair(std::unique_ptr<const PairMotion> motion, const CollisionMesh& first,
+                             const CollisionMesh& second, double margin,
                              const CollisionOptions& options)
-    : path_(path),
-      bound_(bound),
-      standing_(standing),
-      moving_(moving),
+    : motion_(std::move(motion)),
+      first_(first),
+      second_(second),
       options_(options),
-      margin_(first.margin + second.margin),
-      first_from_base_(holder_from(first.carrier, path.frames()).inverse()),
-      tcp_from_second_(holder_from(second.carrier, path.frames())),
-      reach_(moving.reach(tcp_from_second_.inverse().translation())) {}
+      margin_(margin) {}
 
-CollisionPair::Looks CollisionPair::follow(double begin, double end, const RunContext& context,
+CollisionPair::Looks CollisionPair::follow(const PairMotion::Stretch& stretch,
+                                           const RunContext& context,
                                            const std::function<void(double)>& done) const {
+    const auto [begin, end] = stretch;
     Looks looks;
     double least = std::numeric_limits<double>::infinity();
     NearestPoints known;
-    for (int k = 0; k < kFirstLooks; ++k) {
+    const int first = motion_->way(begin, end) > options_.resolution ? kFirstLooks : 1;
+    for (int k = 0; k < first; ++k) {
         context.throw_if_cancelled();
-        const Look at = look(begin + (end - begin) * k / kFirstLooks, known);
+        const Look at = look(begin + (end - begin) * k / first, known);
         least = std::min(least, at.distance);
         known = at.nearest;
     }
-    struct Stretch {
+    struct Between {
         Look begin, end;
     };
-    std::vector<Stretch> open{{look(begin, known), look(end, known)}};
+    std::vector<Between> open{{look(begin, known), look(end, known)}};
     while (!open.empty()) {
         context.throw_if_cancelled();
-        const Stretch s = open.back();
+        const Between s = open.back();
         open.pop_back();
         least = std::min({least, s.begin.distance, s.end.distance});
-        const double way = bound_.way(s.begin.place, s.end.place, reach_);
-        const double place = bound_.middle(s.begin.place, s.end.place, reach_);
+        const double way = motion_->way(s.begin.place, s.end.place);
+        const double place = motion_->middle(s.begin.place, s.end.place);
         const bool divisible = s.begin.place < place && place < s.end.place;
         if (settled(s.begin, s.end, way, least) || !divisible) {
             looks.push_back(s.end);
@@ -77,16 +63,23 @@ CollisionPair::Looks CollisionPair::follow(double begin, double end, const RunCo
     return looks;
 }
 
-void CollisionPair::finish(const std::vector<Looks>& blocks) {
-    looks_ = {look(0.0, {})};
-    for (const auto& block : blocks) looks_.insert(looks_.end(), block.begin(), block.end());
+void CollisionPair::finish(const std::vector<Looks>& followed) {
+    const auto stretches = motion_->stretches();
+    looks_.clear();
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+        if (k == 0 || stretches[k].begin != stretches[k - 1].end) {
+            looks_.push_back(look(stretches[k].begin, {}));
+        }
+        looks_.insert(looks_.end(), followed[k].begin(), followed[k].end());
+    }
     mark_inside();
     polish();
 }
 
-Frame CollisionPair::base_from_tcp(double place) const {
-    const Moment at = moment_at(place, bound_.motions());
-    return path_.base_from_tcp(at.motion, at.share);
+std::pair<Vec3, Vec3> CollisionPair::points(const Look& look) const {
+    const Frame work_from_first = motion_->work_from_first(look.place);
+    return {work_from_first * look.nearest.here,
+            work_from_first * motion_->first_from_second(look.place) * look.nearest.there};
 }
 
 bool CollisionPair::settled(const Look& begin, const Look& end, double way, double least) const {
@@ -100,15 +93,11 @@ bool CollisionPair::settled(const Look& begin, const Look& end, double way, doub
            way <= kStride;
 }
 
-Frame CollisionPair::first_from_second(double place) const {
-    return first_from_base_ * base_from_second(place);
-}
-
 // Exact below the clearance.
 CollisionPair::Look CollisionPair::look(double place, const NearestPoints& known,
                                         bool exact) const {
-    const Frame frame = first_from_second(place);
-    Look at{place, standing_.nearest(moving_, frame, known, exact ? 0.0 : kLookError), 0.0, 0.0};
+    const Frame frame = motion_->first_from_second(place);
+    Look at{place, first_.nearest(second_, frame, known, exact ? 0.0 : kLookError), 0.0, 0.0};
     at.low = at.nearest.distance / (exact ? 1.0 : 1.0 + kLookError) - margin_;
     if (!exact && at.low < options_.clearance && at.nearest.distance > 0.0) {
         return look(place, at.nearest, true);
@@ -120,7 +109,7 @@ CollisionPair::Look CollisionPair::look(double place, const NearestPoints& known
 
 // Of two looks, the one whose points are the nearer at `place`.
 const NearestPoints& CollisionPair::nearer(const Look& a, const Look& b, double place) const {
-    const Frame frame = first_from_second(place);
+    const Frame frame = motion_->first_from_second(place);
     const auto apart = [&](const Look& at) {
         return (at.nearest.here - frame * at.nearest.there).squaredNorm();
     };
@@ -177,9 +166,9 @@ void CollisionPair::mark_inside() {
 }
 
 bool CollisionPair::is_inside(double place) const {
-    const Frame frame = first_from_second(place);
-    return standing_.contains(frame * moving_.some_vertex()) ||
-           moving_.contains(frame.inverse() * standing_.some_vertex());
+    const Frame frame = motion_->first_from_second(place);
+    return first_.contains(frame * second_.some_vertex()) ||
+           second_.contains(frame.inverse() * first_.some_vertex());
 }
 
 }  // namespace beltgrinding

@@ -1,17 +1,18 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/run_context.h"
 #include "collision/collision_check.h"
 #include "collision_mesh.h"
-#include "motion_bound.h"
+#include "pair_motion.h"
 
 namespace beltgrinding {
 
-/// Follows one pair of bodies along the path: one stands still, the other is carried by the robot.
-/// Keeps references to all that it is made of.
+/// Follows one pair of bodies along its motion. Keeps references to the meshes and the options.
 class CollisionPair {
   public:
     struct Look {
@@ -22,40 +23,37 @@ class CollisionPair {
     };
     using Looks = std::vector<Look>;
 
-    CollisionPair(const ToolPath& path, const MotionBound& bound, const CollisionBody& first,
-                  const CollisionMesh& standing, const CollisionBody& second,
-                  const CollisionMesh& moving, const CollisionOptions& options);
+    /// `margin`: mm by which the two are thicker than their meshes.
+    CollisionPair(std::unique_ptr<const PairMotion> motion, const CollisionMesh& first,
+                  const CollisionMesh& second, double margin, const CollisionOptions& options);
+
+    const PairMotion& motion() const { return *motion_; }
 
     /// Looks at the stretch between two places, so closely that nothing is missed, in order;
     /// without the one at its begin. `done(length)` is called with the stretches that are settled.
     /// Safe from many threads.
-    Looks follow(double begin, double end, const RunContext& context,
+    Looks follow(const PairMotion::Stretch& stretch, const RunContext& context,
                  const std::function<void(double)>& done) const;
 
-    /// Takes the looks of the whole path, in order.
-    void finish(const std::vector<Looks>& blocks);
+    /// Takes the looks of each of the motion's stretches.
+    void finish(const std::vector<Looks>& followed);
 
     const Looks& looks() const { return looks_; }
-    Frame base_from_first() const { return first_from_base_.inverse(); }
-    Frame base_from_second(double place) const { return base_from_tcp(place) * tcp_from_second_; }
-    Frame base_from_tcp(double place) const;
+    /// The nearest points of a look in the work frame, on the first body and on the second.
+    std::pair<Vec3, Vec3> points(const Look& look) const;
 
   private:
     bool settled(const Look& begin, const Look& end, double way, double least) const;
-    Frame first_from_second(double place) const;
     Look look(double place, const NearestPoints& known, bool exact = false) const;
     const NearestPoints& nearer(const Look& a, const Look& b, double place) const;
     void polish();
     void mark_inside();
     bool is_inside(double place) const;
 
-    const ToolPath& path_;
-    const MotionBound& bound_;
-    const CollisionMesh &standing_, &moving_;
+    std::unique_ptr<const PairMotion> motion_;
+    const CollisionMesh &first_, &second_;
     const CollisionOptions& options_;
     double margin_;
-    Frame first_from_base_, tcp_from_second_;
-    double reach_;
     Looks looks_;
 };
 

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "collision/collision_check.h"
 #include "dict.h"
 #include "robot/inverse_kinematics.h"
 #include "robot/reach.h"
@@ -101,12 +102,16 @@ py::dict reach(const RobotArm& arm, const ToolPath& path, const py::dict& option
     found["least"] = result.least;
     found["greatest"] = result.greatest;
     found["checks"] = result.checks;
+    found["arm"] = ArmInCell{arm, o.base_from_robot, o.flange_from_tcp, std::move(result.way)};
     return found;
 }
 
 }  // namespace
 
 void bind_robot(py::module_& m) {
+    py::class_<ArmInCell>(m, "ArmInCell",
+                          "An arm and where its joints are along a path, check by check.")
+        .def("__len__", [](const ArmInCell& arm) { return arm.way.size(); });
     py::class_<RobotArm>(m, "RobotArm", "Kinematics of a serial arm of six revolute joints.")
         .def(py::init(&arm_from), py::arg("convention"), py::arg("joints"),
              py::arg("joint6_from_flange") = Eigen::Matrix4d(Eigen::Matrix4d::Identity()),
@@ -137,6 +142,21 @@ void bind_robot(py::module_& m) {
             },
             py::arg("q"),
             "(axes (6, 3), unit; a point on each (6, 3), mm) in the robot's base at q (6,), rad")
+        .def(
+            "links",
+            [](const RobotArm& arm, const Joints& q) {
+                py::array_t<double> frames({7, 4, 4});
+                auto out = frames.mutable_unchecked<3>();
+                const auto links = arm.links(q);
+                for (py::ssize_t k = 0; k < 7; ++k)
+                    for (py::ssize_t i = 0; i < 4; ++i)
+                        for (py::ssize_t j = 0; j < 4; ++j)
+                            out(k, i, j) = links[static_cast<std::size_t>(k)].matrix()(i, j);
+                return frames;
+            },
+            py::arg("q"),
+            "robot_from_link (7, 4, 4) of the foot and what each joint carries; identities at q = "
+            "0")
         .def("jacobian", &RobotArm::jacobian, py::arg("q"),
              "(6, 6): velocity of the flange (mm) and angular velocity per joint speed")
         .def(
@@ -153,7 +173,7 @@ void bind_robot(py::module_& m) {
         .def("reach", &reach, py::arg("path"), py::arg("options") = py::dict(),
              py::arg("context") = nullptr,
              "Follows a ToolPath; see robot/reach.h. dict(joints (n, 6) rad, NaN out of reach; "
-             "events; least, greatest (6,) rad; checks).");
+             "events; least, greatest (6,) rad; checks; arm: for check_collisions).");
 }
 
 }  // namespace beltgrinding::python

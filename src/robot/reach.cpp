@@ -64,9 +64,11 @@ class Check {
         const auto found = given ? follower_.arrive(i, ArmSolution{*given, -1}, true)
                                  : follower_.arrive(i, at_, i == 0 && options_.start.has_value());
         if (found) {
+            const bool joined = by_joints && i > 0 && here_;
             at_ = found;
             known_ = true;
             note_joints();
+            result_.way.push_back({at_->q, time_, step_.pose, joined});
         } else {
             note_unreached(follower_.target(i, 1.0));
         }
@@ -90,8 +92,11 @@ class Check {
             const auto next = follower_.follow(i, static_cast<double>(k) / parts, end, *at_);
             if (next) {
                 // Across a stretch out of reach, nothing is known of speeds and turns.
-                if (here_) note_motion(next->q - at_->q, turn / parts);
+                const Joints turned = next->q - at_->q;
+                if (here_) note_motion(turned, turn / parts);
+                const bool joined = here_ && turned.cwiseAbs().maxCoeff() <= options_.flip;
                 at_ = next;
+                result_.way.push_back({at_->q, time_ + finish, step_.pose, joined});
                 note_joints();
                 note_singularity();
             } else {

@@ -189,6 +189,17 @@ RobotArm::Placed RobotArm::placed(const Joints& q) const {
     return now;
 }
 
+std::array<Frame, 7> RobotArm::links(const Joints& q) const {
+    const Joints theta = geometric(q);
+    std::array<Frame, 7> frames;
+    frames[0] = Frame::Identity();
+    for (int i = 0; i < 6; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        frames[k + 1] = frames[k] * turn_about(axis_[k], point_[k], theta[i]);
+    }
+    return frames;
+}
+
 Eigen::Matrix<double, 6, 6> RobotArm::jacobian(const Joints& q) const {
     const Placed now = placed(q);
     const Vec3 tip = now.robot_from_flange.translation();

@@ -154,10 +154,29 @@ assert "Joints:" in field("joints").text()
 flange = robot.arm.forward(robot.joints)
 base = np.array(machine.BaseFromRobot.toMatrix().A).reshape(4, 4)
 assert np.allclose(base @ flange, walks[-1].view.poses[4], atol=1e-6)
-press("Check the whole program")
-wait(lambda: field("checkReach").isEnabled())
-assert "follows the whole program" in field("reachEvents").item(0).text()
+def told():
+    press("Check the whole program")
+    wait(lambda: field("checkReach").isEnabled())
+    rows = field("reachEvents")
+    return [rows.item(i).text() for i in range(rows.count())]
+# The tool has no length: the flange is in the part.
+assert any("Collision: part and robot link 6" in line for line in told()), told()
+machine.FlangeFromTcp = FreeCAD.Placement(FreeCAD.Vector(0, 0, 250), FreeCAD.Rotation())
+machine.BaseFromRobot.Base = (-500, 20, -200)
+lines = told()
+assert "follows the whole program" in lines[0] and "Nearest to the arm" in lines[1], lines
 assert len(robot.followed) == 9
+Gui.ActiveDocument.ActiveView.viewIsometric()
+Gui.SendMsgToActiveView("ViewFit")
+screenshot("robot.png")
+machine.BaseFromRobot.Base = (-20, 20, -100)  # the foot stands in the part
+lines = told()
+assert any("Collision: part and robot foot" in line for line in lines), lines
+machine.CheckCollisions = False
+lines = told()
+assert "was not looked at" in lines[-1] and not any("robot foot" in line for line in lines), lines
+machine.CheckCollisions = True
+machine.FlangeFromTcp = FreeCAD.Placement()
 
 line = [w for w in field("BaseFromRobot").findChildren(QtGui.QWidget, "X")][0]
 line = line.findChild(QtGui.QLineEdit)

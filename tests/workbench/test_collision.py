@@ -17,6 +17,7 @@ from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.cell import collision, events  # noqa: E402
 from beltgrinding.job import load as jobs, workpiece, poses  # noqa: E402
 from beltgrinding.base import schemas  # noqa: E402
+from beltgrinding.presets import library, robot as robots, robot_shape  # noqa: E402
 from test_document import BLOCK  # noqa: E402
 from test_job import DOWN, plate_job  # noqa: E402
 
@@ -277,3 +278,67 @@ def test_an_invalid_part_is_ground_but_not_checked():
     path = SHARED / "data" / "cad_nasty" / "spring_invalid.igs"
     if path.exists():
         assert not core.Shape.read(str(path)).valid
+
+
+def arm_job(radii=(), base=(-500, 20, -300), holding="tool_in_hand"):
+    """The plate, ground by an ABB IRB 1200 with a tool of 250 mm."""
+    job = plate_job()
+    job["robot"] = {
+        "preset": "abb_irb1200_5_90",
+        "base_from_robot": {"position_mm": list(base)},
+        "flange_from_tcp": {"position_mm": [0, 0, 250]},
+        "link_radii_mm": list(radii),
+    }
+    return job
+
+
+def test_the_robots_arm_takes_part():
+    result = beltgrinding.run(arm_job())
+    least = {tuple(c["bodies"]): c["distance_mm"] for c in result.summary["clearances"]}
+    # What stands still meets all links; the wheel, in the hand, not the wrist and what follows it.
+    for name in robot_shape.LINKS:
+        assert ("part", name) in least
+        assert (("wheel", name) in least) == (name not in robot_shape.LINKS[5:])
+    assert not collisions(result) and least["part", "robot foot"] > 300
+    # The foot in the plate.
+    (event,) = [
+        event
+        for event in collisions(beltgrinding.run(arm_job(base=(-60, 20, -150))))
+        if event["bodies"] == ["part", "robot foot"]
+    ]
+    assert event["time"] == 0 and event["severity"] == "error"
+    # A foot of 0 mm is none.
+    thin = beltgrinding.run(arm_job([0, 1, 1, 1, 1, 1, 1], (-60, 20, -150)))
+    assert not any("robot foot" in event["bodies"] for event in thin.events)
+    off = arm_job(base=(-60, 20, -150))
+    off["cell"] = {"check_collisions": False}
+    assert not collisions(beltgrinding.run(off))
+
+
+def test_radii_of_links_are_asked_for_as_seven():
+    with pytest.raises(InputError, match="robot.link_radii_mm: 3 radii; give seven"):
+        beltgrinding.run(arm_job([1, 2, 3]))
+    with pytest.raises(InputError, match="link_radii_mm"):
+        beltgrinding.run(arm_job([-1] * 7))
+
+
+@pytest.mark.parametrize("preset", [one["id"] for one in library.robots()])
+def test_a_preset_has_the_shape_of_an_arm(preset):
+    robot = robots.checked({"preset": preset})
+    arm, links = robots.arm_of(robot), robots.links_of(robot)
+    assert len(links) == 7
+    least = min(float(points[:, 2].min()) for points, _ in links[0] if len(points))
+    assert least == pytest.approx(robots.model_of(robot)["floor_mm"], abs=1e-6)
+    for parts in links:
+        points, faces = robot_shape.body(*parts)
+        if not len(faces):
+            continue
+        edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        _, count = np.unique(edges, axis=0, return_counts=True)
+        assert (count == 2).all()  # closed
+        a, b, c = points[faces].transpose(1, 0, 2)
+        assert np.einsum("ij,ij->", np.cross(a, b), c) > 0  # the right side out
+    # Stretched out, the arm reaches from the foot to the flange.
+    everything = np.concatenate([robot_shape.body(*parts)[0] for parts in links])
+    flange = arm.forward(np.zeros(6))[:3, 3]
+    assert np.linalg.norm(everything - flange, axis=1).min() < 0.1 * arm.length

@@ -62,11 +62,17 @@ def word(code, text, language):
 
 
 def body(name, language):
-    """The name of a body of the cell: those of wheel and part are ours, the others the user's."""
+    """The name of a body of the cell: those of wheel, part, stock and arm are ours, the others the user's."""
     if name == "wheel":
         return word("body.wheel", "wheel", language)
     if name == "part":
         return word("body.part", "part", language)
+    if name == "stock":
+        return word("body.stock", "stock", language)
+    if name == "robot foot":
+        return word("body.robot_foot", "robot foot", language)
+    if name.startswith("robot link "):
+        return word("body.robot_link", "robot link", language) + name.removeprefix("robot link")
     return name
 
 

@@ -13,6 +13,7 @@ from ..base import frames
 from ..engine import InputError, core
 from ..job.bodies import PART, STOCK, WHEEL
 from ..job.poses import program_name
+from ..presets import robot as robots, robot_shape
 
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
@@ -20,9 +21,10 @@ LONGEST = 1e7  # s of a program, some months
 LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
-def check(job, shape, paths, warnings, context=None):
+def check(job, shape, paths, warnings, context=None, reached=()):
     """What ``core.check_collisions`` finds for each core.ToolPath of a validated job. ``shape``: the
-    design's core.Shape; [] if the job does not want it. Raises InputError, Cancelled.
+    design's core.Shape; ``reached``: ``reach.job_reach`` of them, for the robot's own arm; [] if the job
+    does not want it. Raises InputError, Cancelled.
     """
     if not job["cell"]["check_collisions"]:
         return []
@@ -36,6 +38,8 @@ def check(job, shape, paths, warnings, context=None):
         return []
     context = context or core.RunContext()
     found = bodies(job, shape, warnings, context)
+    if reached:
+        found += arm_bodies(job["robot"])
     for body in found:
         if not np.isfinite(body["mesh"].vertices).all():
             raise InputError(
@@ -54,7 +58,8 @@ def check(job, shape, paths, warnings, context=None):
                 program=program_name(job, i),
                 seconds=path.duration(),
             )
-        results.append(core.check_collisions(path, found, clearance, context=part))
+        arm = reached[i]["arm"] if reached else None
+        results.append(core.check_collisions(path, found, clearance, arm=arm, context=part))
     return results
 
 
@@ -73,6 +78,17 @@ def bodies(job, shape, warnings, context=None):
     for body in job["cell"]["bodies"]:
         mesh = read_body(body, body["name"], warnings, context)
         found.append({"name": body["name"], "frame": body["frame"], "mesh": mesh})
+    return found
+
+
+def arm_bodies(robot):
+    """The links of a job's robot (with its defaults) as ``core.check_collisions`` takes them."""
+    found = []
+    for number, (name, parts) in enumerate(zip(robot_shape.LINKS, robots.links_of(robot))):
+        points, triangles = robot_shape.body(*parts)
+        if len(triangles):
+            mesh = core.TriangleMesh(points.astype(np.float32), triangles.astype(np.uint32))
+            found.append({"name": name, "frame": "link", "link": number, "mesh": mesh})
     return found
 
 

@@ -2,8 +2,10 @@
 
 from ..base.files import either
 from ..engine import InputError
+from ..presets.robot_shape import LINKS
 
-RESERVED = PART, STOCK, WHEEL = "part", "stock", "wheel"  # names of the bodies that every cell has
+PART, STOCK, WHEEL = "part", "stock", "wheel"
+RESERVED = (PART, STOCK, WHEEL, *LINKS)  # names of the bodies that every cell has
 
 
 def validate(bodies):

@@ -33,6 +33,7 @@ KEYS = (
     Key("Robot", "String", "Robot", "robot.preset"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
+    Key("LinkRadii", "JSON", "Robot", "robot.link_radii_mm"),
     Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),
     Key("FlipAngle", "Angle", "Robot", "robot.flip_deg"),
 )

@@ -8,7 +8,7 @@ import numpy as np
 from ..base import frames, schemas
 from ..base.files import at_key
 from ..engine import InputError
-from . import library
+from . import library, robot_shape
 from .robot_model import JOINTS, arm, robot_rules, validate_model
 
 
@@ -35,6 +35,13 @@ def validate(robot):
             key="robot.start_joints_deg",
             count=len(robot["start_joints_deg"]),
         )
+    if len(robot["link_radii_mm"]) not in (0, len(robot_shape.LINKS)):
+        raise InputError(
+            "presets.link_radii",
+            "{key}: {count} radii; give seven, foot to flange, or none",
+            key="robot.link_radii_mm",
+            count=len(robot["link_radii_mm"]),
+        )
     if robot["preset"]:
         load_preset(robot["preset"])
     validate_model(model)
@@ -57,9 +64,18 @@ def name(robot):
 
 def arm_of(robot):
     """core.RobotArm of a job's robot with its defaults, None if it is none. Raises InputError."""
-    if not given(robot):
-        return None
-    return arm(load_preset(robot["preset"]) if robot["preset"] else robot["model"])
+    return arm(model_of(robot)) if given(robot) else None
+
+
+def model_of(robot):
+    """The robot.model of a job's robot with its defaults, its preset's if it has one."""
+    return load_preset(robot["preset"]) if robot["preset"] else robot["model"]
+
+
+def links_of(robot):
+    """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them."""
+    of = arm_of(robot)
+    return robot_shape.links(of, robot_shape.radii(robot, of), model_of(robot)["floor_mm"])
 
 
 def robot_frame(robot, key):

@@ -98,7 +98,7 @@ def _run(job, context, warnings, recording, phases):
     phases.end("sample")
     apply_stock(field, job["stock"], warnings, context.part(0.2, 0.27))
     phases.end("stock")
-    met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3))
+    met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3), reached)
     phases.end("collisions")
 
     options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))

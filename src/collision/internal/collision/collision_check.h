@@ -7,6 +7,7 @@
 #include "beltgrinding/event.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
+#include "robot/reach.h"
 
 namespace beltgrinding {
 
@@ -15,14 +16,25 @@ enum class Carrier {
     kBase,   ///< it stands still in the cell; the frame of the program's poses
     kTool,   ///< the robot's tool frame: gripper, tool
     kWheel,  ///< the contact frame: housing
-    kPart    ///< the work frame: part, fixture
+    kPart,   ///< the work frame: part, fixture
+    kLink    ///< a link of the robot's arm; where it lies in the robot's base at joint angles 0
 };
 
 struct CollisionBody {
     std::string name;
     Carrier carrier = Carrier::kBase;
-    TriangleMesh mesh;    ///< mm
-    double margin = 0.0;  ///< mm by which the body is thicker than its mesh (stock on a part)
+    TriangleMesh mesh;     ///< mm
+    double margin = 0.0;   ///< mm by which the body is thicker than its mesh (stock on a part)
+    std::size_t link = 0;  ///< kLink: 0 the foot, k what joint k carries, up to 6
+};
+
+/// The robot's arm and what it does along the path.
+struct ArmInCell {
+    RobotArm arm;
+    Frame base_from_robot = Frame::Identity();
+    Frame flange_from_tcp = Frame::Identity();
+    std::vector<ArmMoment> way =
+        {};  ///< as check_reach tells it; stretches out of reach are left out
 };
 
 struct CollisionOptions {
@@ -30,13 +42,14 @@ struct CollisionOptions {
     double resolution = 0.05;  ///< mm; bodies that touch by a shorter way may be missed
 };
 
-/// How near two bodies come that move against each other.
+/// How near two bodies come that move against each other; or the arm's foot and what stands still.
 struct PairClearance {
-    std::size_t first = 0, second = 0;  ///< numbers of the bodies; the first stands still
-    double distance = 0.0;              ///< mm; 0: they touch
-    std::uint32_t pose = 0;             ///< that the motion leads to, from 0
-    double time = 0.0;                  ///< s since the program's begin
-    Vec3 on_first = Vec3::Zero();       ///< nearest point, work frame, mm
+    /// Numbers of the bodies; the first stands still, or the second is a link of the arm.
+    std::size_t first = 0, second = 0;
+    double distance = 0.0;         ///< mm; 0: they touch
+    std::uint32_t pose = 0;        ///< that the motion leads to, from 0
+    double time = 0.0;             ///< s since the program's begin
+    Vec3 on_first = Vec3::Zero();  ///< nearest point, work frame, mm
     Vec3 on_second = Vec3::Zero();
 };
 
@@ -55,9 +68,15 @@ struct CollisionResult {
 /// resolution, so no motion is too fast. The least distance of a pair is within the resolution if
 /// it is below the clearance; beyond, a quarter of it is proved, and mostly it is exact.
 ///
-/// Results do not depend on the number of threads. Throws InputError (no mesh, bad options) and
-/// Cancelled.
+/// Links go as `arm` says, by joint interpolation between its moments; each is followed against
+/// what stands still and what the robot carries. Not looked at: links against each other; the foot
+/// against bodies of the base, on which it stands; the last two links against what is at the
+/// flange.
+///
+/// Results do not depend on the number of threads. Throws InputError (no mesh, bad options, links
+/// without an arm) and Cancelled.
 CollisionResult check_collisions(const ToolPath& path, const std::vector<CollisionBody>& bodies,
-                                 const CollisionOptions& options, const RunContext& context = {});
+                                 const CollisionOptions& options, const RunContext& context = {},
+                                 const ArmInCell* arm = nullptr);
 
 }  // namespace beltgrinding

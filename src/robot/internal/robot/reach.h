@@ -20,6 +20,16 @@ struct ReachOptions {
     double flip = 0.8;         ///< rad that a joint may turn between two checks
 };
 
+/// Where the joints are at a moment of the path.
+struct ArmMoment {
+    Joints q = Joints::Zero();  ///< rad
+    double time = 0.0;          ///< s since the program's begin
+    std::uint32_t pose = 0;     ///< that the motion leads to, from 0
+    /// It is reached by joint interpolation from the moment before it; else the arm was out of
+    /// reach, or turned over, in between.
+    bool joined = false;
+};
+
 /// What the robot's joints do along a path.
 struct ReachResult {
     std::vector<Joints> joints;  ///< rad, at each programmed pose; NaN where there is no solution
@@ -30,6 +40,7 @@ struct ReachResult {
     Joints least = Joints::Zero();     ///< rad, over all checks
     Joints greatest = Joints::Zero();  ///< rad
     std::size_t checks = 0;
+    std::vector<ArmMoment> way;  ///< every check at which the robot is where the path wants it
 };
 
 /// Follows `path` with `arm`: linear motions in small checks, each taking the solution nearest to

@@ -95,6 +95,9 @@ class RobotArm {
         Frame robot_from_flange;
     };
     Placed placed(const Joints& q) const;
+    /// robot_from_link of the foot and what each of the six joints carries; at all angles 0 these
+    /// are identities, so a link's shape is given where it lies in the robot's base then.
+    std::array<Frame, 7> links(const Joints& q) const;
 
   private:
     RobotModel model_;

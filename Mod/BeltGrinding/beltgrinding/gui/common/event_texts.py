@@ -1,6 +1,6 @@
 """Events in words, in the language of the window."""
 
-from ...base.messages import body, event_message, kind_text
+from ...base.messages import body as body_name, event_message, kind_text
 from .compat import translate
 from .report_language import words
 
@@ -26,7 +26,12 @@ def message(event):
 
 def bodies(event):
     """The bodies that are concerned."""
-    return ", ".join(body(name, words().code) for name in event["bodies"])
+    return ", ".join(body(name) for name in event["bodies"])
+
+
+def body(name):
+    """What a body of the cell is called."""
+    return body_name(name, words().code)
 
 
 def advice(event):

@@ -9,6 +9,9 @@ from ...simulation import run as runs
 from .compat import QtCore, translate
 
 POLL = 50  # ms
+# Works whose end is being told. Who is told may let go of them, and PySide goes on using the object whose
+# method its timer has called: freed there, FreeCAD dies, rarely.
+_ending = set()
 
 
 class Background(QtCore.QObject):
@@ -45,6 +48,8 @@ class Background(QtCore.QObject):
     def _poll(self):
         if not self.thread.is_alive():
             self.timer.stop()
+            _ending.add(self)
+            QtCore.QTimer.singleShot(0, lambda: _ending.discard(self))
             self.done(*self.outcome)
 
 

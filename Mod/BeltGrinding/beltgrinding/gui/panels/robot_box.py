@@ -2,9 +2,11 @@
 
 import json
 
-from ...cell import reach
+from ...cell import arm_check
 from ...engine import Cancelled, InputError, core
+from ...objects import job_inputs
 from ...presets import library as presets, robot as robots
+from ...presets.robot_shape import LINKS
 from ..common import event_texts
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
@@ -26,6 +28,7 @@ class RobotBox(QtGui.QGroupBox):
         self.machine, self.path = machine, path
         self.changed = self.found = self.go = lambda *_: None
         self.task, self.events = None, []
+        self.unchecked = ""  # why what the arm may meet was not looked at
         layout = QtGui.QFormLayout(self)
         layout.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         self.choice = steady(QtGui.QComboBox())
@@ -104,7 +107,7 @@ class RobotBox(QtGui.QGroupBox):
         self.joints.setText(translate("BeltGrinding", "Joints: {}°").format(angles))
 
     def start(self):
-        """Follows the whole program, in the background."""
+        """Follows the whole program in the background, with what the arm may meet."""
         self.forget()
         obj = self.path()
         try:
@@ -113,10 +116,22 @@ class RobotBox(QtGui.QGroupBox):
         except InputError as error:
             self.joints.setText(error_text(error))
             return
+        folder = job_inputs.scratch_folder()
+        job, self.unchecked = None, ""
+        try:
+            if self.machine.CheckCollisions:
+                job = job_inputs.to_data(self.machine.getParentGroup(), folder.name)
+            else:
+                self.unchecked = translate("BeltGrinding", "looking for collisions is turned off")
+        except InputError as error:
+            self.unchecked = error_text(error)
         self.check.setEnabled(False)
-        self.task = Background(
-            lambda context: reach.reach(path, robot, context=context), self._done
-        )
+
+        def work(context):
+            with folder:
+                return arm_check.follow(path, robot, job, context)
+
+        self.task = Background(work, self._done)
 
     def _done(self, result, error):
         self.task = None
@@ -133,12 +148,31 @@ class RobotBox(QtGui.QGroupBox):
         for event in self.events:
             kind, message = event_texts.title(event["kind"]), event_texts.message(event)
             self.list.addItem(f"{event['pose'] + 1}: {kind}: {message}")
-        if not self.events:
-            self.list.addItem(
-                translate("BeltGrinding", "The robot follows the whole program; nothing to report.")
-            )
+        for text in self._notes(result):
+            self.list.addItem(text)
         self.list.show()
         self.found(result)
+
+    def _notes(self, result):
+        """What stands below the events."""
+        if not self.events:
+            yield translate(
+                "BeltGrinding", "The robot follows the whole program; nothing to report."
+            )
+        if self.unchecked:
+            text = translate("BeltGrinding", "What its arm runs into was not looked at: {}")
+            yield text.format(self.unchecked)
+        for warning in result["warnings"]:
+            yield error_text(warning)
+        pairs = [pair for pair in result.get("pairs", ()) if pair["bodies"][1] in LINKS]
+        if pairs:
+            nearest = min(pairs, key=lambda pair: pair["distance"])
+            text = translate(
+                "BeltGrinding",
+                "Nearest to the arm, whose thickness is estimated unless LinkRadii says it: {}, {:.0f} mm from {}",
+            )
+            first, second = (event_texts.body(name) for name in nearest["bodies"])
+            yield text.format(first, nearest["distance"], second)
 
     def _chosen(self, row):
         if 0 <= row < len(self.events):

@@ -89,8 +89,9 @@ class CellView:
             for name, frame, obj in bodies.listed(self.machine):
                 self.bodies[name] = body(obj)
                 self.things[PLACES.get(frame, frame)].addChild(self.bodies[name])
-            self.tint(self.tinted)
             self.robot.choose(self.machine.Proxy.robot(self.machine))
+            self.bodies.update(self.robot.bodies)
+            self.tint(self.tinted)
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
 

@@ -1,62 +1,40 @@
-"""A robot arm as a figure of sticks: its links and the hubs of its joints, at the pose of a path."""
+"""A robot's arm as solids, in the shape that collisions take it in, at the pose of a path."""
 
 import numpy as np
 from pivy import coin
 
 from ...base import frames
 from ...engine import InputError
-from ...presets import robot as robots, robot_model
-from .shapes3d import material, separator, set_matrix
+from ...presets import robot as robots
+from ...presets.robot_shape import LINKS
+from .shapes3d import material, separator, set_matrix, triangles
 
 LINK, HUB = (0.96, 0.55, 0.14), (0.20, 0.24, 0.30)
-THICKNESS = 0.035  # a link's radius as a share of the arm's length
-LEAST = 1e-6  # mm; a shorter link is none
-
-
-def _along(direction):
-    """A rotation whose y axis is ``direction``."""
-    y = direction / np.linalg.norm(direction)
-    other = np.eye(3)[np.argmin(np.abs(y))]
-    x = np.cross(y, other)
-    x /= np.linalg.norm(x)
-    return np.stack([x, y, np.cross(x, y)], axis=1)
-
-
-class _Stick:
-    """A cylinder between two points, or about one."""
-
-    def __init__(self, colour):
-        self.place = coin.SoMatrixTransform()
-        self.cylinder = coin.SoCylinder()
-        self.root = separator(self.place, material(colour), self.cylinder)
-
-    def put(self, middle, direction, length, radius):
-        frame = np.eye(4)
-        frame[:3, :3], frame[:3, 3] = _along(direction), middle
-        set_matrix(self.place, frame)
-        self.cylinder.radius, self.cylinder.height = float(radius), float(length)
+CREASE = 0.6  # rad; round along a link, an edge at its ends
 
 
 class RobotView:
-    """Draws a job's robot; nothing where there is none, or where it does not reach."""
+    """Draws a job's robot; nothing where there is none, or where it does not reach. ``bodies``: {name as
+    events have it: node} of the links."""
 
     def __init__(self):
         self.root = coin.SoSwitch()
-        self.links = [_Stick(LINK) for _ in range(robot_model.JOINTS + 1)]
-        self.hubs = [_Stick(HUB) for _ in range(robot_model.JOINTS)]
-        for stick in (*self.links, *self.hubs):
-            self.root.addChild(stick.root)
+        self.places, self.bodies = [], {}
         self.arm = self.joints = None
         self.followed = None  # (n, 6) degrees, where the whole path has been followed
 
     def choose(self, robot):
         """A job's robot, with its defaults; its errors are the panel's."""
         self.joints = self.followed = None
+        self.root.removeAllChildren()
+        self.places, self.bodies = [], {}
         try:
-            self.arm = robots.arm_of(robots.checked(robot))
+            robot = robots.checked(robot)
+            self.arm = robots.arm_of(robot)
         except InputError:
             self.arm = None
         if self.arm is not None:
+            self._build(robots.links_of(robot))
             self.base_from_robot = frames.from_data(robot.get("base_from_robot"))
             self.flange_from_tcp = frames.from_data(robot.get("flange_from_tcp"))
             self.near = np.clip(np.zeros(6), self.arm.lower, self.arm.upper)
@@ -72,19 +50,21 @@ class RobotView:
         self.root.whichChild = coin.SO_SWITCH_ALL
         self.near = self.joints
         work = work_from_base @ self.base_from_robot
-        axes, points = self.arm.placed(self.joints)
-        flange = self.arm.forward(self.joints)[:3, 3]
-        axes = axes @ work[:3, :3].T
-        points = np.vstack([np.zeros(3), points, flange]) @ work[:3, :3].T + work[:3, 3]
-        radius = THICKNESS * self.arm.length
-        for k, link in enumerate(self.links):
-            way = points[k + 1] - points[k]
-            length = float(np.linalg.norm(way))
-            direction = way if length > LEAST else axes[0]
-            middle = 0.5 * (points[k] + points[k + 1])
-            link.put(middle, direction, length, radius if length > LEAST else 0.0)
-        for hub, axis, point in zip(self.hubs, axes, points[1:]):
-            hub.put(point, axis, 2.8 * radius, 1.5 * radius)
+        for place, link in zip(self.places, self.arm.links(self.joints)):
+            set_matrix(place, work @ link)
+
+    def _build(self, links):
+        """Nodes of the links, to be placed."""
+        for name, parts in zip(LINKS, links):
+            place, solid = coin.SoMatrixTransform(), coin.SoSeparator()
+            for colour, (points, faces) in zip((LINK, HUB), parts):
+                if len(faces):
+                    shape = triangles(points, faces, CREASE, True)
+                    solid.addChild(separator(material(colour), shape))
+            self.root.addChild(separator(place, solid))
+            self.places.append(place)
+            if solid.getNumChildren():
+                self.bodies[name] = solid
 
     def _solve(self, base_from_tcp, index):
         """Joints in rad: those with which the path is followed, else the nearest to the last."""

@@ -1,0 +1,28 @@
+"""A whole program followed by the robot: its joints, and what its arm runs into. No grinding."""
+
+from ..engine import core
+from . import collision, events, reach
+
+
+def follow(path, robot, job=None, context=None):
+    """``reach.reach`` of a core.ToolPath, its events with those of the arm's collisions.
+
+    ``robot``: as in a job, with its defaults. ``job``: a validated job for what the arm may meet (part,
+    stock, wheel, bodies); None: only the joints are looked at. ``warnings``: of what was read. Raises
+    InputError, Cancelled.
+    """
+    from ..job.workpiece import read_design
+
+    context = context or core.RunContext()
+    found = reach.reach(path, robot, context=context.part(0.0, 0.5))
+    found["warnings"] = []
+    if job is None:
+        return found
+    shape = read_design(job["design"], context)
+    met = collision.check(
+        {**job, "robot": robot}, shape, [path], found["warnings"], context.part(0.5, 1.0), [found]
+    )
+    for one in met:
+        found["events"] = events.merge([(0, 0.0, found["events"] + one["events"])])
+        found["pairs"] = one["pairs"]
+    return found

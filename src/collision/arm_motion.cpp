@@ -1,0 +1,131 @@
+#include "arm_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "path_motion.h"
+
+namespace beltgrinding {
+namespace {
+
+// Moments that are followed by themselves; they lie a step of the simulation apart.
+constexpr std::size_t kBlock = 512;
+
+struct Between {
+    std::size_t before, after;
+    double share;
+};
+
+Between between(double place, std::size_t moments) {
+    const std::size_t i = std::min(static_cast<std::size_t>(place), moments - 1);
+    return {i, std::min(i + 1, moments - 1), place - static_cast<double>(i)};
+}
+
+}  // namespace
+
+ArmTravel::ArmTravel(const ToolPath& path, const ArmInCell& arm) : path_(path), arm_(arm) {
+    for (std::size_t j = 0; j < 6; ++j) turned_[j].assign(1, 0.0);
+    for (std::size_t i = 1; i < arm.way.size(); ++i) {
+        Joints turned = Joints::Zero();
+        if (arm.way[i].joined) {
+            turned = arm.arm.geometric(arm.way[i].q) - arm.arm.geometric(arm.way[i - 1].q);
+        }
+        for (std::size_t j = 0; j < 6; ++j) {
+            turned_[j].push_back(turned_[j].back() +
+                                 std::abs(turned[static_cast<Eigen::Index>(j)]));
+        }
+    }
+}
+
+double ArmTravel::turn(std::size_t joint, double begin, double end) const {
+    if (moments() < 2) return 0.0;
+    return sum_at(turned_[joint], end) - sum_at(turned_[joint], begin);
+}
+
+Joints ArmTravel::joints(double place) const {
+    const auto [before, after, share] = between(place, moments());
+    const Joints &a = arm_.way[before].q, &b = arm_.way[after].q;
+    if (!arm_.way[after].joined) return share < 0.5 ? a : b;
+    return a + share * (b - a);
+}
+
+double ArmTravel::chain(std::size_t from, std::size_t to) const {
+    double length = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+        const Vec3 next =
+            k == 5 ? Vec3(arm_.arm.home().translation()) : arm_.arm.point(static_cast<int>(k + 1));
+        length += (next - arm_.arm.point(static_cast<int>(k))).norm();
+    }
+    return length;
+}
+
+ArmMotion::ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link, double reach)
+    : travel_(travel),
+      carried_(carried(other, travel.path().frames().holding)),
+      link_(link),
+      holder_from_first_(holder_from(other, travel.path().frames())) {
+    // The points of the link are moved by the joints before it; those of what is carried, against
+    // the link, by the joints behind it. Each moves them by its turn times their distance from its
+    // axis at most.
+    if (carried_) {
+        for (std::size_t j = link; j < 6; ++j) levers_[j] = travel.chain(j, 6) + reach;
+    } else {
+        for (std::size_t j = 0; j < link; ++j) levers_[j] = travel.chain(j, link - 1) + reach;
+    }
+}
+
+std::vector<PairMotion::Stretch> ArmMotion::stretches() const {
+    std::vector<Stretch> all;
+    const auto& way = travel_.arm().way;
+    for (std::size_t begin = 0; begin < way.size();) {
+        std::size_t end = begin;
+        while (end + 1 < way.size() && way[end + 1].joined) ++end;
+        add_stretches(all, begin, end, kBlock);
+        begin = end + 1;
+    }
+    return all;
+}
+
+double ArmMotion::way(double begin, double end) const {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < 6; ++j) {
+        if (levers_[j] > 0.0) sum += levers_[j] * travel_.turn(j, begin, end);
+    }
+    return sum;
+}
+
+Frame ArmMotion::base_from_tcp(double place) const {
+    const ArmInCell& arm = travel_.arm();
+    return arm.base_from_robot * arm.arm.forward(travel_.joints(place)) * arm.flange_from_tcp;
+}
+
+Frame ArmMotion::base_from_first(double place) const {
+    return carried_ ? Frame(base_from_tcp(place) * holder_from_first_) : holder_from_first_;
+}
+
+Frame ArmMotion::first_from_second(double place) const {
+    const ArmInCell& arm = travel_.arm();
+    return base_from_first(place).inverse() * arm.base_from_robot *
+           arm.arm.links(travel_.joints(place))[link_];
+}
+
+Frame ArmMotion::work_from_first(double place) const {
+    const CellFrames& cell = travel_.path().frames();
+    const Frame base_from_work = cell.holding == Holding::kToolInHand
+                                     ? cell.base_from_work
+                                     : Frame(base_from_tcp(place) * cell.tcp_from_work);
+    return base_from_work.inverse() * base_from_first(place);
+}
+
+double ArmMotion::time(double place) const {
+    const auto [before, after, share] = between(place, travel_.moments());
+    const auto& way = travel_.arm().way;
+    return way[before].time + share * (way[after].time - way[before].time);
+}
+
+std::uint32_t ArmMotion::pose(double place) const {
+    const auto [before, after, share] = between(place, travel_.moments());
+    return travel_.arm().way[share > 0.0 ? after : before].pose;
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,199 @@
+// The links of a robot's arm along a path, against a search by brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "beltgrinding/error.h"
+#include "collision/collision_check.h"
+#include "collision_mesh.h"
+
+namespace beltgrinding {
+namespace {
+
+/// An arm with a spherical wrist, joint 1 upright: column 400 mm, upper arm 450, forearm 420, 80 to
+/// the flange.
+RobotArm arm() {
+    RobotModel model;
+    const Vec3 origins[6] = {{0, 0, 400}, {25, 0, 0},  {0, 0, 450},
+                             {0, 0, 35},  {420, 0, 0}, {80, 0, 0}};
+    const Vec3 axes[6] = {{0, 0, 1}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+    for (std::size_t i = 0; i < 6; ++i) {
+        model.joints[i].parent_from_joint.translation() = origins[i];
+        model.joints[i].axis = axes[i];
+    }
+    return RobotArm(model);
+}
+
+TriangleMesh box(const Vec3& middle, const Vec3& half) {
+    TriangleMesh mesh;
+    for (int k = 0; k < 8; ++k) {
+        const Vec3 sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+        mesh.vertices.push_back((middle + half.cwiseProduct(sign)).cast<float>());
+    }
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
+/// A box about the way from each axis to the next, in the robot's base at joint angles 0.
+std::vector<CollisionBody> links(const RobotArm& arm) {
+    std::vector<CollisionBody> bodies;
+    for (std::size_t k = 0; k <= 6; ++k) {
+        const Vec3 begin = k == 0 ? Vec3::Zero() : arm.point(static_cast<int>(k) - 1);
+        const Vec3 end = k == 6 ? Vec3(arm.home().translation()) : arm.point(static_cast<int>(k));
+        const Vec3 half = (0.5 * (end - begin)).cwiseAbs() + Vec3::Constant(20.0);
+        bodies.push_back(
+            {"link " + std::to_string(k), Carrier::kLink, box(0.5 * (begin + end), half), 0.0, k});
+    }
+    return bodies;
+}
+
+PathPose pose(const Frame& at) {
+    PathPose p;
+    p.base_from_tcp = at;
+    p.feed = 100.0;
+    return p;
+}
+
+struct Case {
+    ArmInCell in_cell;
+    ToolPath path;
+};
+
+/// Random joint angles, some of the stretches between them not known.
+Case random_case(unsigned seed, const CellFrames& cell) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> angle(-1.2, 1.2);
+    ArmInCell in_cell{arm(), Frame(Eigen::Translation3d(10, -20, 30)),
+                      Frame(Eigen::Translation3d(0, 0, 60))};
+    std::vector<PathPose> poses;
+    for (std::uint32_t i = 0; i < 6; ++i) {
+        Joints q;
+        for (int j = 0; j < 6; ++j) q[j] = angle(random);
+        in_cell.way.push_back({q, 1.0 * i, i, i > 0 && i != 3});
+        poses.push_back(
+            pose(in_cell.base_from_robot * in_cell.arm.forward(q) * in_cell.flange_from_tcp));
+    }
+    return {in_cell, ToolPath(poses, cell)};
+}
+
+double brute(const Case& c, const CollisionBody& other, const CollisionMesh& mesh,
+             const CollisionBody& link, const CollisionMesh& link_mesh) {
+    constexpr int kParts = 400;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < c.in_cell.way.size(); ++i) {
+        if (!c.in_cell.way[i + 1].joined) continue;
+        for (int k = 0; k <= kParts; ++k) {
+            const double u = static_cast<double>(k) / kParts;
+            const Joints q = (1.0 - u) * c.in_cell.way[i].q + u * c.in_cell.way[i + 1].q;
+            Frame base_from_other = Frame::Identity();
+            if (other.carrier == Carrier::kTool) {
+                base_from_other = c.in_cell.base_from_robot * c.in_cell.arm.forward(q) *
+                                  c.in_cell.flange_from_tcp;
+            }
+            const Frame base_from_link =
+                c.in_cell.base_from_robot * c.in_cell.arm.links(q)[link.link];
+            least = std::min(
+                least,
+                mesh.nearest(link_mesh, base_from_other.inverse() * base_from_link).distance);
+        }
+    }
+    return least;
+}
+
+TEST(ArmCollision, LeastDistancesAreThoseOfAFineSearch) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        const Case c = random_case(seed, {});
+        std::vector<CollisionBody> bodies = links(c.in_cell.arm);
+        bodies.push_back({"post", Carrier::kBase, box({350, 250, 500}, {20, 20, 300})});
+        bodies.push_back({"spindle", Carrier::kTool, box({0, 0, 80}, {40, 150, 30})});
+        CollisionOptions options;
+        options.clearance = 30.0;
+        const auto found = check_collisions(c.path, bodies, options, {}, &c.in_cell);
+        std::map<std::pair<std::size_t, std::size_t>, double> least;
+        for (const auto& pair : found.pairs) least[{pair.first, pair.second}] = pair.distance;
+        std::size_t compared = 0;
+        for (std::size_t link = 0; link <= 6; ++link) {
+            const CollisionMesh link_mesh(bodies[link].mesh);
+            for (const std::size_t other : {std::size_t{7}, std::size_t{8}}) {
+                const bool expected = other == 7 ? link > 0 : link < 5;
+                ASSERT_EQ(least.count({other, link}), expected ? 1u : 0u) << other << ' ' << link;
+                if (!expected) continue;
+                const CollisionMesh mesh(bodies[other].mesh);
+                const double fine = brute(c, bodies[other], mesh, bodies[link], link_mesh);
+                const double told = least[{other, link}];
+                // Below the clearance within the resolution; beyond, a quarter of it is sure.
+                if (fine < options.clearance - 1.0) {
+                    EXPECT_NEAR(told, fine, 0.3) << seed << ' ' << other << ' ' << link;
+                } else {
+                    EXPECT_GT(told, 0.25 * fine);
+                    EXPECT_LT(told, 1.35 * fine + 0.1);
+                }
+                ++compared;
+            }
+        }
+        EXPECT_EQ(compared, 11u);
+        EXPECT_EQ(least.count({7, 8}), 1u);  // as without an arm
+    }
+}
+
+TEST(ArmCollision, TheFootInThePartIsACollisionFromTheStart) {
+    const Case c = random_case(1, {});
+    std::vector<CollisionBody> bodies = links(c.in_cell.arm);
+    bodies.push_back({"part", Carrier::kPart, box({10, -20, 100}, {300, 300, 20})});
+    const auto found = check_collisions(c.path, bodies, {}, {}, &c.in_cell);
+    const auto hit = std::find_if(found.events.begin(), found.events.end(), [](const Event& event) {
+        return event.bodies == std::vector<std::string>{"part", "link 0"};
+    });
+    ASSERT_NE(hit, found.events.end());
+    EXPECT_EQ(hit->kind, "collision");
+    EXPECT_EQ(hit->time, 0.0);
+    EXPECT_EQ(hit->pose, 0u);
+}
+
+TEST(ArmCollision, ABodyIsMetOnTheArcOfTheJointsAtItsTime) {
+    // Joint 1 turns by 90 degrees in 2 s: a post at 45 degrees is met before half the time.
+    ArmInCell in_cell{arm()};
+    Joints q = Joints::Zero(), turned = q;
+    turned[0] = M_PI / 2;
+    in_cell.way = {{q, 0.0, 0, false}, {turned, 2.0, 1, true}};
+    const ToolPath path({pose(in_cell.arm.forward(q)), pose(in_cell.arm.forward(turned))}, {});
+    const double x = 350.0 * std::cos(M_PI / 4);
+    std::vector<CollisionBody> bodies = links(in_cell.arm);
+    bodies.push_back({"post", Carrier::kBase, box({x, x, 885}, {5, 5, 100})});
+    const auto found = check_collisions(path, bodies, {}, {}, &in_cell);
+    const auto hit = std::find_if(found.events.begin(), found.events.end(), [](const Event& event) {
+        return event.bodies == std::vector<std::string>{"post", "link 4"};
+    });
+    ASSERT_NE(hit, found.events.end());
+    EXPECT_EQ(hit->kind, "collision");
+    EXPECT_GT(hit->time, 0.8);
+    EXPECT_LT(hit->time, 1.0);
+    EXPECT_GT(hit->time + hit->duration, 1.0);
+    EXPECT_NEAR(hit->point.z(), 885.0, 25.0);
+    // As a stretch that is not known, it is not ground for a collision.
+    in_cell.way[1].joined = false;
+    for (const Event& event : check_collisions(path, bodies, {}, {}, &in_cell).events) {
+        EXPECT_NE(event.bodies[0], "post") << event.bodies[1];
+    }
+}
+
+TEST(ArmCollision, LinksNeedAnArmAndANumber) {
+    const Case c = random_case(1, {});
+    std::vector<CollisionBody> bodies = links(c.in_cell.arm);
+    EXPECT_THROW(check_collisions(c.path, bodies, {}), InputError);
+    bodies[6].link = 7;
+    EXPECT_THROW(check_collisions(c.path, bodies, {}, {}, &c.in_cell), InputError);
+    // Nowhere in reach, nothing is said of the arm.
+    bodies[6].link = 6;
+    bodies.push_back({"part", Carrier::kPart, box({0, 0, 100}, {300, 300, 20})});
+    EXPECT_TRUE(check_collisions(c.path, bodies, {}, {},
+                                 std::make_unique<ArmInCell>(ArmInCell{arm()}).get())
+                    .pairs.empty());
+}
+
+}  // namespace
+}  // namespace beltgrinding

@@ -1099,6 +1099,10 @@
         <source>how thick foot, column, upper arm, elbow, forearm, wrist and flange are, as seven radii for collisions of the arm, mm; 0: that link has no body; empty: estimated from the arm&apos;s length</source>
         <translation>wie dick Fuß, Säule, Oberarm, Ellbogen, Unterarm, Handgelenk und Flansch sind: sieben Radien für Kollisionen des Arms, mm; 0: dieses Glied hat keinen Körper; leer: aus der Länge des Arms geschätzt</translation>
     </message>
+    <message>
+        <source>laid as a first proposal, and nobody has looked at it since</source>
+        <translation>als erster Vorschlag gelegt, und seitdem hat niemand danach gesehen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3141,10 +3145,6 @@ im Mittel {} abgetragen</translation>
         <translation>unbekannt</translation>
     </message>
     <message>
-        <source>{:.2f} % in tolerance, {:.2f} % too high, {:.2f} % too deep</source>
-        <translation>{:.2f} % in Toleranz, {:.2f} % zu hoch, {:.2f} % zu tief</translation>
-    </message>
-    <message>
         <source>{}: thickness</source>
         <translation>{}: Dicke</translation>
     </message>
@@ -3247,6 +3247,38 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>looking for collisions is turned off</source>
         <translation>die Suche nach Kollisionen ist ausgeschaltet</translation>
+    </message>
+    <message>
+        <source>Chosen from the part: wheel, force, passes, samples, and the feed at which the allowance comes off on the mean, if K is right: K is not known before the belt is calibrated.</source>
+        <translation>Nach dem Bauteil gewählt: Scheibe, Kraft, Bahnen, Abtastung und der Vorschub, bei dem das Aufmaß im Mittel abgeht, wenn K stimmt: K ist erst bekannt, wenn das Band kalibriert ist.</translation>
+    </message>
+    <message>
+        <source>It takes the place of the passes that were proposed: {}</source>
+        <translation>Es ersetzt die vorgeschlagenen Bahnen: {}</translation>
+    </message>
+    <message>
+        <source>Lay passes on the faces</source>
+        <translation>Bahnen auf die Flächen legen</translation>
+    </message>
+    <message>
+        <source>Looking at the part for first values</source>
+        <translation>Das Bauteil wird nach ersten Werten untersucht</translation>
+    </message>
+    <message>
+        <source>Off: the job gets a robot program of yours</source>
+        <translation>Aus: Der Auftrag bekommt ein eigenes Roboterprogramm</translation>
+    </message>
+    <message>
+        <source>Removal and belt wear</source>
+        <translation>Abtrag und Bandverschleiß</translation>
+    </message>
+    <message>
+        <source>So many samples take some {:.1f} GB, and minutes; {:.2g} mm would be {:,.0f}.</source>
+        <translation>So viele Abtastpunkte brauchen rund {:.1f} GB und Minuten; {:.2g} mm wären {:,.0f}.</translation>
+    </message>
+    <message>
+        <source>{:.2f} % in tolerance, {:.2f} % too much left, {:.2f} % cut too deep</source>
+        <translation>{:.2f} % in Toleranz, {:.2f} % zu viel übrig, {:.2f} % zu tief</translation>
     </message>
 </context>
 <context>

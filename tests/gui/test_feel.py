@@ -412,9 +412,11 @@ type_in("Spacing", "0 mm")
 press("OK")
 assert field("note").isVisible()
 type_in("Spacing", "1 mm")
+field("layPasses").click()
 press("OK")
+assert [o.Label for o in doc.BeltGrindingJob.Group] == ["Stock", "Belt machine"]
 menu("Simulate")
-wait(lambda: "add one" in log.toPlainText(), 10)
+wait(lambda: "import one" in log.toPlainText(), 10)
 settle()
 assert not dock.isVisible()
 """,

@@ -59,10 +59,14 @@ press("Cancel")
 assert [o.Name for o in doc.Objects] == names
 assert doc.UndoCount == steps
 
-# Every panel's OK was one step.
-for left in (["Stock", "BeltMachine"], ["Stock"], []):
-    doc.undo()
-    assert [o.Name for o in job.Group] == left
+# Every panel's OK was one step; the imported program took the place of the proposed passes.
+doc.undo()
+assert {o.Name for o in job.Group} == {"Stock", "BeltMachine", "RasterPath"}
+assert doc.BeltMachine.WheelRadius.Value == 60
+doc.undo()
+assert doc.BeltMachine.WheelRadius.Value != 60 and doc.Stock.Allowance.Value == 0.2
+doc.undo()
+assert doc.Stock.Allowance.Value == 0.3
 doc.undo()
 assert [o.Name for o in doc.Objects] == ["Block"]
 for _ in range(4):

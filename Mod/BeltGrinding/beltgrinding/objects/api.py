@@ -6,6 +6,7 @@ mend, and leaves the document as it was.
 """
 
 from . import job_object
+from .first_settings import set_up
 from .exchange import export_job, open_example, open_job
 from .inspection import (
     compare_scan,
@@ -52,6 +53,7 @@ __all__ = [
     "make_verdict",
     "open_example",
     "open_job",
+    "set_up",
     "set_zones",
     "simulate",
     "store_result",

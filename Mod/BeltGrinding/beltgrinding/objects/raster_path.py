@@ -63,6 +63,9 @@ class RasterPath(RobotPath):
             obj.addProperty(
                 "App::PropertyLinkSubListGlobal", "Faces", "Passes", "the faces with the passes"
             )
+        if "Proposed" not in obj.PropertiesList:
+            text = "laid as a first proposal, and nobody has looked at it since"
+            obj.addProperty("App::PropertyBool", "Proposed", "Passes", text, 4)
         add_keys(obj, KEYS)
         add_outputs(obj, OUTPUTS)
         for name in ("Source", "SourceObject"):

@@ -17,16 +17,17 @@ def simulate(job, context=None, write_to=None):
     return store_result(job, result, job_inputs.fingerprint(job))
 
 
-def store_result(job, result, fingerprint):
+def store_result(job, result, fingerprint, files=None):
     """Puts a ``job.Result`` into the job's Simulation and returns that. ``fingerprint``: of the
-    inputs that the run had (``job_object.fingerprint``); the job marks others as out of date.
+    inputs that the run had (``job_object.fingerprint``); the job marks others as out of date. ``files``:
+    what ``simulation.files_of`` gives, if it is there already.
     """
     simulation = child(job, results.Simulation)
     if simulation is None:
         simulation = job.Document.addObject("App::FeaturePython", "Simulation")
         results.Simulation(simulation)
         job.addObject(simulation)
-    results.store(simulation, result, fingerprint)
+    results.store(simulation, result, fingerprint, files)
     simulation.touch()
     job.Document.recompute()
     return simulation

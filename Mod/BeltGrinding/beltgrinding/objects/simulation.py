@@ -97,13 +97,19 @@ class Simulation(Proxy):
         return event_lists.complete(json.loads(obj.EventData or "[]"))
 
 
-def store(obj, result, fingerprint):
-    """Puts a ``job.Result`` into a Simulation object."""
+def files_of(result):
+    """{name of property: bytes} of the HDF5 files of a ``job.Result``; may be called in any thread."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
     files = {"HeightField": result.field.hdf5(json.dumps(job))}
     if result.recording is not None:
         steps = {name: values.tolist() for name, values in result.steps.items()}
         files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
+    return files
+
+
+def store(obj, result, fingerprint, files=None):
+    """Puts a ``job.Result`` into a Simulation object; ``files``: ``files_of`` it, if they are there."""
+    files = files or files_of(result)
     try:
         _store(obj, result, files)
     except BaseException:

@@ -67,25 +67,25 @@ def raster(job, settings, context=None):
     faces = _checked_faces(chosen, shape)
     area = sum(shape.face_area(face) for face in faces)
     spacing = settings["sampling_mm"] or _sampling(area, settings)
-    surfaces = _surfaces(job, shape, faces, spacing, settings, warnings, context)
+    sheets = surfaces(job, shape, faces, spacing, settings, warnings, context)
     step_over, width = settings["step_over_mm"], None
     if step_over == 0:
-        width = contact_width(job, settings, surfaces, warnings)
+        width = contact_width(job, settings, sheets, warnings)
         step_over = settings["step_over_share"] * width
     finer = _finer(area, step_over)
     if not settings["sampling_mm"] and spacing > finer:
         spacing = finer
-        surfaces = _surfaces(job, shape, faces, spacing, settings, [], context)
+        sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     cell = passes.cell_of(job)
-    lever = passes.lever(cell, np.vstack([s["points"] for s in surfaces]))
-    found = _lines(surfaces, settings, step_over, spacing, lever, warnings, context)
+    lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
+    found = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
     result = passes.assemble(found, settings, cell)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
             "no pass is left on the faces; lower min_length_mm, or give another direction",
         )
-    result["fit"] = _fit(job, settings, surfaces, result, warnings, context)
+    result["fit"] = _fit(job, settings, sheets, result, warnings, context)
     result.update(
         step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
     )
@@ -119,7 +119,7 @@ def _finer(area, step_over):
     return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
-def _surfaces(job, shape, faces, spacing, settings, warnings, context):
+def surfaces(job, shape, faces, spacing, settings, warnings, context):
     """What passes are laid on: each face by itself for u and v, all together for a direction. List
     of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
     """
@@ -134,7 +134,7 @@ def _surfaces(job, shape, faces, spacing, settings, warnings, context):
             "raster.faces_too_small", "the faces are too small for the sampling; lower sampling_mm"
         )
     if settings["along"] == "direction":
-        scalars = points @ _across(settings["direction"], points, normals, field.areas)
+        scalars = points @ planes_across(settings["direction"], points, normals, field.areas)
         whole = {"points": points, "normals": normals, "triangles": triangles}
         return [{**whole, "scalars": scalars[triangles], "period": 0.0, "name": ""}]
     axis = 1 if settings["along"] == "u" else 0  # what does not change along a pass
@@ -162,7 +162,7 @@ def _surfaces(job, shape, faces, spacing, settings, warnings, context):
     return result
 
 
-def _across(direction, points, normals, areas):
+def planes_across(direction, points, normals, areas):
     """Unit vector across the passes: the normal of the planes that cut them."""
     along = np.asarray(direction, dtype=float)
     length = np.linalg.norm(along)
@@ -191,7 +191,7 @@ def _across(direction, points, normals, areas):
     return across / np.linalg.norm(across)
 
 
-def _curvature(surface):
+def curvature_along_and_across(surface):
     """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
     surface is convex, and the triangles' areas: from how the normals change along the edges.
     """
@@ -235,7 +235,7 @@ def contact_width(job, settings, surfaces, warnings):
             "{key}: a rigid tool has no contact width; give a step-over in mm",
             key="raster.step_over_mm",
         )
-    across, areas = zip(*(_curvature(s)[1:] for s in surfaces))
+    across, areas = zip(*(curvature_along_and_across(s)[1:] for s in surfaces))
     curvature = _median(np.concatenate(across), np.concatenate(areas))
     force = settings["force_N"] or options["force"]
     angle = -settings["belt_angle_deg"]  # of the pass against the belt

@@ -39,6 +39,8 @@ class NewJob(Command):
             document, translate("BeltGrinding", "New grinding job"), panel=True
         ) as step:
             job = api.make_job(links, **preferences.job_defaults())
+            text = translate("BeltGrinding", "Looking at the part for first values")
+            job.Proxy.proposed = api.set_up(job, text)
         if not step.failed:
             expand(job)
             edit(job)

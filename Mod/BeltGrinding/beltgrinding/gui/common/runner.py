@@ -4,11 +4,12 @@ import threading
 import time
 
 from ...engine import Cancelled, RunContext
-from ...objects import api, job_inputs
+from ...objects import api, job_inputs, simulation as results
 from ...simulation import run as runs
 from .compat import QtCore, translate
 
 POLL = 50  # ms
+MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 # Works whose end is being told. Who is told may let go of them, and PySide goes on using the object whose
 # method its timer has called: freed there, FreeCAD dies, rarely.
 _ending = set()
@@ -57,22 +58,26 @@ class Runner(Background):
     """One run. The job's data are collected here and now (raises InputError); the document is
     written only in the end, on the window's thread, in one undo transaction.
 
-    recording: an empty core.Recording, or None. progress(share): called while it runs; done(simulation or None, error or None): in the end.
+    recording: an empty core.Recording, or None. progress(share): called while it runs; done(simulation or
+    None, error or None): in the end. then(job): what belongs to the undo step of the result.
     """
 
-    def __init__(self, job, progress, done, recording=None):
+    def __init__(self, job, progress, done, recording=None, then=lambda job: None):
         self.document, self.name = job.Document, job.Name
         self.progress, self.ended = progress, done
         self.folder = job_inputs.scratch_folder()
         self.data = job_inputs.to_data(job, self.folder.name)
         self.fingerprint = job_inputs.fingerprint(job)
         self.start = time.monotonic()
-        self.recorded = recording
+        self.recorded, self.then = recording, then
         super().__init__(self.work, self._finish)
 
     def work(self, context):
-        """The ``job.Result``; in the thread."""
-        return runs.run(self.data, context, self.recorded)
+        """(``job.Result``, its files as the document keeps them); in the thread."""
+        result = runs.run(self.data, context, self.recorded)
+        if result.recording is not None and result.recording.bytes > MOST_RECORDED:
+            result.recording = None
+        return result, results.files_of(result)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""
@@ -103,13 +108,15 @@ class Runner(Background):
                 error = problem
         self.ended(simulation, error)
 
-    def _store(self, result):
+    def _store(self, outcome):
+        result, files = outcome
         job = self.job()
         if job is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
         self.document.openTransaction("Simulate")
         try:
-            simulation = api.store_result(job, result, self.fingerprint)
+            simulation = api.store_result(job, result, self.fingerprint, files)
+            self.then(job)
             self.document.commitTransaction()
             return simulation
         except BaseException:

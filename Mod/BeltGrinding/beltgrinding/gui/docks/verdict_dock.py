@@ -9,12 +9,13 @@ from ...objects.job_data import children, face_name
 from ...objects.robot_path import RobotPath
 from ...objects.section import forget_field
 from ..common.compat import QtCore, QtGui, translate
+from ..common.verdict_words import headline
 from ..scene import camera
 from ..scene.cell_view import CellView
 from ..scene.verdict_scene import VerdictScene
 from ..widgets.pose_walk import PoseTable
 from .object_dock import ObjectDock
-from .verdict_tables import cluster_rows, doubts, fill, headline, motion_rows, region_rows, table
+from .verdict_tables import cluster_rows, doubts, fill, motion_rows, region_rows, table
 
 WIDTH = 470  # pixels of the dock as it comes
 SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other

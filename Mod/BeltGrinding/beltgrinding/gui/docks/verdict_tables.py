@@ -46,27 +46,10 @@ def word(verdict):
     }[verdict]
 
 
-def headline(found):
-    """The verdict in one line."""
-    if found["overall"] == "pass":
-        return translate("BeltGrinding", "In tolerance")
-    if found["overall"] == "unknown":
-        return translate("BeltGrinding", "Cannot be told: not everything was inspected")
-    bad = sum(one["verdict"] == "fail" for one in found["faces"])
-    text = translate("BeltGrinding", "Not in tolerance: {} of {} faces").format(
-        bad, len(found["faces"])
-    )
-    if bad == 0:
-        text = translate("BeltGrinding", "Not in tolerance")
-    return text
-
-
 def doubts(found):
     """What the user must know besides, a line each."""
     lines = [
-        translate(
-            "BeltGrinding", "{:.2f} % in tolerance, {:.2f} % too high, {:.2f} % too deep"
-        ).format(100 * found["in_share"], 100 * found["above_share"], 100 * found["below_share"]),
+        shares(found),
         translate(
             "BeltGrinding", "Removed {:,.1f} mm³, left {:,.1f} mm³, too deep {:,.1f} mm³"
         ).format(

@@ -2,14 +2,22 @@
 
 import FreeCADGui as Gui
 
-from ...engine import InputError
-from ...objects import job_data
+from ...engine import Cancelled, InputError
+from ...objects import first_settings, job_data
+from ...objects.belt_machine import BeltMachine
+from ...objects.first_settings import proposed
+from ...objects.raster_path import RasterPath
+from ...objects.stock import Stock
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
-from ..widgets.form import Form
+from ..widgets.fold import Fold
+from ..widgets.form import NUMBERS, QUANTITIES, Form
 from .law_forms import LawForms
 from .panel import Panel
+
+MANY = 2_000_000  # samples; more are warned of
+SAMPLE_BYTES = 400  # of memory in a run, about
 
 
 def check_tolerance(job):
@@ -41,14 +49,18 @@ class JobPanel(Panel):
 
     def __init__(self, obj):
         super().__init__(obj, translate("BeltGrinding", "Belt-grinding job"), "BeltGrinding_Job")
+        self.first = getattr(obj.Proxy, "proposed", None)  # values of a new job, from its part
         self.body.addWidget(self._faces())
+        self.folds = [*self._whole()]
+        for fold in self.folds:
+            self.body.addWidget(fold)
         sampling = Form(obj, translate("BeltGrinding", "Sampling and tolerance"))
         sampling.add("Spacing", translate("BeltGrinding", "Sample spacing"))
         sampling.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
         sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         sampling.add("FlipNormals", translate("BeltGrinding", "Flip loose normals"))
-        self.body.addWidget(sampling)
+        self._fold("foldSampling", sampling, self._sampling_text, folded=False)
         self.timing = Form(obj, translate("BeltGrinding", "Robot's speed"))
         timings = {
             "constant_feed": translate("BeltGrinding", "Constant feed"),
@@ -63,9 +75,11 @@ class JobPanel(Panel):
         )
         self.arrange_timing()
         self.law = LawForms(obj)
-        self.body.addWidget(self.law)
-        self.body.addWidget(self.timing)
-        self.forms = (sampling, self.timing, self.law)
+        title = translate("BeltGrinding", "Removal and belt wear")
+        new = self.first is not None
+        self._fold("foldLaw", self.law, self._law_text, title, new)
+        text = self.timing.rows["Timing"][1].currentText
+        self._fold("foldTiming", self.timing, text, folded=new)
         self.sampling = sampling
         sampling.changed = self.estimate
         self.timing.changed = self.arrange_timing
@@ -73,6 +87,72 @@ class JobPanel(Panel):
         Gui.Selection.addSelectionGate(FaceGate())
         self.tint = FaceTint(self.document)
         self.estimate()
+
+    def _fold(self, name, content, summary, title="", folded=False):
+        """Adds a part of the panel that folds."""
+        if isinstance(content, QtGui.QGroupBox):
+            title = title or content.title()
+            content.setTitle("")
+        fold = Fold(name, title, content, summary, folded)
+        self.body.addWidget(fold)
+        self.folds.append(fold)
+
+    def _sampling_text(self):
+        lower, upper = (f"{v.Value:+g}" for v in (self.obj.ToleranceLower, self.obj.ToleranceUpper))
+        return f"{lower} … {upper} mm; {self.obj.Spacing.UserString}"
+
+    def _law_text(self):
+        return f"K = {self.obj.LawCoefficient:.3g} mm²/N" if self.obj.Law != "geometric" else ""
+
+    def _whole(self):
+        """Stock, machine and passes, in short; each has a panel of its own with all there is to it."""
+        new = self.first is not None
+        stock = job_data.child(self.obj, Stock)
+        if stock is not None and stock.Kind == "allowance":
+            form = Form(stock, "")
+            form.add("Allowance", translate("BeltGrinding", "Allowance"))
+            form.changed = self.estimate
+            yield Fold(
+                "foldStock",
+                translate("BeltGrinding", "Stock"),
+                form,
+                lambda: stock.Allowance.UserString,
+                not new,
+            )
+        machine = job_data.child(self.obj, BeltMachine)
+        if machine is not None:
+            form = Form(machine, "")
+            form.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
+            form.add("WheelWidth", translate("BeltGrinding", "Wheel width"))
+            form.add("Force", translate("BeltGrinding", "Force"))
+            form.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+            yield Fold(
+                "foldMachine",
+                translate("BeltGrinding", "Belt machine"),
+                form,
+                lambda: f"R {machine.WheelRadius.Value:g} × {machine.WheelWidth.Value:g} mm",
+                not new,
+            )
+        self.passes = None
+        paths = [path for path in job_data.children(self.obj, RasterPath) if proposed(path)]
+        if paths and new:
+            box = QtGui.QWidget()
+            layout = QtGui.QVBoxLayout(box)
+            layout.setContentsMargins(0, 0, 0, 0)
+            self.passes = QtGui.QCheckBox(translate("BeltGrinding", "Lay passes on the faces"))
+            self.passes.setObjectName("layPasses")
+            self.passes.setToolTip(
+                translate("BeltGrinding", "Off: the job gets a robot program of yours")
+            )
+            self.passes.setChecked(True)
+            form = Form(paths[0], "")
+            form.add("Feed", translate("BeltGrinding", "Feed"))
+            form.add("StepOverShare", translate("BeltGrinding", "Share of contact width"))
+            self.passes.toggled.connect(form.setVisible)
+            layout.addWidget(self.passes)
+            layout.addWidget(form)
+            title = translate("BeltGrinding", "Passes")
+            yield Fold("foldPasses", title, box, lambda: paths[0].Feed.UserString)
 
     def arrange_timing(self):
         """Shows the accelerations only where they matter."""
@@ -129,7 +209,24 @@ class JobPanel(Panel):
     def set_pairs(self, pairs):
         self.obj.DesignFaces = [(obj, (sub,)) for obj, sub in pairs]
         self.fill()
+        if self.first is not None and "feed_mm_s" in self.first and pairs:
+            self.propose()
         self.estimate()
+
+    def propose(self):
+        """Looks at other faces; what the user has changed stays."""
+        text = translate("BeltGrinding", "Looking at the part for first values")
+        try:
+            found = first_settings.propose(self.obj, text)
+        except (InputError, Cancelled) as error:
+            self.first["notes"] = [error]
+            return
+        first_settings.apply(self.obj, found, self.first)
+        self.first = self.obj.Proxy.proposed = found
+        for form in self.form.findChildren(Form):
+            for name in form.rows:
+                if form.obj.getTypeIdOfProperty(name) in QUANTITIES | NUMBERS:
+                    form.refresh(name)
 
     def estimate(self):
         """Says what the settings will cost."""
@@ -146,11 +243,30 @@ class JobPanel(Panel):
         self.tint.show([shape.Faces[number - 1] for number in numbers] if seen else [])
         area = sum(shape.Faces[number - 1].Area for number in numbers)
         count = area / self.obj.Spacing.Value**2
-        self.tell(
+        lines = [
             translate(
                 "BeltGrinding", "Faces: {}. Area: {:,.0f} mm². Samples: about {:,.0f}."
             ).format(len(numbers), area, count)
-        )
+        ]
+        if count > MANY:
+            lines.append(
+                translate(
+                    "BeltGrinding",
+                    "So many samples take some {:.1f} GB, and minutes; {:.2g} mm would be {:,.0f}.",
+                ).format(count * SAMPLE_BYTES / 1e9, (area / MANY * 2) ** 0.5, MANY / 2)
+            )
+        if self.first is not None:
+            lines += [f"⚠ {error_text(note)}" for note in self.first["notes"]]
+            if "feed_mm_s" in self.first:
+                lines.append(
+                    translate(
+                        "BeltGrinding",
+                        "Chosen from the part: wheel, force, passes, samples, and the feed at which the "
+                        "allowance comes off on the mean, if K is right: K is not known before the belt "
+                        "is calibrated.",
+                    )
+                )
+        self.tell("\n".join(lines), count > MANY)
 
     def check(self):
         if self.obj.Spacing.Value <= 0:
@@ -158,6 +274,11 @@ class JobPanel(Panel):
         check_tolerance(self.obj)
         job_data.design(self.obj)
 
+    def apply(self):
+        if self.passes is not None and not self.passes.isChecked():
+            first_settings.replace_proposed(self.obj)
+
     def close(self):
+        self.obj.Proxy.proposed = None
         Gui.Selection.removeSelectionGate()
         self.tint.close()

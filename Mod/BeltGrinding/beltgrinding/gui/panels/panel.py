@@ -30,8 +30,8 @@ class Panel:
         self.note.hide()
 
     def finish(self):
-        """Puts the line for messages below the fields; call it last in __init__."""
-        self.body.addWidget(self.note)
+        """Puts the line for messages above the fields, under the buttons; call it last in __init__."""
+        self.body.insertWidget(0, self.note)
         self.body.addStretch()
 
     def tell(self, text, error=False):
@@ -42,6 +42,9 @@ class Panel:
 
     def check(self):
         """Raises InputError for what must be mended before OK."""
+
+    def apply(self):
+        """What OK does once all is checked, before the document is recomputed."""
 
     def close(self):
         """Called when the panel goes, whatever the button."""
@@ -59,6 +62,7 @@ class Panel:
             self.tell(error_text(error), True)
             FreeCAD.Console.PrintWarning(f"{self.obj.Label}: {error_text(error)}\n")
             return False
+        self.apply()
         self.close()
         self.document.recompute()
         self.document.commitTransaction()

@@ -108,12 +108,13 @@ class ProgramPanel(Panel):
         obj = self.obj
         if "Touched" in obj.State:
             obj.recompute()
-        self.tell(
-            translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
-                obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
-            )
+        text = translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
+            obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
         )
+        note = getattr(obj.Proxy, "note", "")  # of its import
+        self.tell("\n".join(filter(None, (text, note))))
 
     def close(self):
         _open.remove(self)
+        self.obj.Proxy.note = ""
         self.walk.release()

@@ -171,6 +171,7 @@ class RasterPanel(Panel):
     def check(self):
         self.timer.stop()
         raster_path.generate(self.obj)
+        self.obj.Proposed = False
 
     def close(self):
         self.timer.stop()

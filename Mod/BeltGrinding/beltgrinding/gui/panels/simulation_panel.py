@@ -1,9 +1,12 @@
 """Task panel of the simulation: progress and Cancel, then figures and events."""
 
+import json
+
 import FreeCADGui as Gui
 
-from ...engine import InputError
-from ...objects import job_data, report_data
+from ...engine import InputError, core
+from ...objects import api, job_data, report_data
+from ...objects.deviation import Deviation
 from ...objects.job_data import child
 from ...objects.simulation import Simulation
 from ...objects.verdict import limits_changed
@@ -11,6 +14,7 @@ from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..common.runner import Runner
+from ..common.verdict_words import headline, shares
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
 from .run_panel import RunPanel
@@ -54,7 +58,7 @@ class SimulationPanel(RunPanel):
     def make_runner(self):
         self.moment.close()
         self.moment = EventMoment(self.job)
-        return Runner(self.job, self.progress, self.done)
+        return Runner(self.job, self.progress, self.done, core.Recording(), lay_deviation)
 
     def show(self, simulation):
         """Figures and events of a result."""
@@ -70,6 +74,9 @@ class SimulationPanel(RunPanel):
             )
         else:
             text = translate("BeltGrinding", "Done.")
+        judged = json.loads(simulation.VerdictData or "{}").get("verdict")
+        if judged and not simulation.OutOfDate and not limits_changed(self.job, simulation):
+            text = f"{headline(judged)}\n{shares(judged)}"
         self._say(text, simulation.OutOfDate)
         self.figures.setText(
             translate(
@@ -116,6 +123,16 @@ class SimulationPanel(RunPanel):
     def reject(self):
         self.moment.close()
         return super().reject()
+
+
+def lay_deviation(job):
+    """Shows a job's result in colour over its part; in the undo step that stores it."""
+    made = job_data.child(job, Deviation) is None
+    deviation = api.make_deviation(job)
+    deviation.ViewObject.Visibility = True
+    if made:
+        for part in {obj for obj, _ in job.DesignFaces}:
+            part.ViewObject.Visibility = False
 
 
 def show_result(simulation):

@@ -1,0 +1,25 @@
+"""A verdict in a line or two, in the language of the window."""
+
+from .compat import translate
+
+
+def headline(found):
+    """The verdict in one line."""
+    if found["overall"] == "pass":
+        return translate("BeltGrinding", "In tolerance")
+    if found["overall"] == "unknown":
+        return translate("BeltGrinding", "Cannot be told: not everything was inspected")
+    bad = sum(one["verdict"] == "fail" for one in found["faces"])
+    text = translate("BeltGrinding", "Not in tolerance: {} of {} faces").format(
+        bad, len(found["faces"])
+    )
+    if bad == 0:
+        text = translate("BeltGrinding", "Not in tolerance")
+    return text
+
+
+def shares(found):
+    """How much of the area lies in tolerance, and on which side the rest."""
+    return translate(
+        "BeltGrinding", "{:.2f} % in tolerance, {:.2f} % too much left, {:.2f} % cut too deep"
+    ).format(100 * found["in_share"], 100 * found["above_share"], 100 * found["below_share"])

@@ -1,0 +1,35 @@
+"""A part of a panel that folds away under its title; folded, the title tells what is in it."""
+
+from ..common.compat import QtCore, QtGui
+
+
+class Fold(QtGui.QWidget):
+    """``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
+    title while it is folded."""
+
+    def __init__(self, name, title, content, summary=lambda: "", folded=False):
+        super().__init__()
+        self.title, self.summary, self.content = title, summary, content
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        self.head = QtGui.QToolButton()
+        self.head.setObjectName(name)
+        self.head.setAutoRaise(True)
+        self.head.setToolButtonStyle(QtCore.Qt.ToolButtonTextBesideIcon)
+        self.head.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
+        self.head.setStyleSheet("QToolButton { text-align: left; font-weight: bold; }")
+        self.head.clicked.connect(lambda: self.fold(not self.content.isHidden()))
+        if isinstance(content, QtGui.QGroupBox):
+            content.setFlat(True)
+        layout.addWidget(self.head)
+        layout.addWidget(content)
+        self.fold(folded)
+
+    def fold(self, folded):
+        """Folds it away, or unfolds it."""
+        self.content.setVisible(not folded)
+        self.head.setArrowType(QtCore.Qt.RightArrow if folded else QtCore.Qt.DownArrow)
+        told = self.summary() if folded else ""
+        self.head.setText(f"{self.title}: {told}" if told else self.title)
+        self.head.setToolTip(self.head.text())

@@ -1,0 +1,103 @@
+"""A job's stock, machine and passes, with first values chosen from the part (raster/proposal.py)."""
+
+from ..engine import InputError
+from ..job import load as jobs
+from ..job.workpiece import OwnBrep
+from ..raster import proposal
+from . import job_data, job_inputs, waiting
+from .belt_machine import BeltMachine
+from .job_data import child, children, design, required
+from .raster_path import RasterPath
+from .set_up import make_belt_machine, make_raster, make_stock
+from .stock import Stock
+
+
+def set_up(job, text=""):
+    """Gives a job what it lacks of stock, belt machine and passes, with first values from the part. Returns
+    what ``propose`` gives; where no passes can be laid on the faces, dict(notes: the reason) alone, and the
+    job gets stock and machine with their defaults. ``text``: what a window says meanwhile. Raises Cancelled;
+    the job is then half made: the caller takes it back.
+    """
+    if child(job, Stock) is None:
+        make_stock(job)
+    if child(job, BeltMachine) is None:
+        make_belt_machine(job)
+    try:
+        found = propose(job, text)
+    except InputError as error:
+        return {"notes": [error]}
+    if not children(job, RasterPath):
+        path = make_raster(job, compute=False)
+        path.Proposed = True
+    apply(job, found)
+    return found
+
+
+def propose(job, text=""):
+    """First settings for the job's faces, stock, law and belt, as ``proposal.propose`` gives them."""
+    with job_inputs.scratch_folder() as folder:
+        data = job_inputs.without_geometry(job)
+        shape, data["design"]["faces"] = design(job)
+        data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
+        stock = required(job, Stock, "stock")
+        data["stock"] = stock.Proxy.to_job(stock, folder)
+        data["programs"] = [{"poses": []}]
+        data = jobs.validate(data, folder)
+        return waiting.wait(lambda context: proposal.propose(data, context), text)
+
+
+def values(job, found):
+    """{object: {property: value}} of a proposal."""
+    return {
+        job: {"Spacing": found["spacing_mm"]},
+        child(job, BeltMachine): {
+            "WheelRadius": found["wheel_radius_mm"],
+            "WheelWidth": found["wheel_width_mm"],
+            "RimThickness": found["rim_thickness_mm"],
+            "Force": f"{found['force_N']} N",
+        },
+        **{
+            path: {
+                "Along": "direction",
+                "Direction": tuple(found["direction"]),
+                "StepOverShare": found["step_over_share"],
+                "Feed": found["feed_mm_s"],
+                "ApproachFeed": found["approach_feed_mm_s"],
+            }
+            for path in children(job, RasterPath)
+            if proposed(path)
+        },
+    }
+
+
+def apply(job, found, before=None):
+    """Sets a proposal's values; of those that ``before``, an earlier one, has set, only what nobody has
+    changed since.
+    """
+    kept = {} if before is None else values(job, before)
+    for obj, wanted in values(job, found).items():
+        for name, value in wanted.items():
+            if before is None or _is(getattr(obj, name), kept[obj][name]):
+                setattr(obj, name, value)
+
+
+def _is(now, value):
+    if isinstance(value, str) and hasattr(now, "getValueAs"):
+        return abs(now.getValueAs(value.split()[1]).Value - float(value.split()[0])) < 1e-9
+    if isinstance(value, tuple):
+        return all(abs(a - b) < 1e-9 for a, b in zip(now, value))
+    return now == value if isinstance(value, str) else abs(float(now) - value) < 1e-9
+
+
+def proposed(path):
+    """Whether a raster path is a first proposal that nobody has looked at; older documents have none."""
+    return getattr(path, "Proposed", False)
+
+
+def replace_proposed(job):
+    """Removes the passes that were only proposed, for a program of the user's own; their labels."""
+    gone = [path for path in children(job, RasterPath) if proposed(path)]
+    labels = [path.Label for path in gone]
+    for path in gone:
+        job.Document.removeObject(path.Name)
+    return labels

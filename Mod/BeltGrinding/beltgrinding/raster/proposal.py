@@ -1,0 +1,262 @@
+"""First settings for a part: wheel, force, passes, feed, samples, chosen from the faces that are ground.
+
+Rules of thumb and one balance of volumes, for a first look that is near what the user wants; none of it
+replaces his knowledge of the machine. What is assumed is said.
+"""
+
+import copy
+import math
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job.workpiece import apply_stock, make_field, read_design
+from .raster_path import curvature_along_and_across, planes_across, raster, surfaces, validate
+
+# ISO 3, R10: radii of wheels and their widths, mm.
+RADII = (10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0)
+WIDTHS = (6.3, 8.0, 10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0)
+SAMPLES = 4000  # to look at the part
+HOLLOW = 0.98  # of the area: what is more hollow is a groove or a fillet, left to another tool
+FIT = 0.8  # of the hollow's radius: the wheel's
+UNFIT, REACHES, PLACES = 0.02, 0.5, 500  # of the area; mm deep; places that are looked at
+SAGITTA = 0.3  # mm that a rim gives way to a surface hollow across its width
+RIM_SHARE, RIM_MOST = 0.3, 15.0  # the rubber's thickness: of the radius; mm
+FORCE_PER_WIDTH = 1.5  # N/mm
+FORCES = (10.0, 60.0)  # N, chosen; a feed out of its range moves it, up to
+FORCE_MOST = 120.0  # N
+APPROACH_FEED = 200.0  # mm/s: the force presses on the way down, too
+FEEDS = (2.0, 150.0)  # mm/s that robots follow evenly
+STEP_SHARE = 0.5  # of the contact's width: every place lies under two passes
+ACROSS_WIDTH, ACROSS_SAMPLES = 20, 400_000  # samples across the contact; on the part, at most
+AXIS = math.cos(math.radians(10.0))  # a direction so near to an axis of the part is that axis
+
+
+def propose(job, context=None):
+    """Settings for a validated job's design, stock and law.
+
+    Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm, force_N, direction (3,), step_over_share,
+    feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what is to come off, area_mm2, length_mm of
+    the passes, notes: list of Fact). Raises InputError, Cancelled.
+    """
+    context = context or core.RunContext()
+    job, notes = copy.copy(job), []
+    shape = read_design(job["design"], context)
+    area, field = _look(job, shape, context)
+    middle, along = _principal(field)
+    settings = validate(
+        {
+            "along": "direction",
+            "direction": along.tolist(),
+            "step_over_share": STEP_SHARE,
+            "approach_feed_mm_s": APPROACH_FEED,
+        }
+    )
+    extent = float(np.ptp(field.points @ along))
+    radius, width = _wheel(job, shape, field, settings, area, extent, notes, context)
+    allowance = _allowance(job, field, notes, context)
+    machine = job["belt_machine"] = copy.deepcopy(job["belt_machine"])
+    _mount(machine, radius, width)
+    laid = raster(job, settings, context)
+    force, rim = machine["force_N"], machine["compliance"]["rim_thickness_mm"]
+    feed = _feed(job, settings, laid, allowance)
+    if feed is not None and not FEEDS[0] <= feed <= FEEDS[1]:
+        bound = min(max(feed, FEEDS[0]), FEEDS[1])
+        force = machine["force_N"] = _round(min(force * bound / feed, FORCE_MOST))
+        laid = raster(job, settings, context)
+        feed = _feed(job, settings, laid, allowance)
+        if not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]:
+            notes.append(
+                core.Fact(
+                    "raster.proposed_feed",
+                    "with this K the allowance comes off at a feed of {feed:.3g} mm/s, which a robot "
+                    "hardly follows: calibrate K, or take another belt or force",
+                    feed=feed,
+                )
+            )
+    spacing, samples = _spacing(area, laid["contact_width_mm"], notes)
+    return {
+        "wheel_radius_mm": radius,
+        "wheel_width_mm": width,
+        "rim_thickness_mm": rim,
+        "force_N": force,
+        "direction": along.tolist(),
+        "step_over_share": STEP_SHARE,
+        "feed_mm_s": _round(feed) if feed is not None else settings["feed_mm_s"],
+        "approach_feed_mm_s": APPROACH_FEED,
+        "spacing_mm": spacing,
+        "samples": samples,
+        "allowance_mm": allowance,
+        "area_mm2": area,
+        "length_mm": sum(one["length_mm"] for one in laid["passes"]),
+        "notes": notes,
+    }
+
+
+def _mount(machine, radius, width):
+    """Puts a cylindrical wheel, with rim and force to it, on a job's belt machine."""
+    machine["wheel"].update(radius_mm=radius, width_mm=width, crown_radius_mm=0.0, profile_mm=[])
+    rim = 0.5 * round(2.0 * min(RIM_SHARE * radius, RIM_MOST))
+    machine["compliance"].update(rim_thickness_mm=rim, layers=[])
+    force = min(max(FORCE_PER_WIDTH * width, FORCES[0]), FORCES[1])
+    machine["force_N"] = 5.0 * round(force / 5.0)
+
+
+def _look(job, shape, context):
+    """(mm2 of the faces, a coarse field of them)."""
+    faces = job["design"]["faces"] or range(1, shape.face_count + 1)
+    area = sum(shape.face_area(face - 1) for face in faces if face <= shape.face_count)
+    coarse = {**job, "sampling": {**job["sampling"], "spacing_mm": math.sqrt(area / SAMPLES)}}
+    coarse["design"] = {**job["design"], "faces": list(faces)}
+    return area, make_field(coarse, shape, [], context)
+
+
+def _principal(field):
+    """(middle, unit direction in which the faces are longest), snapped to an axis that is near; along the
+    faces, not through them.
+    """
+    points, weight = field.points, field.areas[:, None].astype(float)
+    middle = (points * weight).sum(axis=0) / weight.sum()
+    moved = points - middle
+    values, vectors = np.linalg.eigh((moved * weight).T @ moved)
+    mean = (field.normals * weight).sum(axis=0)
+    looks = mean / weight.sum()
+    found = vectors[:, -1]
+    if np.linalg.norm(looks) > 0.5 and abs(found @ looks) > 0.9 * np.linalg.norm(looks):
+        found = vectors[:, -2]  # a deep bowl: not along its depth
+    axis = int(np.argmax(np.abs(found)))
+    if abs(found[axis]) > AXIS:
+        found = np.eye(3)[axis]
+    found = np.round(found * (1.0 if found[axis] > 0 else -1.0), 4)
+    return middle, found + 0.0
+
+
+def _wheel(job, shape, field, settings, area, extent, notes, context):
+    """(radius, width), mm, of a cylindrical wheel."""
+    faces = [face - 1 for face in job["design"]["faces"] or range(1, shape.face_count + 1)]
+    parts = surfaces(job, shape, faces, math.sqrt(area / SAMPLES), settings, [], context)
+    along, across, weights = map(
+        np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))
+    )
+    hollow_along, hollow_across = (_quantile(np.maximum(-k, 0.0), weights) for k in (along, across))
+    most = min(FIT / hollow_along if hollow_along > 0 else math.inf, max(0.5 * extent, RADII[0]))
+    radius = max((r for r in RADII if r <= most), default=RADII[0])
+    if most < RADII[0]:
+        notes.append(
+            core.Fact(
+                "raster.proposed_radius",
+                "the faces are hollow with a radius of {radius:.3g} mm along the passes: no wheel fits",
+                radius=1.0 / hollow_along,
+            )
+        )
+    wide = min(
+        math.sqrt(8.0 * SAGITTA / hollow_across) if hollow_across > 0 else math.inf,
+        0.5 * area / max(extent, 1e-9),
+        radius,
+    )
+    width = max((w for w in WIDTHS if w <= wide), default=WIDTHS[0])
+    while (share := _inside(field, settings["direction"], radius, width)) > UNFIT:
+        smaller = [r for r in RADII if r < radius]
+        if not smaller:
+            notes.append(
+                core.Fact(
+                    "raster.proposed_unfit",
+                    "a wheel of {radius:.3g} mm radius, the smallest that is tried, still reaches into the "
+                    "faces on {share:.0f} % of the area",
+                    radius=radius,
+                    share=100.0 * share,
+                )
+            )
+            break
+        radius = smaller[-1]
+        width = min(width, max((w for w in WIDTHS if w <= radius), default=WIDTHS[0]))
+    return radius, width
+
+
+def _inside(field, direction, radius, width):
+    """Share of the area where a wheel that stands on a sample has other samples deep inside of it: across a
+    bore, in a corner.
+    """
+    points, normals = field.points, field.normals.astype(float)
+    across = planes_across(direction, points, normals, field.areas)
+    chosen = slice(None, None, max(1, len(points) // PLACES))
+    n, area = normals[chosen], field.areas[chosen].astype(float)
+    travel = np.cross(across, n)
+    length = np.linalg.norm(travel, axis=1)
+    sound = length > 0.1  # else the pass is no line there
+    n, area, travel = n[sound], area[sound], travel[sound] / length[sound, None]
+    centre = points[chosen][sound] + radius * n
+    bad = np.zeros(len(n), bool)
+    for i, (c, axis) in enumerate(zip(centre, np.cross(n, travel))):
+        way = points - c
+        beside = way @ axis
+        near = np.einsum("ij,ij->i", way, way) - beside**2 < (radius - REACHES) ** 2
+        bad[i] = bool((near & (np.abs(beside) < 0.5 * width)).any())
+    return float(area[bad].sum() / max(area.sum(), 1e-12))
+
+
+def _allowance(job, field, notes, context):
+    """mm that is to come off on the mean, to the middle of the tolerance."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    apply_stock(field, job["stock"], [], context)
+    weight = field.areas.astype(float)
+    sound = np.isfinite(field.height) & (weight > 0)
+    mean = float((field.height[sound] * weight[sound]).sum() / max(weight[sound].sum(), 1e-12))
+    wanted = mean - 0.5 * (lower + upper)
+    if wanted <= 0:
+        notes.append(
+            core.Fact(
+                "raster.proposed_nothing",
+                "on the mean there is no stock to come off: the feed is not chosen",
+            )
+        )
+    return wanted
+
+
+def _feed(job, settings, laid, allowance):
+    """mm/s at which K V_b F over the time in contact takes the allowance off the area; None if nothing
+    is to come off. K V_b times the integral of F dt is the volume removed (Hammann's law, summed). In
+    contact is also the last of each approach and the first of each retract, where the force control
+    follows.
+    """
+    if allowance <= 0:
+        return None
+    machine, law = job["belt_machine"], job["law"]
+    rate = law["coefficient_mm2_per_N"] * machine["belt_wear"] * 1000.0 * machine["belt_speed_m_s"]
+    length = sum(one["length_mm"] for one in laid["passes"])
+    plunge = min(machine["force_travel_mm"], settings["approach_mm"])
+    ends = 2.0 * len(laid["passes"]) * plunge / settings["approach_feed_mm_s"]
+    time = allowance * laid["area_mm2"] / (rate * machine["force_N"]) - ends
+    return length / time if time > 0 else math.inf
+
+
+def _spacing(area, contact_width, notes):
+    """(mm, samples): so many across the contact, if the part is not too large for that."""
+    wanted = contact_width / ACROSS_WIDTH
+    most = math.sqrt(area / ACROSS_SAMPLES)
+    if wanted < most:
+        notes.append(
+            core.Fact(
+                "raster.proposed_spacing",
+                "samples {spacing:.3g} mm apart keep this large part at {samples} of them; {wanted:.3g} mm "
+                "would show the contact's edge better, with {more} samples",
+                spacing=_round(most),
+                samples=ACROSS_SAMPLES,
+                wanted=wanted,
+                more=int(area / wanted**2),
+            )
+        )
+    spacing = _round(max(wanted, most))
+    return spacing, int(area / spacing**2)
+
+
+def _quantile(values, weights):
+    """The value that the share HOLLOW of the weight does not exceed."""
+    order = np.argsort(values)
+    summed = np.cumsum(weights[order])
+    return float(values[order][min(np.searchsorted(summed, HOLLOW * summed[-1]), len(values) - 1)])
+
+
+def _round(value):
+    """To two digits, so that the user reads what is a choice."""
+    return float(f"{value:.2g}")

@@ -1,0 +1,152 @@
+"""A new job has values from its part: six clicks from a part to colours, none of them silent or final."""
+
+
+def test_six_clicks_from_a_part_to_colours(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+doc.UndoMode = 1
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeBox(60, 40, 20)
+doc.recompute()
+view = Gui.ActiveDocument.ActiveView
+view.setAnimationEnabled(False)
+view.viewTop()
+view.fitAll()
+settle()
+clicks = []
+
+def click(widget, at=None):
+    at = QtCore.QPointF(at or widget.rect().center())
+    place = QtCore.QPointF(widget.mapToGlobal(at.toPoint()))
+    left, none = QtCore.Qt.LeftButton, QtCore.Qt.NoButton
+    for kind, button, held in (
+        (QtCore.QEvent.MouseMove, none, none),
+        (QtCore.QEvent.MouseButtonPress, left, left),
+        (QtCore.QEvent.MouseButtonRelease, left, none),
+    ):
+        event = QtGui.QMouseEvent(kind, at, place, button, held, QtCore.Qt.NoModifier)
+        QtGui.QApplication.sendEvent(widget, event)
+    clicks.append(widget)
+    settle()
+
+def choose_entry(text):
+    bar = window.menuBar()
+    top = next(a for a in bar.actions() if a.text().replace("&", "") == "Belt grinding")
+    click(bar, bar.actionGeometry(top).center())
+    entries = top.menu()
+    action = next(a for a in entries.actions() if a.text().replace("&", "") == text)
+    wait(action.isEnabled, 20)
+    click(entries, entries.actionGeometry(action).center())
+
+middle = view.getSize()
+click_at(middle[0] // 2, middle[1] // 2)
+clicks.append("face")
+wait(lambda: Gui.Selection.getSelectionEx(), 10)
+assert Gui.Selection.getSelectionEx()[0].SubElementNames == ("Face6",)
+choose_entry("New job")
+ok = [b for b in visible(QtGui.QPushButton) if b.text().replace("&", "") == "OK"]
+click(ok[0])
+choose_entry("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+assert len(clicks) == 6, clicks
+job = doc.BeltGrindingJob
+assert [o.Label for o in job.Group] == ["Stock", "Belt machine", "Raster", "Simulation", "Deviation"]
+assert doc.Deviation.ViewObject.Visibility and not part.ViewObject.Visibility
+assert doc.Deviation.InTolerance > 70, doc.Deviation.InTolerance
+assert "in tolerance" in field("state").text(), field("state").text()
+assert doc.Simulation.Proxy.recording(doc.Simulation) is not None  # playback needs no second run
+press("Close")
+doc.undo()  # result and colours are one step
+assert doc.getObject("Simulation") is None and doc.getObject("Deviation") is None
+doc.undo()
+assert [o.Name for o in doc.Objects] == ["Block"]
+""",
+        window=True,
+    )
+
+
+def test_values_come_from_the_part_and_follow_its_faces(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+doc.UndoMode = 1
+part = doc.addObject("Part::Feature", "Ring")
+ring = Part.makeCylinder(17.5, 15).cut(Part.makeCylinder(12, 15))
+part.Shape = ring
+doc.recompute()
+round_faces = {getattr(f.Surface, "Radius", 0): i for i, f in enumerate(ring.Faces, 1)}
+outer, hollow = round_faces[17.5], round_faces[12]
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Ring", f"Face{outer}")
+menu("New job")
+machine = doc.BeltMachine
+assert 10 <= machine.WheelRadius.Value <= 20, machine.WheelRadius  # not 100 mm on a ring of 35
+assert "Chosen from the part" in field("note").text()
+type_in("WheelWidth", "5 mm")
+assert machine.WheelWidth.Value == 5
+# Other faces: what was chosen follows, what was typed stays.
+Gui.Selection.addSelection(doc.Name, "Ring", f"Face{hollow}")
+press("Add selected")
+assert machine.WheelRadius.Value == 10 and machine.WheelWidth.Value == 5
+head = field("foldMachine")
+head.click()
+settle()
+assert not visible(QtGui.QWidget, "WheelRadius") and "R 10" in head.text(), head.text()
+press("OK")
+assert doc.RasterPath.PoseCount > 2
+""",
+        window=True,
+    )
+
+
+def test_a_large_part_takes_no_millions_of_samples_without_a_word(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+part = doc.addObject("Part::Feature", "Panel")
+part.Shape = Part.makeBox(1700, 800, 20)
+doc.recompute()
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Panel", "Face6")
+menu("New job")
+job = doc.BeltGrindingJob
+assert 1700 * 800 / job.Spacing.Value**2 < 500_000, job.Spacing
+type_in("Spacing", "0.3 mm")
+note = field("note").text()
+assert "15,111,111" in note and "GB" in note, note
+press("Cancel")
+""",
+        window=True,
+    )
+
+
+def test_faces_on_which_no_pass_can_lie_give_a_job_all_the_same(freecad):
+    freecad.run(
+        """
+from beltgrinding.engine import InputError
+from beltgrinding.objects import first_settings
+from support.hands import *
+start()
+def refuse(job, text):
+    raise InputError("raster.no_pass", "no pass is left on the faces; lower min_length_mm, or give another direction")
+patch(first_settings, "propose", refuse)
+doc = FreeCAD.newDocument("work")
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeBox(60, 40, 20)
+doc.recompute()
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Block", "Face6")
+menu("New job")
+assert "no pass is left" in field("note").text()
+press("OK")
+assert [o.Label for o in doc.BeltGrindingJob.Group] == ["Stock", "Belt machine"]
+""",
+        window=True,
+    )

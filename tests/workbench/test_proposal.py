@@ -1,0 +1,127 @@
+"""First settings chosen from the part, against the defaults that every part had before."""
+
+import math
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+import beltgrinding  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
+from beltgrinding.job.poses import list_poses  # noqa: E402
+from beltgrinding.raster import proposal, raster_path  # noqa: E402
+
+SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
+PARTS = [("crank_arm.brep", 5), ("pump_cover.brep", 1), ("blade_marine_upper.iges", 1)]
+TOLERANCE = 0.05  # mm
+
+
+def plate(**keys):
+    """A validated job of a plate 60 x 40 mm without programs."""
+    corners = np.array([[x, y, z] for z in (0, 20) for y in (0, 40) for x in (0, 60)], np.float32)
+    faces = [[4, 5, 6], [5, 7, 6], [0, 2, 1], [1, 2, 3], [0, 1, 4], [1, 5, 4]]
+    faces += [[2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]
+    mesh = core.TriangleMesh(corners, np.array(faces, np.uint32))
+    shape = core.shape_from_mesh(mesh)
+    top = next(
+        face + 1 for face in range(shape.face_count) if abs(shape.face_area(face) - 2400) < 1
+    )
+    design = {"brep": shape.write_brep(), "faces": [top]}
+    return jobs.validate(
+        {
+            "schema": 1,
+            "design": design,
+            "belt_machine": {},
+            "stock": {},
+            "programs": [{"poses": []}],
+            **keys,
+        }
+    )
+
+
+def ground(design, machine, settings, spacing, stock):
+    """Share in tolerance and mean deviation of a raster with these settings."""
+    job = {
+        "schema": 1,
+        "design": design,
+        "belt_machine": machine,
+        "stock": stock,
+        "sampling": {"spacing_mm": spacing},
+        "inspection": {"tolerance_mm": [-TOLERANCE, TOLERANCE]},
+        "cell": {"check_collisions": False},
+        "programs": [{"poses": []}],
+    }
+    laid = raster_path.raster(jobs.validate(job), settings)
+    arrays = {key: laid[key] for key in ("frames", "feeds", "forces", "rapid", "lines")}
+    arrays["zones"] = np.full(len(laid["feeds"]), -1.0)
+    summary = beltgrinding.run({**job, "programs": [{"poses": list_poses(arrays)}]}).summary
+    return summary["in_tolerance_area_share"], summary["deviation_mm"]["mean"]
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared parts are not there")
+@pytest.mark.parametrize("name, face", PARTS)
+def test_a_proposal_takes_the_allowance_off_and_beats_the_defaults(name, face):
+    design = {"file": str(SHARED / "data" / "cad" / name), "faces": [face]}
+    stock = {"kind": "allowance", "allowance_mm": 0.3}
+    job = {"schema": 1, "design": design, "stock": stock, "belt_machine": {}}
+    job["inspection"] = {"tolerance_mm": [-TOLERANCE, TOLERANCE]}
+    found = proposal.propose(jobs.validate({**job, "programs": [{"poses": []}]}))
+    assert not found["notes"]
+    machine = {
+        "wheel": {"radius_mm": found["wheel_radius_mm"], "width_mm": found["wheel_width_mm"]},
+        "compliance": {"rim_thickness_mm": found["rim_thickness_mm"]},
+        "force_N": found["force_N"],
+    }
+    settings = {
+        "along": "direction",
+        **{
+            key: found[key]
+            for key in ("direction", "step_over_share", "feed_mm_s", "approach_feed_mm_s")
+        },
+    }
+    spacing = max(found["spacing_mm"], math.sqrt(found["area_mm2"] / 30_000))
+    share, mean = ground(design, machine, settings, spacing, stock)
+    try:
+        before, mean_before = ground(design, {}, {}, spacing, stock)
+    except InputError:  # the large wheel of before lays no pass at all
+        before, mean_before = 0.0, 0.3
+    print(
+        f"{name}: proposed {share:.0%}, mean {mean:+.3f} mm; defaults {before:.0%}, {mean_before:+.3f}"
+    )
+    assert abs(mean) < 0.02
+    assert share > 0.65 and share > before + 0.3
+
+
+def test_the_feed_follows_what_is_to_come_off_and_the_law():
+    thin = proposal.propose(plate(stock={"allowance_mm": 0.2}))
+    thick = proposal.propose(plate(stock={"allowance_mm": 0.4}))
+    assert thick["feed_mm_s"] < 0.6 * thin["feed_mm_s"]
+    assert thin["allowance_mm"] == pytest.approx(0.2, abs=1e-6)
+    # To the middle of the tolerance.
+    upper = proposal.propose(plate(inspection={"tolerance_mm": [0.0, 0.2]}))
+    assert upper["allowance_mm"] == pytest.approx(0.2, abs=1e-6)
+    # A calibrated belt cuts little: more force, and what cannot be is told.
+    weak = proposal.propose(plate(law={"coefficient_mm2_per_N": 5e-6}))
+    assert weak["force_N"] > thin["force_N"]
+    assert [note.code for note in weak["notes"]] in ([], ["raster.proposed_feed"])
+    hopeless = proposal.propose(plate(law={"coefficient_mm2_per_N": 1e-8}))
+    assert [note.code for note in hopeless["notes"]] == ["raster.proposed_feed"]
+
+
+def test_a_part_without_stock_gets_no_feed_and_is_told():
+    found = proposal.propose(plate(stock={"allowance_mm": 0.0}))
+    assert [note.code for note in found["notes"]] == ["raster.proposed_nothing"]
+    assert found["feed_mm_s"] == 50.0  # the schema's
+
+
+def test_a_missing_face_is_an_error():
+    job = plate()
+    job["design"]["faces"] = [99]
+    with pytest.raises(InputError, match="99"):
+        proposal.propose(job)

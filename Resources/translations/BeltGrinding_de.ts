@@ -1151,10 +1151,6 @@
         <translation>Geschliffenes Teil als Netz</translation>
     </message>
     <message>
-        <source>Its file</source>
-        <translation>Dessen Datei</translation>
-    </message>
-    <message>
         <source>Make the mesh anew</source>
         <translation>Netz neu erstellen</translation>
     </message>
@@ -1525,10 +1521,6 @@
     <message>
         <source>Faces to be ground</source>
         <translation>Zu schleifende Flächen</translation>
-    </message>
-    <message>
-        <source>Faces: {}. Area: {:,.0f} mm². Samples: about {:,.0f}.</source>
-        <translation>Flächen: {}. Flächeninhalt: {:,.0f} mm². Abtastpunkte: etwa {:,.0f}.</translation>
     </message>
     <message>
         <source>Falls to 1/e in</source>
@@ -2537,10 +2529,6 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Inhalt</translation>
     </message>
     <message>
-        <source>Keep a marker (or Shift+click)</source>
-        <translation>Markierung behalten (oder Umschalt+Klick)</translation>
-    </message>
-    <message>
         <source>Shows the sample&apos;s deviation and face.</source>
         <translation>Zeigt Abweichung und Fläche des Abtastpunkts.</translation>
     </message>
@@ -3201,14 +3189,6 @@ im Mittel {} abgetragen</translation>
         <translation>Scheibenkörper unter der Oberfläche</translation>
     </message>
     <message>
-        <source>Hold</source>
-        <translation>Festhalten</translation>
-    </message>
-    <message>
-        <source>Nearest</source>
-        <translation>Nächste</translation>
-    </message>
-    <message>
         <source>of the pairs of points, the nearest: the rest, as a table or a clamp, does not count</source>
         <translation>von den Punktpaaren die nächsten: Der Rest, etwa ein Tisch oder eine Spannpratze, zählt nicht</translation>
     </message>
@@ -3279,6 +3259,30 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>{:.2f} % in tolerance, {:.2f} % too much left, {:.2f} % cut too deep</source>
         <translation>{:.2f} % in Toleranz, {:.2f} % zu viel übrig, {:.2f} % zu tief</translation>
+    </message>
+    <message>
+        <source>Faces: {}. Area: {:,.0f} mm².</source>
+        <translation>Flächen: {}. Inhalt: {:,.0f} mm².</translation>
+    </message>
+    <message>
+        <source>Keep a marker</source>
+        <translation>Marke behalten</translation>
+    </message>
+    <message>
+        <source>Keep as is</source>
+        <translation>Bleibt so</translation>
+    </message>
+    <message>
+        <source>Start&apos;s file</source>
+        <translation>Datei des Starts</translation>
+    </message>
+    <message>
+        <source>about {:,.0f} samples</source>
+        <translation>etwa {:,.0f} Abtastpunkte</translation>
+    </message>
+    <message>
+        <source>as Shift+click does</source>
+        <translation>wie Umschalt+Klick</translation>
     </message>
 </context>
 <context>
@@ -3609,6 +3613,30 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>What a robot&apos;s belt grinding will leave, before any metal is ground</source>
         <translation>Was das Bandschleifen mit dem Roboter übrig lässt, bevor geschliffen wird</translation>
+    </message>
+    <message>
+        <source>Belt grinding: judge</source>
+        <translation>Bandschleifen: Beurteilen</translation>
+    </message>
+    <message>
+        <source>Belt grinding: paths</source>
+        <translation>Bandschleifen: Bahnen</translation>
+    </message>
+    <message>
+        <source>Belt grinding: run</source>
+        <translation>Bandschleifen: Simulieren</translation>
+    </message>
+    <message>
+        <source>Belt grinding: set up</source>
+        <translation>Bandschleifen: Einrichten</translation>
+    </message>
+    <message>
+        <source>Examples</source>
+        <translation>Beispiele</translation>
+    </message>
+    <message>
+        <source>Exchange</source>
+        <translation>Austausch</translation>
     </message>
 </context>
 </TS>

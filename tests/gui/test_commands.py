@@ -21,18 +21,24 @@ import json
 from support.hands import *
 start()
 bar = next(a for a in window.menuBar().actions() if a.text().replace("&", "") == "Belt grinding")
-texts = [a.text().replace("&", "") for a in bar.menu().actions() if a.text()]
+texts = [a.text().replace("&", "") for a in entries(bar) if a.text()]
 Path("menu.json").write_text(json.dumps(texts))
+top = bar.menu().actions()
+# Grouped by step, with submenus for what is rare; a toolbar a step.
+assert sum(a.isSeparator() for a in top) >= 4 and top[0].text().replace("&", "") == "New job"
+assert [a.text() for a in top if a.menu() is not None] == ["Exchange", "Examples"]
+bars = [b.windowTitle() for b in widgets(QtGui.QToolBar) if b.windowTitle().startswith("Belt grinding")]
+assert sorted(bars) == ["Belt grinding: " + step for step in ("judge", "paths", "run", "set up")], bars
 """,
         window=True,
     )
-    entries = json.loads((freecad.folder / "menu.json").read_text())
+    commands = json.loads((freecad.folder / "menu.json").read_text())
     sources = [*(ROOT / "tests" / "gui").glob("*.py"), *(ROOT / "tests" / "support").glob("*.py")]
     started = set()
     for path in sources:
         started.update(re.findall(r'\bmenu\("([^"]+)"\)', path.read_text()))
-    assert len(entries) > 20
-    assert sorted(set(entries) - started) == []
+    assert len(commands) > 20
+    assert sorted(set(commands) - started) == []
 
 
 def test_programs_are_read_again(freecad):

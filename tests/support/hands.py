@@ -54,13 +54,20 @@ def menu(text):
     to_view()
     bar = {a.text().replace("&", ""): a for a in window.menuBar().actions()}
     assert "Belt grinding" in bar, list(bar)
-    action = next(
-        a for a in bar["Belt grinding"].menu().actions() if a.text().replace("&", "") == text
-    )
+    action = next(a for a in entries(bar["Belt grinding"]) if a.text().replace("&", "") == text)
     wait(action.isEnabled, 20)  # FreeCAD looks a few times a second
     assert not action.icon().isNull() and action.toolTip()
     action.trigger()
     settle()
+
+
+def entries(action):
+    """The entries of an action's menu, those of its submenus too."""
+    for one in action.menu().actions():
+        if one.menu() is None:
+            yield one
+        else:
+            yield from entries(one)
 
 
 def widgets(kind, name=None):

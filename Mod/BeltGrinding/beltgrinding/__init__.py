@@ -69,6 +69,7 @@ DOCUMENT_FUNCTIONS = (
     "import_program",
     "export_program",
     "make_raster",
+    "set_up",
     "simulate",
     "make_deviation",
     "make_section",

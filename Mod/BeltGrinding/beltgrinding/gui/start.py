@@ -13,7 +13,7 @@ PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package
 
 
 def register():
-    """Tells FreeCAD the commands; returns (names in the order of work, other names).
+    """Tells FreeCAD the commands; returns ({toolbar: names}, names of the menu, {submenu: names}).
 
     Where something that they need cannot be loaded, says so in the report view and in one message,
     and returns the manual alone. FreeCAD calls this when the workbench is first chosen.
@@ -25,9 +25,9 @@ def register():
         from . import commands
     except ImportError as error:
         tell(reason(error))
-        return [], [Manual.NAME]
-    work, more = commands.register()
-    return work, [*more, Manual.NAME]
+        return {}, [Manual.NAME], {}
+    toolbars, menu, submenus = commands.register()
+    return toolbars, [*menu, "Separator", Manual.NAME], submenus
 
 
 def reason(error):

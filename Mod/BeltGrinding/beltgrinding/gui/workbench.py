@@ -31,18 +31,22 @@ def describe(workbench):
 
 
 def fill(workbench):
-    """Toolbar and menu of the workbench, when it is chosen first; the commands of its toolbar."""
+    """Toolbars and menu of the workbench, when it is chosen first; the commands of its toolbars, which are
+    its context menu, too.
+    """
     from . import start
 
-    work, more = start.register()
-    if work:
+    toolbars, menu, submenus = start.register()
+    for title, names in toolbars.items():
+        workbench.appendToolbar(title, names)
+    if toolbars:
         from ..objects.importer import SHARED_TYPE
 
-        workbench.appendToolbar(NAME, work)
-        more = [*work, "Separator", *more]
         FreeCAD.addImportType(*SHARED_TYPE)
-    workbench.appendMenu(MENU, more)
-    return work
+    workbench.appendMenu(MENU, menu)
+    for title, names in submenus.items():
+        workbench.appendMenu([MENU, title], names)
+    return [name for names in toolbars.values() for name in names]
 
 
 def at_start():

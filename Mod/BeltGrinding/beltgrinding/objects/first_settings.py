@@ -7,7 +7,7 @@ from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
 from .job_data import child, children, design, required
-from .raster_path import RasterPath
+from .raster_path import RasterPath, generate
 from .set_up import make_belt_machine, make_raster, make_stock
 from .stock import Stock
 
@@ -30,6 +30,9 @@ def set_up(job, text=""):
         path = make_raster(job, compute=False)
         path.Proposed = True
     apply(job, found)
+    for path in children(job, RasterPath):
+        generate(path)
+        path.recompute()
     return found
 
 

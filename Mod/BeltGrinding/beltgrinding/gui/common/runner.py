@@ -10,17 +10,18 @@ from .compat import QtCore, translate
 
 POLL = 50  # ms
 MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
-# Works whose end is being told. Who is told may let go of them, and PySide goes on using the object whose
-# method its timer has called: freed there, FreeCAD dies, rarely.
-_ending = set()
+# All works until the window has seen their end. Else the thread may be the last that holds one and free it with
+# its timer, which only the window's thread may do; and who is told of the end may let go of the object whose
+# method PySide is just calling. Of both FreeCAD dies, at times.
+_going = set()
 
 
 class Background(QtCore.QObject):
     """Runs ``work(context)`` in a thread; ``done(result or None, error or None)`` follows on the
-    window's thread.
+    window's thread, but not once ``owner``, a widget, is gone: then the work is cancelled.
     """
 
-    def __init__(self, work, done):
+    def __init__(self, work, done, owner=None):
         super().__init__()
         self.context = RunContext()
         self.outcome = (None, None)
@@ -30,6 +31,9 @@ class Background(QtCore.QObject):
         self.timer = QtCore.QTimer(self)
         self.timer.timeout.connect(self._poll)
         self.timer.start(POLL)
+        _going.add(self)
+        if owner is not None:
+            owner.destroyed.connect(lambda *_: self.abandon())
 
     def cancel(self):
         """Asks the work to end; ``done`` follows with Cancelled."""
@@ -40,6 +44,11 @@ class Background(QtCore.QObject):
         self.done = lambda *_: then()
         self.cancel()
 
+    def forget(self):
+        """Its end was waited for: nothing follows any more."""
+        self.timer.stop()
+        _going.discard(self)
+
     def _work(self, work):
         try:
             self.outcome = (work(self.context), None)
@@ -49,8 +58,7 @@ class Background(QtCore.QObject):
     def _poll(self):
         if not self.thread.is_alive():
             self.timer.stop()
-            _ending.add(self)
-            QtCore.QTimer.singleShot(0, lambda: _ending.discard(self))
+            QtCore.QTimer.singleShot(0, lambda: _going.discard(self))
             self.done(*self.outcome)
 
 
@@ -74,10 +82,14 @@ class Runner(Background):
 
     def work(self, context):
         """(``job.Result``, its files as the document keeps them); in the thread."""
-        result = runs.run(self.data, context, self.recorded)
+        result = self.grind(context)
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
         return result, results.files_of(result)
+
+    def grind(self, context):
+        """The ``job.Result``; in the thread."""
+        return runs.run(self.data, context, self.recorded)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""

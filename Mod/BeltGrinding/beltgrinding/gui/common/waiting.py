@@ -7,7 +7,6 @@ from .compat import QtCore, QtGui, translate
 from .runner import Background
 
 PATIENCE = 0.2  # s; what is done by then needs no dialog
-_going = set()  # works that were cancelled and have not ended yet
 
 
 def wait(work, text):
@@ -23,7 +22,7 @@ def wait(work, text):
     background = Background(work, done)
     background.thread.join(PATIENCE)
     if not background.thread.is_alive():
-        background.timer.stop()
+        background.forget()
         return _given(*background.outcome)
     dialog = _dialog(text)
     dialog.canceled.connect(loop.quit)
@@ -35,8 +34,7 @@ def wait(work, text):
         dialog.close()
         dialog.deleteLater()
     if not outcome:
-        _going.add(background)  # its timer asks the thread until that has ended
-        background.abandon(lambda: _going.discard(background))
+        background.abandon()
         raise Cancelled(translate("BeltGrinding", "cancelled"))
     return _given(*outcome[0])
 

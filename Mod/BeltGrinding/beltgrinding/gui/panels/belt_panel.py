@@ -21,6 +21,7 @@ class BeltPanel(Panel):
         self.body.addLayout(self.place)
         self.left = QtGui.QLabel()
         self.left.setObjectName("remainingCut")
+        self.left.setWordWrap(True)
         self.body.addWidget(self.left)
         for name, text, action in (
             ("countRun", translate("BeltGrinding", "Count the simulated grind"), self.count),

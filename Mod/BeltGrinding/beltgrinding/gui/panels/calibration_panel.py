@@ -126,7 +126,7 @@ class CalibrationPanel:
             report = result["report"]
             return result, calibration_plot.render(report), calibration_plot.render_small(report)
 
-        self.task = Background(work, self.show)
+        self.task = Background(work, self.show, self.form)
 
     def _entered(self, field):
         return float(field.text()) if field.text() and field.hasAcceptableInput() else None

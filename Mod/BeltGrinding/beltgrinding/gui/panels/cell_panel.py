@@ -37,6 +37,7 @@ class CellPanel(Panel):
             "tool_in_hand": translate("BeltGrinding", "Tool in hand"),
             "part_in_hand": translate("BeltGrinding", "Part in hand"),
         }
+        cell.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         cell.add("Holding", translate("BeltGrinding", "Robot holds"), holding)
         cell.add("BaseFromWork", translate("BeltGrinding", "Part in base"))
         cell.add("TcpFromContact", translate("BeltGrinding", "Contact in tool"))
@@ -77,6 +78,7 @@ class CellPanel(Panel):
             )
         )
         layout = QtGui.QVBoxLayout(box)
+        layout.setContentsMargins(4, 4, 4, 4)
         self.frame = steady(QtGui.QComboBox())
         self.frame.setObjectName("bodyFrame")
         for text in (
@@ -105,7 +107,10 @@ class CellPanel(Panel):
         form = Form(self.obj, translate("BeltGrinding", "Collisions"))
         form.add("CheckCollisions", translate("BeltGrinding", "Look for collisions"))
         form.add("Clearance", translate("BeltGrinding", "Clearance"))
-        form.add("WheelInset", translate("BeltGrinding", "Wheel's body below its surface"))
+        form.add("WheelInset", translate("BeltGrinding", "Wheel's body inset"))
+        form.setFlat(True)
+        form.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
+        form.layout_.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(form)
         self.fill()
         return box

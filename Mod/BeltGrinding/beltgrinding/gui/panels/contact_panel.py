@@ -100,7 +100,9 @@ class ContactPanel:
         pose, program = self.number.value(), self.program.currentIndex() + 1
         self.state.setText(translate("BeltGrinding", "Grinding up to pose {} ...").format(pose))
         self.task = Background(
-            lambda context: contact.at_pose(self.data, pose, program, context), self.show
+            lambda context: contact.at_pose(self.data, pose, program, context),
+            self.show,
+            self.form,
         )
 
     def show(self, result, error):

@@ -56,6 +56,9 @@ class JobPanel(Panel):
             self.body.addWidget(fold)
         sampling = Form(obj, translate("BeltGrinding", "Sampling and tolerance"))
         sampling.add("Spacing", translate("BeltGrinding", "Sample spacing"))
+        self.count = QtGui.QLabel()
+        self.count.setObjectName("sampleCount")
+        sampling.layout_.addRow("", self.count)
         sampling.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
         sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
@@ -243,10 +246,9 @@ class JobPanel(Panel):
         self.tint.show([shape.Faces[number - 1] for number in numbers] if seen else [])
         area = sum(shape.Faces[number - 1].Area for number in numbers)
         count = area / self.obj.Spacing.Value**2
+        self.count.setText(translate("BeltGrinding", "about {:,.0f} samples").format(count))
         lines = [
-            translate(
-                "BeltGrinding", "Faces: {}. Area: {:,.0f} mm². Samples: about {:,.0f}."
-            ).format(len(numbers), area, count)
+            translate("BeltGrinding", "Faces: {}. Area: {:,.0f} mm².").format(len(numbers), area)
         ]
         if count > MANY:
             lines.append(

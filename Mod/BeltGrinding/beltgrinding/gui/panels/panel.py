@@ -7,6 +7,7 @@ from ...engine import InputError
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
+from ..widgets.fold import slim
 from ..widgets.form import Form
 
 
@@ -33,6 +34,7 @@ class Panel:
         """Puts the line for messages above the fields, under the buttons; call it last in __init__."""
         self.body.insertWidget(0, self.note)
         self.body.addStretch()
+        slim(self.form)
 
     def tell(self, text, error=False):
         """A message in the panel; '' hides it."""

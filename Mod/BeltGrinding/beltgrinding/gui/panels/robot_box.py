@@ -30,7 +30,7 @@ class RobotBox(QtGui.QGroupBox):
         self.task, self.events = None, []
         self.unchecked = ""  # why what the arm may meet was not looked at
         layout = QtGui.QFormLayout(self)
-        layout.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        layout.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         self.choice = steady(QtGui.QComboBox())
         self.choice.setObjectName("robot")
         self.choice.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
@@ -131,7 +131,7 @@ class RobotBox(QtGui.QGroupBox):
             with folder:
                 return arm_check.follow(path, robot, job, context)
 
-        self.task = Background(work, self._done)
+        self.task = Background(work, self._done, self)
 
     def _done(self, result, error):
         self.task = None

@@ -27,6 +27,7 @@ class RunPanel:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
+        self.form.destroyed.connect(self._gone)  # a macro or another command may close it, too
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")
         self.state.setWordWrap(True)
@@ -114,6 +115,13 @@ class RunPanel:
         if self.status:
             self.status.remove()
             self.status = None
+
+    def _gone(self, *_):
+        """The panel was taken away: what still goes on is cancelled, unheard."""
+        self._remove_status()
+        if self.runner:
+            self.runner.abandon()
+            self.runner = None
 
     def getStandardButtons(self):
         return buttons("Close")

@@ -26,6 +26,7 @@ class ScanPanel(Panel):
         super().__init__(child(job, simulation.Simulation), title, "BeltGrinding_Scan")
         self.job, self.work = job, None
         rows = QtGui.QFormLayout()
+        rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         self.file = self._file(rows, translate("BeltGrinding", "Scan"), "scan")
         self.unit = self._choice(rows, translate("BeltGrinding", "Unit"), [u for u, _ in UNITS])
         self.unit.setObjectName("unit")

@@ -17,7 +17,7 @@ TABLE_HEIGHT = 320  # pixels
 class _Check(Runner):
     """A run at three levels in place of one."""
 
-    def work(self, context):
+    def grind(self, context):
         return convergence.converge(self.data, context)
 
 

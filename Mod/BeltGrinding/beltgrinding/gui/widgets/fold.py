@@ -3,6 +3,15 @@
 from ..common.compat import QtCore, QtGui
 
 
+NARROW = (4, 4, 4, 4)  # pixels; FreeCAD's panels have margins of their own
+
+
+def slim(form):
+    """Takes the margins of a panel's boxes in: the dock, as FreeCAD opens it on a small screen, is narrow."""
+    for box in (form, *form.findChildren(QtGui.QGroupBox)):
+        box.layout().setContentsMargins(*NARROW)
+
+
 class Fold(QtGui.QWidget):
     """``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
     title while it is folded."""

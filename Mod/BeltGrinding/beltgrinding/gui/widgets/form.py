@@ -282,28 +282,26 @@ class Form(QtGui.QGroupBox):
 
 
 class FrameField(QtGui.QWidget):
-    """X, Y, Z and A, B, C (KUKA's: about z, y, x) of a frame."""
+    """X, Y, Z and A, B, C (KUKA's: about z, y, x) of a frame, one below the other: side by side, a panel as
+    FreeCAD opens it shows none of them whole."""
 
     def __init__(self, placement, changed):
         super().__init__()
         grid = QtGui.QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(4)
+        grid.setVerticalSpacing(2)
         grid.setColumnStretch(1, 1)
-        grid.setColumnStretch(3, 1)
         angles = placement.Rotation.toEuler()
         self.fields = []
         for i, (name, value) in enumerate(zip("XYZABC", (*placement.Base, *angles))):
             field = quantity_field(Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
-            field.setMinimumWidth(MINIMUM_WIDTH // 2)
-            # Without its buttons a narrow panel shows the number whole, from its sign on.
-            field.setProperty("buttonSymbols", 2)
             field.findChild(QtGui.QLineEdit).setCursorPosition(0)
             field.setObjectName(name)
             field.setToolTip(name)
             field.connect(field, QtCore.SIGNAL("valueChanged(double)"), self._changed)
-            grid.addWidget(QtGui.QLabel(name), i % 3, 2 * (i // 3))
-            grid.addWidget(field, i % 3, 2 * (i // 3) + 1)
+            grid.addWidget(QtGui.QLabel(name), i, 0)
+            grid.addWidget(field, i, 1)
             self.fields.append(field)
         self.notify = changed
 

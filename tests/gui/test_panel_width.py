@@ -1,0 +1,67 @@
+"""Every panel fits the dock as FreeCAD opens it on a small screen, in English and in German."""
+
+import pytest
+
+from support import freecad as windows
+
+BODY = """
+import beltgrinding
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeBox(60, 40, 20)
+doc.recompute()
+job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
+beltgrinding.set_up(job)
+beltgrinding.make_belt(job)
+beltgrinding.import_program(job, "pass.csv")
+beltgrinding.simulate(job)
+beltgrinding.make_deviation(job)
+assert QtGui.QGuiApplication.primaryScreen().size().width() <= 1368
+wide = {}
+
+def look(name):
+    settle()
+    assert Gui.Control.activeDialog(), name
+    bars = [area.horizontalScrollBar().maximum() for area in visible(QtGui.QScrollArea)]
+    if max(bars) > 0:
+        wide[name] = max(bars), sorted(
+            (w.minimumSizeHint().width(), type(w).__name__, w.objectName(), getattr(w, "text", str)())
+            for area in visible(QtGui.QScrollArea)
+            for w in area.widget().findChildren(QtGui.QWidget)
+            if w.isVisible() and w.minimumSizeHint().width() > 150
+        )
+    view = Gui.getDocument(doc.Name)
+    view.resetEdit() if view.getInEdit() else Gui.Control.closeDialog()
+    settle()
+
+for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath", "RasterPath", "Deviation", "Belt"):
+    view = doc.getObject(name).ViewObject
+    view.Proxy.doubleClicked(view)
+    look(name)
+for command in ("Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan"):
+    Gui.runCommand("BeltGrinding_" + command)
+    look(command)
+assert not wide, wide
+# Panels that went while they worked have left nothing behind.
+assert not [w for w in widgets(QtGui.QWidget, "BeltGrinding_Progress") if w.isVisible()]
+print("fits")
+"""
+LANGUAGE = """
+import FreeCAD
+general = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/General")
+general.SetString("Language", "German")
+FreeCAD.saveParameter("User parameter")
+"""
+
+
+@pytest.mark.parametrize("language", ["English", "German"])
+def test_panels_fit_a_small_screen(tmp_path, monkeypatch, language):
+    monkeypatch.setattr(windows, "SHOWN", 60000)
+    monkeypatch.setattr(windows, "SCREEN", "-screen 0 1366x768x24")
+    freecad = windows.FreeCad(tmp_path)
+    if language == "German":
+        freecad.run(LANGUAGE)
+    output = freecad.run(BODY, window=True, fresh=True)
+    assert "fits" in output and "Traceback" not in output, output

@@ -1468,7 +1468,7 @@
     </message>
     <message>
         <source>Drive wheel&apos;s diameter, mm</source>
-        <translation>Durchmesser der Antriebsscheibe, mm</translation>
+        <translation>Ø der Antriebsscheibe, mm</translation>
     </message>
     <message>
         <source>Edit</source>
@@ -3185,10 +3185,6 @@ im Mittel {} abgetragen</translation>
         <translation>Warnungen</translation>
     </message>
     <message>
-        <source>Wheel&apos;s body below its surface</source>
-        <translation>Scheibenkörper unter der Oberfläche</translation>
-    </message>
-    <message>
         <source>of the pairs of points, the nearest: the rest, as a table or a clamp, does not count</source>
         <translation>von den Punktpaaren die nächsten: Der Rest, etwa ein Tisch oder eine Spannpratze, zählt nicht</translation>
     </message>
@@ -3269,20 +3265,28 @@ im Mittel {} abgetragen</translation>
         <translation>Marke behalten</translation>
     </message>
     <message>
-        <source>Keep as is</source>
-        <translation>Bleibt so</translation>
-    </message>
-    <message>
-        <source>Start&apos;s file</source>
-        <translation>Datei des Starts</translation>
-    </message>
-    <message>
         <source>about {:,.0f} samples</source>
         <translation>etwa {:,.0f} Abtastpunkte</translation>
     </message>
     <message>
+        <source>Keep fixed</source>
+        <translation>Fest lassen</translation>
+    </message>
+    <message>
+        <source>Pairs used</source>
+        <translation>Genutzte Paare</translation>
+    </message>
+    <message>
+        <source>Start file</source>
+        <translation>Startdatei</translation>
+    </message>
+    <message>
+        <source>Wheel&apos;s body inset</source>
+        <translation>Körper zurückgesetzt um</translation>
+    </message>
+    <message>
         <source>as Shift+click does</source>
-        <translation>wie Umschalt+Klick</translation>
+        <translation type="unfinished"></translation>
     </message>
 </context>
 <context>

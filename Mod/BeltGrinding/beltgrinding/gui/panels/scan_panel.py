@@ -39,7 +39,7 @@ class ScanPanel(Panel):
         ]
         self.start = self._choice(rows, translate("BeltGrinding", "Start"), starts)
         self.start.setObjectName("start")
-        self.start_file = self._file(rows, translate("BeltGrinding", "Its file"), "start_file")
+        self.start_file = self._file(rows, translate("BeltGrinding", "Start file"), "start_file")
         self.start.currentIndexChanged.connect(self._enable)
         self.datum = QtGui.QLineEdit()
         self.datum.setObjectName("datum")
@@ -84,7 +84,7 @@ class ScanPanel(Panel):
             self.held[name] = QtGui.QCheckBox(text)
             self.held[name].setObjectName(name)
             grid.addWidget(self.held[name], i // 3, i % 3)
-        rows.addRow(translate("BeltGrinding", "Hold"), held)
+        rows.addRow(translate("BeltGrinding", "Keep fixed"), held)
         self.share = steady(QtGui.QDoubleSpinBox())
         self.share.setObjectName("share")
         self.share.setRange(1.0, 100.0)
@@ -97,7 +97,7 @@ class ScanPanel(Panel):
                 "of the pairs of points, the nearest: the rest, as a table or a clamp, does not count",
             )
         )
-        rows.addRow(translate("BeltGrinding", "Nearest"), self.share)
+        rows.addRow(translate("BeltGrinding", "Pairs used"), self.share)
 
     def _file(self, rows, text, name):
         box = QtGui.QWidget()

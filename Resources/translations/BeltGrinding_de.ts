@@ -3378,6 +3378,28 @@ im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>
+    <name>BeltGrinding_ExampleTap</name>
+    <message>
+        <source>Example: mixer tap</source>
+        <translation>Beispiel: Einhebelmischer</translation>
+    </message>
+    <message>
+        <source>Makes a document with a tap that a robot holds against the belt</source>
+        <translation>Erstellt ein Dokument mit einer Armatur, die ein Roboter ans Band hält</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ExampleVane</name>
+    <message>
+        <source>Example: blade with fillet and edges</source>
+        <translation>Beispiel: Schaufel mit Hohlkehle und Kanten</translation>
+    </message>
+    <message>
+        <source>Makes a document with a blade that is ground on both sides</source>
+        <translation>Erstellt ein Dokument mit einer Schaufel, die auf beiden Seiten geschliffen wird</translation>
+    </message>
+</context>
+<context>
     <name>BeltGrinding_ExportJob</name>
     <message>
         <source>Export job file...</source>

@@ -9,7 +9,8 @@ import FreeCAD
 import Part
 
 from ..base.files import cannot_be_written, write_whole
-from ..examples import blade
+from ..engine import InputError
+from ..examples import blade, tap, vane
 from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
@@ -70,9 +71,21 @@ def open_job(doc, path):
         raise
 
 
-def open_example(folder):
-    """A new document with the example blade, whose files are written to ``folder``; its job."""
-    return open_job(FreeCAD.newDocument("Blade"), blade.make(folder))
+EXAMPLES = {"blade": blade, "tap": tap, "vane": vane}
+
+
+def open_example(folder, name="blade"):
+    """A new document with an example, whose files are written to ``folder``; its job. ``name``: of
+    ``EXAMPLES``.
+    """
+    if name not in EXAMPLES:
+        raise InputError(
+            "objects.no_example",
+            "there is no example '{name}'; known: {known}",
+            name=name,
+            known=", ".join(EXAMPLES),
+        )
+    return open_job(FreeCAD.newDocument(name.capitalize()), EXAMPLES[name].make(folder))
 
 
 def _open_job(doc, data, path, made):

@@ -52,7 +52,7 @@ SUBMENUS = {
         files.ExportJob,
         files.ImportResult,
     ),
-    QT_TRANSLATE_NOOP("Workbench", "Examples"): (files.ExampleBlade,),
+    QT_TRANSLATE_NOOP("Workbench", "Examples"): (files.ExampleBlade, files.ExampleTap, files.ExampleVane),
 }
 
 

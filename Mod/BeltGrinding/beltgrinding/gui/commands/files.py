@@ -72,12 +72,31 @@ class ExampleBlade(Command):
         "BeltGrinding_ExampleBlade", "Makes a document with a blade, its stock and its program"
     )
     NEEDS_JOB = False
+    EXAMPLE = "blade"
 
     def run(self):
-        folder = Path(FreeCAD.getUserAppDataDir(), "BeltGrinding", "blade")
-        expand(api.open_example(folder))
+        folder = Path(FreeCAD.getUserAppDataDir(), "BeltGrinding", self.EXAMPLE)
+        expand(api.open_example(folder, self.EXAMPLE))
         Gui.activeDocument().activeView().viewIsometric()
         Gui.SendMsgToActiveView("ViewFit")
+
+
+class ExampleTap(ExampleBlade):
+    NAME = "BeltGrinding_ExampleTap"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleTap", "Example: mixer tap")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExampleTap", "Makes a document with a tap that a robot holds against the belt"
+    )
+    EXAMPLE = "tap"
+
+
+class ExampleVane(ExampleBlade):
+    NAME = "BeltGrinding_ExampleVane"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleVane", "Example: blade with fillet and edges")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExampleVane", "Makes a document with a blade that is ground on both sides"
+    )
+    EXAMPLE = "vane"
 
 
 class Calibrate(Command):

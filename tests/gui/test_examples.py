@@ -1,0 +1,116 @@
+"""The examples beside the blade: from the menu to deviation and playback, and the pictures of them."""
+
+import json
+
+import pytest
+from PIL import Image
+
+from support import pictures
+
+PREPARE = """
+import json
+from pathlib import Path
+from support.hands import *
+from support import pictures, tutorial
+
+Gui.activateWorkbench("BeltGrindingWorkbench")
+window.showMaximized()
+settle()
+
+def ground(direction):
+    \"\"\"Grinds the example, seen along a direction; the panel of the deviation is open.\"\"\"
+    doc = FreeCAD.ActiveDocument
+    view = Gui.ActiveDocument.ActiveView
+    view.setAnimationEnabled(False)
+    menu("Simulate")
+    wait(lambda: doc.getObject("Simulation") is not None, 200)
+    press("Deviation")
+    tutorial.hide(doc.RobotPath)
+    look(direction)
+    return doc
+
+def look(direction):
+    from pivy import coin
+    view = Gui.ActiveDocument.ActiveView
+    away = FreeCAD.Vector(*direction).normalize()
+    level = FreeCAD.Vector(0, 0, 1).cross(-away).normalize()
+    up = (-away).cross(level)
+    view.setCameraOrientation(FreeCAD.Placement(FreeCAD.Matrix(
+        level.x, up.x, -away.x, 0, level.y, up.y, -away.y, 0, level.z, up.z, -away.z, 0)).Rotation.Q)
+    view.fitAll()
+    settle()
+
+def nearer(share):
+    Gui.ActiveDocument.ActiveView.getCameraNode().height.setValue(
+        share * Gui.ActiveDocument.ActiveView.getCameraNode().height.getValue())
+    settle()
+
+def shot(width, height):
+    \"\"\"The 3D view alone, as the bytes of a PNG.\"\"\"
+    settle()
+    Gui.ActiveDocument.ActiveView.saveImage("shot.png", width, height, "White")
+    return Path("shot.png").read_bytes()
+"""
+
+
+@pytest.fixture
+def walk(freecad):
+    """Runs steps; the pictures that they take must still look like those in docs/images."""
+
+    def run(body):
+        body = PREPARE + body + '\nPath("walked.json").write_text(json.dumps(walked()))\n'
+        freecad.run(body, window=True)
+        release, names = json.loads((freecad.folder / "walked.json").read_text())
+        pictures.check(release, names)
+
+    return run
+
+
+def test_the_tap(walk):
+    walk(
+        """
+from support import animation
+menu("Example: mixer tap")
+doc = ground((-0.75, 0.55, -0.45))
+assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
+picture("example-tap")
+press("OK")
+doc.RobotPath.ViewObject.Visibility = False
+nearer(0.78)
+pictures.keep("tap", shot(1000, 600))
+
+# The wheel runs over it, and leaves the hollow brown.
+menu("Playback")
+dock = field("BeltGrinding_PlaybackDock")
+press("Simulate with recording")
+wait(lambda: dock.scene is not None, 200)
+scene = dock.scene
+scene.cell.root.removeChild(scene.cell.robot.root)  # it stands between the eye and the tap
+assert 50_000 < len(animation.play(dock, "tap")) < 1_500_000
+dock.close()
+"""
+    )
+
+
+def test_the_blade_with_fillet_and_edges(walk):
+    walk(
+        """
+menu("Example: blade with fillet and edges")
+doc = ground((0.85, -0.6, -0.35))
+assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
+picture("example-vane")
+"""
+    )
+
+
+def test_the_readme_shows_an_animation():
+    kept = pictures.IMAGES / "tap.gif"
+    assert "docs/images/tap.gif" in (pictures.ROOT / "README.md").read_text()
+    with Image.open(kept) as shown:
+        seconds = sum(time_of(shown, k) for k in range(shown.n_frames)) / 1000.0
+    assert kept.stat().st_size < 1_500_000 and 3.0 <= seconds <= 6.0
+
+
+def time_of(image, frame):
+    image.seek(frame)
+    return image.info["duration"]

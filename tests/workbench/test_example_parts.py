@@ -1,0 +1,98 @@
+"""The examples, made by FreeCAD and ground without it: sound parts, mostly good, each with its fault."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+import beltgrinding  # noqa: E402
+from beltgrinding.programs.registry import read_program  # noqa: E402
+
+EXAMPLES = ("tap", "vane")
+SCRIPT = """
+import importlib, os, sys
+status = 1
+try:
+    sys.path.insert(0, {mod!r})
+    for name in {names!r}:
+        example = importlib.import_module("beltgrinding.examples." + name)
+        solid = example.shape()[0]
+        assert solid.isValid() and solid.isClosed() and solid.ShapeType == "Solid", name
+        assert solid.Volume > 0, name
+        example.make(os.path.join({out!r}, name))
+    status = 0
+except BaseException:
+    import traceback
+    traceback.print_exc()
+finally:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The folder in which each example has one of its own."""
+    out = tmp_path_factory.mktemp("examples")
+    script = out / "make.py"
+    mod = str(ROOT / "Mod" / "BeltGrinding")
+    script.write_text(SCRIPT.format(mod=mod, names=EXAMPLES, out=str(out)))
+    done = subprocess.run(
+        ["freecadcmd", str(script)],
+        stdin=subprocess.DEVNULL,
+        env={**os.environ, "HOME": str(out)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def ground(folder):
+    """(summary, {kind: events}, verdict) of an example; its program leaves nothing open."""
+    job = json.loads((folder / "job.json").read_text())
+    for program in job["programs"]:
+        assert not read_program(folder / program["file"]).problems
+    result = beltgrinding.run(folder / "job.json")
+    result.write(folder / "out")
+    verdict = json.loads((folder / "out" / "verdict.json").read_text())
+    kinds = {}
+    for event in result.events:
+        kinds.setdefault(event["kind"], []).append(event)
+    return result.summary, kinds, verdict
+
+
+def test_the_taps_wheel_is_too_large_for_the_hollow_of_its_spout(made):
+    summary, kinds, verdict = ground(made / "tap")
+    assert 0.85 < summary["in_tolerance_area_share"] < 0.95
+    # The robot gets everywhere without a complaint of its joints.
+    assert summary["robot"]["reached_poses"] == summary["robot"]["poses"]
+    assert set(kinds) == {"gouge", "wheel_too_large", "tilted_contact", "edge_contact"}
+    left, *deep = verdict["clusters"][:3]
+    assert left["side"] == "above" and left["worst"]["value_mm"] > 0.19
+    assert all(one["side"] == "below" for one in deep)
+    # In the middle of the hollow, where the wheel rests on both its ends and cuts them twice.
+    assert abs(left["centroid_mm"][1]) < 2.0
+    heights = sorted(one["centroid_mm"][2] for one in deep)
+    assert heights[0] < left["centroid_mm"][2] < heights[1]
+
+
+def test_the_wheel_wraps_round_the_blades_leading_edge(made):
+    summary, kinds, verdict = ground(made / "vane")
+    assert 0.85 < summary["in_tolerance_area_share"] < 0.95
+    assert "collision" not in kinds and "gouge" in kinds
+    deep = verdict["clusters"][:2]
+    assert [one["side"] for one in deep] == ["below", "below"]  # a strip on each side of the edge
+    for one in deep:
+        assert one["centroid_mm"][0] < -15.0 and one["worst"]["value_mm"] < -0.2
+    shares = {face["face"]: face["in_share"] for face in verdict["faces"]}
+    sides = sorted(shares.values())[-2:]
+    assert sides[0] > 0.88  # of pressure and suction side
+    assert min(shares.values()) < 0.4  # the leading edge

@@ -9,11 +9,15 @@ from support.freecad import ROOT
 def test_the_readme_macro_runs_as_it_stands(freecad):
     macro = (ROOT / "README.md").read_text().split("## A macro")[1].split("## ")[0]
     lines = [line[4:] for line in macro.splitlines() if line.startswith("    ")]
-    assert sum(bool(line) for line in lines) < 15
+    assert sum(bool(line) for line in lines) < 16
     make = "from beltgrinding.examples import blade\nblade.make('build/demo')\n"
     output = freecad.run(make + "\n".join(lines) + "\n")
     share = float(re.search(r"^(\d+\.\d+) -\d+", output, re.M).group(1))
-    assert 5 < share < 95
+    tutorial = (ROOT / "docs" / "tutorial.md").read_text()
+    told = float(re.search(r"^\| In tolerance \| ([\d.]+) % \|$", tutorial, re.M).group(1))
+    # Another Debian's CAD kernel samples the surface a little differently.
+    assert abs(share - told) < 0.1
+    assert f"{told} % in tolerance" in macro
     assert (freecad.folder / "blade.FCStd").is_file()
 
 

@@ -3378,6 +3378,17 @@ im Mittel {} abgetragen</translation>
     </message>
 </context>
 <context>
+    <name>BeltGrinding_ExampleKnife</name>
+    <message>
+        <source>Example: chef&apos;s knife</source>
+        <translation>Beispiel: Kochmesser</translation>
+    </message>
+    <message>
+        <source>Makes a document with a knife, ground by a robot that speeds up and slows down</source>
+        <translation>Erstellt ein Dokument mit einem Messer, geschliffen von einem Roboter, der beschleunigt und bremst</translation>
+    </message>
+</context>
+<context>
     <name>BeltGrinding_ExampleTap</name>
     <message>
         <source>Example: mixer tap</source>

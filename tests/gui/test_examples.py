@@ -103,6 +103,17 @@ picture("example-vane")
     )
 
 
+def test_the_knife(walk):
+    walk(
+        """
+menu("Example: chef's knife")
+doc = ground((-0.5, 0.8, -0.4))
+assert 90 < float(tutorial.statistics()["In tolerance"].split()[0]) < 98
+picture("example-knife")
+"""
+    )
+
+
 def test_the_readme_shows_an_animation():
     kept = pictures.IMAGES / "tap.gif"
     assert "docs/images/tap.gif" in (pictures.ROOT / "README.md").read_text()

@@ -32,5 +32,7 @@ def play(dock, name):
     pictures.MADE.mkdir(parents=True, exist_ok=True)
     path = Path(pictures.MADE, f"{name}.gif")
     times = [STEP] * (FRAMES - 1) + [STILL]
-    frames[0].save(path, save_all=True, append_images=frames[1:], duration=times, loop=0, optimize=True)
+    frames[0].save(
+        path, save_all=True, append_images=frames[1:], duration=times, loop=0, optimize=True
+    )
     return path.read_bytes()

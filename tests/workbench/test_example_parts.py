@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 import beltgrinding  # noqa: E402
 from beltgrinding.programs.registry import read_program  # noqa: E402
 
-EXAMPLES = ("tap", "vane")
+EXAMPLES = ("tap", "vane", "knife")
 SCRIPT = """
 import importlib, os, sys
 status = 1
@@ -96,3 +96,20 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     sides = sorted(shares.values())[-2:]
     assert sides[0] > 0.88  # of pressure and suction side
     assert min(shares.values()) < 0.4  # the leading edge
+
+
+def test_the_robot_slows_down_at_the_knifes_tip(made):
+    summary, kinds, verdict = ground(made / "knife")
+    assert 0.9 < summary["in_tolerance_area_share"] < 0.98
+    assert summary["robot"]["reached_poses"] == summary["robot"]["poses"]
+    assert set(kinds) <= {"gouge", "edge_contact"}
+    tip = min(verdict["clusters"], key=lambda one: one["worst"]["value_mm"])
+    assert tip["centroid_mm"][0] > 175.0 and tip["worst"]["value_mm"] < -0.3
+
+    # At a constant feed the tip would get off lightly.
+    job = json.loads((made / "knife" / "job.json").read_text())
+    job["simulation"]["timing"] = "constant_feed"
+    (made / "knife" / "steady.json").write_text(json.dumps(job))
+    steady = beltgrinding.run(made / "knife" / "steady.json").summary
+    assert steady["deviation_mm"]["min"] > 0.7 * tip["worst"]["value_mm"]
+    assert steady["below_tolerance_area_share"] < 0.7 * summary["below_tolerance_area_share"]

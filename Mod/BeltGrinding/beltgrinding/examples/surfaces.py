@@ -22,6 +22,17 @@ def pieces(points, borders):
     return cut
 
 
+def side(points):
+    """The Part.BSplineCurve through (n, 3) points from the first to the last, one parameter a point."""
+    import FreeCAD
+    import Part
+
+    curve = Part.BSplineCurve()
+    places = [FreeCAD.Vector(*point) for point in points]
+    curve.interpolate(places, Parameters=[float(k) for k in range(len(places))])
+    return curve
+
+
 def skin(curves, at):
     """The face through B-spline curves of equal degree and knots, one at each of the values ``at``, which
     become its second parameter. Faces of neighbouring pieces have the same border.

@@ -10,7 +10,7 @@ import Part
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError
-from ..examples import blade, tap, vane
+from ..examples import blade, knife, tap, vane
 from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
@@ -71,7 +71,7 @@ def open_job(doc, path):
         raise
 
 
-EXAMPLES = {"blade": blade, "tap": tap, "vane": vane}
+EXAMPLES = {"blade": blade, "tap": tap, "vane": vane, "knife": knife}
 
 
 def open_example(folder, name="blade"):

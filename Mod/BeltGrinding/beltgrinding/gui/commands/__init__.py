@@ -52,7 +52,12 @@ SUBMENUS = {
         files.ExportJob,
         files.ImportResult,
     ),
-    QT_TRANSLATE_NOOP("Workbench", "Examples"): (files.ExampleBlade, files.ExampleTap, files.ExampleVane),
+    QT_TRANSLATE_NOOP("Workbench", "Examples"): (
+        files.ExampleBlade,
+        files.ExampleTap,
+        files.ExampleVane,
+        files.ExampleKnife,
+    ),
 }
 
 

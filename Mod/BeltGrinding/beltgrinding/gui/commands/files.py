@@ -99,6 +99,16 @@ class ExampleVane(ExampleBlade):
     EXAMPLE = "vane"
 
 
+class ExampleKnife(ExampleBlade):
+    NAME = "BeltGrinding_ExampleKnife"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleKnife", "Example: chef's knife")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExampleKnife",
+        "Makes a document with a knife, ground by a robot that speeds up and slows down",
+    )
+    EXAMPLE = "knife"
+
+
 class Calibrate(Command):
     NAME = "BeltGrinding_Calibrate"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Calibrate", "Calibrate removal law...")

@@ -59,7 +59,7 @@ def walk(freecad):
 
     def run(body):
         body = PREPARE + body + '\nPath("walked.json").write_text(json.dumps(walked()))\n'
-        freecad.run(body, window=True)
+        freecad.run(body, window=True, fresh=True)  # its tool bar tells what was selected before
         release, names = json.loads((freecad.folder / "walked.json").read_text())
         pictures.check(release, names)
 

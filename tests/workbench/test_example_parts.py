@@ -113,3 +113,20 @@ def test_the_robot_slows_down_at_the_knifes_tip(made):
     steady = beltgrinding.run(made / "knife" / "steady.json").summary
     assert steady["deviation_mm"]["min"] > 0.7 * tip["worst"]["value_mm"]
     assert steady["below_tolerance_area_share"] < 0.7 * summary["below_tolerance_area_share"]
+
+
+def test_an_example_that_there_is_not_is_refused_and_leaves_no_document(freecad):
+    freecad.run(
+        """
+import FreeCAD
+import beltgrinding
+try:
+    beltgrinding.open_example("spoon", "spoon")
+    raise AssertionError
+except beltgrinding.InputError as error:
+    assert error.code == "objects.no_example" and "tap" in str(error), error
+assert not FreeCAD.listDocuments()
+job = beltgrinding.open_example("knife", "knife")
+assert job.Document.Label == "Knife" and job.Timing == "trapezoidal"
+"""
+    )

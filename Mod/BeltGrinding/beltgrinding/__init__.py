@@ -80,6 +80,7 @@ DOCUMENT_FUNCTIONS = (
     "check_settings",
     "export_job",
     "import_result",
+    "open_example",
     "open_job",
     "make_ground_mesh",
     "compare_scan",

@@ -62,7 +62,12 @@ def shape():
         y = 0.5 * (EDGE + (thickness - EDGE) * up**ROUND)
         right = np.stack([np.full(POINTS, x), -y, edge + up * (spine - edge)], axis=1)
         left = right * (1, -1, 1)
-        corners = (right, np.linspace(right[-1], left[-1], 3), left[::-1], np.linspace(left[0], right[0], 3))
+        corners = (
+            right,
+            np.linspace(right[-1], left[-1], 3),
+            left[::-1],
+            np.linspace(left[0], right[0], 3),
+        )
         sections.append([surfaces.side(points) for points in corners])
     at = [station[0] for station in STATIONS]
     faces = []
@@ -72,7 +77,9 @@ def shape():
     length, width, height, radius = HANDLE
     corner = FreeCAD.Vector(OVERLAP - length, -0.5 * width, STATIONS[0][2] - height + 4.0)
     handle = Part.makeBox(length, width, height, corner)
-    handle = handle.makeFillet(radius, [edge for edge in handle.Edges if edge.BoundBox.XLength > 1.0])
+    handle = handle.makeFillet(
+        radius, [edge for edge in handle.Edges if edge.BoundBox.XLength > 1.0]
+    )
     solid = handle.fuse(blade).Solids[0]
     x, edge, spine, thickness = STATIONS[len(STATIONS) // 2]
     return solid, surfaces.nearest_face(solid, (x, -0.5 * thickness, 0.5 * (edge + spine)))
@@ -88,7 +95,9 @@ def strokes(face):
     feeds = passes.feed(COEFFICIENT, BELT_SPEED, FORCE, ALLOWANCE, passes.widths(points, tangents))
     result = []
     for k in range(PASSES):
-        contacts = passes.contact_frames(points[k] + ALLOWANCE * normals[k], normals[k], tangents[k])
+        contacts = passes.contact_frames(
+            points[k] + ALLOWANCE * normals[k], normals[k], tangents[k]
+        )
         way = slice(None) if k % 2 == 0 else slice(None, None, -1)
         result.append({"contacts": contacts[way], "feeds": feeds[k][way]})
     return result

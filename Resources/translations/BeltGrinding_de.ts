@@ -3286,7 +3286,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>as Shift+click does</source>
-        <translation type="unfinished"></translation>
+        <translation>wie Umschalt+Klick</translation>
     </message>
 </context>
 <context>

@@ -82,7 +82,6 @@ pictures.keep("tap", shot(1000, 600))
 # The wheel runs over it, and leaves the hollow brown.
 menu("Playback")
 dock = field("BeltGrinding_PlaybackDock")
-press("Simulate with recording")
 wait(lambda: dock.scene is not None, 200)
 scene = dock.scene
 scene.cell.root.removeChild(scene.cell.robot.root)  # it stands between the eye and the tap

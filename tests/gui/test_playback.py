@@ -115,10 +115,8 @@ dock.close()
 assert "Recording" in doc.Simulation.PropertiesList
 job.Document.BeltMachine.Force = "20 N"
 doc.recompute()
-menu("Simulate")
-wait(lambda: not doc.Simulation.OutOfDate)
-assert "Recording" not in doc.Simulation.PropertiesList
-Gui.Control.closeDialog()
+__import__("beltgrinding").simulate(job)  # a macro's records nothing
+assert not doc.Simulation.OutOfDate and "Recording" not in doc.Simulation.PropertiesList
 menu("Playback")
 assert field("record").isVisible()
 widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")[0].close()

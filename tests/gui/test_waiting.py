@@ -6,7 +6,7 @@ from pathlib import Path
 import beltgrinding
 from beltgrinding.base import stopping
 from beltgrinding.engine import Cancelled
-from beltgrinding.gui.common import waiting
+from beltgrinding.gui.common import runner, waiting
 from beltgrinding.objects import importer, robot_path
 from support.hands import *
 
@@ -101,8 +101,8 @@ def test_what_does_not_listen_is_left_behind(freecad):
         + """
 patch(robot_path, "read_program", deaf)
 cancelled(lambda: importer.insert("pass.csv", doc.Name))
-assert not ended and len(waiting._going) == 1
-wait(lambda: not waiting._going, 8)
+assert not ended and len(runner._going) == 1
+wait(lambda: not runner._going, 8)
 assert ended == ["deaf"] and names().count("RobotPath001") == 0
 """,
         window=True,

@@ -2,6 +2,7 @@
 
 from ..common.compat import QtGui, translate
 from ..common.messages import note_texts
+from ..common.verdict_words import shares
 
 BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
 

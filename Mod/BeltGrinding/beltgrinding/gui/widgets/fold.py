@@ -3,7 +3,7 @@
 from ..common.compat import QtCore, QtGui
 
 
-NARROW = (4, 4, 4, 4)  # pixels; FreeCAD's panels have margins of their own
+NARROW = (4, 9, 4, 4)  # pixels; FreeCAD's panels have margins of their own
 
 
 def slim(form):

@@ -21,14 +21,20 @@ beltgrinding.make_deviation(job)
 assert QtGui.QGuiApplication.primaryScreen().size().width() <= 1368
 wide = {}
 
+def buttons(area):
+    return area.findChildren(QtGui.QDialogButtonBox)
+
 def look(name):
     settle()
     assert Gui.Control.activeDialog(), name
-    bars = [area.horizontalScrollBar().maximum() for area in visible(QtGui.QScrollArea)]
-    if max(bars) > 0:
-        wide[name] = max(bars), sorted(
+    # FreeCAD 1.0 has other areas besides, on its start page.
+    panels = [area for area in visible(QtGui.QScrollArea) if any(b.isVisible() for b in buttons(area))]
+    assert panels, name
+    over = max([area.horizontalScrollBar().maximum() for area in panels], default=0)
+    if over > 0:
+        wide[name] = over, sorted(
             (w.minimumSizeHint().width(), type(w).__name__, w.objectName(), getattr(w, "text", str)())
-            for area in visible(QtGui.QScrollArea)
+            for area in panels
             for w in area.widget().findChildren(QtGui.QWidget)
             if w.isVisible() and w.minimumSizeHint().width() > 150
         )
@@ -46,7 +52,6 @@ for command in ("Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSetti
 assert not wide, wide
 # Panels that went while they worked have left nothing behind.
 assert not [w for w in widgets(QtGui.QWidget, "BeltGrinding_Progress") if w.isVisible()]
-print("fits")
 """
 LANGUAGE = """
 import FreeCAD
@@ -64,4 +69,4 @@ def test_panels_fit_a_small_screen(tmp_path, monkeypatch, language):
     if language == "German":
         freecad.run(LANGUAGE)
     output = freecad.run(BODY, window=True, fresh=True)
-    assert "fits" in output and "Traceback" not in output, output
+    assert "Traceback" not in output, output

@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -10,11 +11,15 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
+from beltgrinding.base import folders  # noqa: E402
+from beltgrinding.cli import interrupts  # noqa: E402
 from beltgrinding.engine import core  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
@@ -92,3 +97,31 @@ def test_ctrl_c_at_two_hundred_moments(tmp_path):
             assert new == ("was written" in told and "nothing" not in told)
     early = sum(status == 130 for status, _, _ in found)
     assert early > MOMENTS // 3
+
+
+@pytest.mark.parametrize("place", ["made", "removed"])
+def test_an_interruption_between_two_lines_leaves_nothing(tmp_path, monkeypatch, place):
+    came = []
+
+    def interrupted(real, after):
+        def call(path, *arguments, **keywords):
+            if came or folders.STAGE not in str(path):
+                return real(path, *arguments, **keywords)
+            came.append(path)
+            if after:
+                real(path, *arguments, **keywords)
+            raise KeyboardInterrupt
+
+        return call
+
+    if place == "made":
+        monkeypatch.setattr(Path, "mkdir", interrupted(Path.mkdir, True))
+    else:
+        monkeypatch.setattr(shutil, "rmtree", interrupted(shutil.rmtree, False))
+    before = signal.signal(signal.SIGINT, interrupts.stop)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            folders.replace(tmp_path / "out", {"a": b"new"})
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert came and not [p.name for p in tmp_path.rglob(folders.STAGE + "*")]

@@ -5,6 +5,7 @@ import contextlib
 import errno
 import json
 import os
+import shutil
 import signal
 import threading
 import time
@@ -16,6 +17,7 @@ from .. import engine
 PART = ".beltgrind-part-"  # what is not whole yet; not NAME and more, which may be too long a name
 LEFT_OVER = 3600.0  # s; a part of that age is a killed writer's
 _written = collections.deque(maxlen=1)
+_begun = set()  # files and folders that are not to outlast this process
 
 
 def write_whole(path, data):
@@ -29,6 +31,7 @@ def write_whole(path, data):
     part = path.with_name(PART + uuid.uuid4().hex)
     with interruptible():
         _remove_parts(path.parent)
+        begin(part)
         try:
             write_new(part, data)
             if path.exists():
@@ -39,6 +42,7 @@ def write_whole(path, data):
                 written(path)
         finally:
             part.unlink(missing_ok=True)
+            end(part)
 
 
 def _remove_parts(folder):
@@ -72,8 +76,31 @@ def interruptible():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         yield
+    except KeyboardInterrupt:
+        with uninterrupted():
+            tidy()
+        raise
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def begin(path):
+    """Notes, before it is made, what is to go whatever happens: an interruption may come between its making and
+    the ``try`` that would remove it, or while it is removed."""
+    _begun.add(path)
+
+
+def end(path):
+    """It is gone, or has its place."""
+    _begun.discard(path)
+
+
+def tidy():
+    """Removes what was begun and has not ended."""
+    for path in list(_begun):
+        with contextlib.suppress(OSError):
+            path.unlink() if not path.is_dir() else shutil.rmtree(path)
+        end(path)
 
 
 def _in_main_thread():

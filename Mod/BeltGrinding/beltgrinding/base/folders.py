@@ -24,7 +24,7 @@ from pathlib import Path
 
 from ..engine import InputError
 from .files import PART as STAGE
-from .files import interruptible, uninterrupted, write_new, written
+from .files import begin, end, interruptible, uninterrupted, write_new, written
 
 JOURNAL = ".beltgrind-ready-"  # whole, and decided: to be ended
 MANIFEST = ".manifest.json"
@@ -211,8 +211,9 @@ def _end_journals(folder):
 def _stage(parent):
     """A new folder that is held as long as it is made; what is left of it in the end goes."""
     path = parent / (STAGE + uuid.uuid4().hex)
-    path.mkdir()
+    begin(path)
     try:
+        path.mkdir()
         held = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
         try:
             with contextlib.suppress(OSError):
@@ -222,6 +223,7 @@ def _stage(parent):
             os.close(held)
     finally:
         shutil.rmtree(path, ignore_errors=True)
+        end(path)
 
 
 def _remove_stages(parent):

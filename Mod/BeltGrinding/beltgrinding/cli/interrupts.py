@@ -13,6 +13,8 @@ def stop(*_):
     a module that does not fit."""
     files = sys.modules.get("beltgrinding.base.files")
     path = files.last_written() if hasattr(files, "last_written") else None
+    if hasattr(files, "tidy"):
+        files.tidy()
     text = f"beltgrind: {TEXT}" if path is None else f"beltgrind: interrupted; {path} was written"
     os.write(2, os.fsencode(text + "\n"))
     os._exit(130)

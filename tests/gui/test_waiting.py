@@ -143,3 +143,37 @@ else:
 """,
         window=True,
     )
+
+
+def test_a_work_that_nobody_waits_for_ends_on_the_windows_thread(freecad):
+    # Freed by its own thread, its timer goes on in the window's, and FreeCAD dies of it.
+    freecad.run(
+        """
+import gc, threading, time, weakref
+from support.hands import *
+from beltgrinding.gui.common.runner import Background
+freed, told = [], []
+
+def let_go(owner):
+    work = Background(lambda context: time.sleep(0.3), lambda *outcome: told.append(outcome), owner)
+    main = threading.main_thread()
+    weakref.finalize(work, lambda: freed.append(threading.current_thread() is main))
+    return work
+
+let_go(None).abandon()
+let_go(None)
+panel = QtGui.QWidget()
+let_go(panel)
+panel.deleteLater()
+DEFERRED_DELETE = 52  # QEvent's number of it: processEvents leaves those alone
+QtCore.QCoreApplication.sendPostedEvents(panel, DEFERRED_DELETE)
+
+def all_freed():
+    gc.collect()
+    return len(freed) == 3
+
+wait(all_freed, 10)
+assert freed == [True] * 3 and told == [(None, None)], (freed, told)
+""",
+        window=True,
+    )

@@ -2,6 +2,7 @@
 
 import threading
 import time
+import weakref
 
 from ...engine import Cancelled, RunContext
 from ...objects import api, job_inputs, simulation as results
@@ -33,7 +34,8 @@ class Background(QtCore.QObject):
         self.timer.start(POLL)
         _going.add(self)
         if owner is not None:
-            owner.destroyed.connect(lambda *_: self.abandon())
+            myself = weakref.ref(self)  # the owner may outlast it
+            owner.destroyed.connect(lambda *_: myself() and myself().abandon())
 
     def cancel(self):
         """Asks the work to end; ``done`` follows with Cancelled."""

@@ -3288,6 +3288,10 @@ im Mittel {} abgetragen</translation>
         <source>as Shift+click does</source>
         <translation>wie Umschalt+Klick</translation>
     </message>
+    <message>
+        <source>⚠ Changed since the values were chosen from the part: the feed need not take the allowance off on the mean any more.</source>
+        <translation>⚠ Geändert, seit die Werte nach dem Bauteil gewählt wurden: Der Vorschub nimmt das Aufmaß im Mittel vielleicht nicht mehr ab.</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

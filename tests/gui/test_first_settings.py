@@ -88,6 +88,7 @@ machine = doc.BeltMachine
 assert 10 <= machine.WheelRadius.Value <= 20, machine.WheelRadius  # not 100 mm on a ring of 35
 assert "Chosen from the part" in field("note").text()
 type_in("WheelWidth", "5 mm")
+assert "Changed since" in field("note").text() and "Chosen from" not in field("note").text()
 assert machine.WheelWidth.Value == 5
 # Other faces: what was chosen follows, what was typed stays.
 Gui.Selection.addSelection(doc.Name, "Ring", f"Face{hollow}")
@@ -147,6 +148,35 @@ menu("New job")
 assert "no pass is left" in field("note").text()
 press("OK")
 assert [o.Label for o in doc.BeltGrindingJob.Group] == ["Stock", "Belt machine"]
+""",
+        window=True,
+    )
+
+
+def test_a_program_takes_the_place_of_proposed_passes_whatever_way_it_comes(freecad):
+    freecad.run(
+        """
+import beltgrinding
+from beltgrinding.objects import importer
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeBox(60, 40, 20)
+doc.recompute()
+job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
+beltgrinding.set_up(job)
+assert doc.RasterPath.PoseCount > 2
+importer.insert("pass.csv", doc.Name)  # as a dropped file comes; else both would be ground
+assert [o.Label for o in job.Group] == ["Stock", "Belt machine", "pass"]
+view = doc.RobotPath.ViewObject
+view.Proxy.doubleClicked(view)
+settle()
+assert "takes the place" in field("note").text()
+press("OK")
+beltgrinding.make_raster(job)  # asked for: it stays
+beltgrinding.import_program(job, "pass.csv")
+assert len(job.Group) == 5
 """,
         window=True,
     )

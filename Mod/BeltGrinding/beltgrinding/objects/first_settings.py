@@ -7,7 +7,7 @@ from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
 from .job_data import child, children, design, required
-from .raster_path import RasterPath, generate
+from .raster_path import RasterPath, generate, proposed
 from .set_up import make_belt_machine, make_raster, make_stock
 from .stock import Stock
 
@@ -30,9 +30,10 @@ def set_up(job, text=""):
         path = make_raster(job, compute=False)
         path.Proposed = True
     apply(job, found)
-    for path in children(job, RasterPath):
-        generate(path)
-        path.recompute()
+    for path in children(job, RasterPath):  # robot programs are among them
+        if proposed(path):
+            generate(path)
+            path.recompute()
     return found
 
 
@@ -90,17 +91,3 @@ def _is(now, value):
     if isinstance(value, tuple):
         return all(abs(a - b) < 1e-9 for a, b in zip(now, value))
     return now == value if isinstance(value, str) else abs(float(now) - value) < 1e-9
-
-
-def proposed(path):
-    """Whether a raster path is a first proposal that nobody has looked at; older documents have none."""
-    return getattr(path, "Proposed", False)
-
-
-def replace_proposed(job):
-    """Removes the passes that were only proposed, for a program of the user's own; their labels."""
-    gone = [path for path in children(job, RasterPath) if proposed(path)]
-    labels = [path.Label for path in gone]
-    for path in gone:
-        job.Document.removeObject(path.Name)
-    return labels

@@ -121,3 +121,17 @@ def _inputs(obj):
     text = json.dumps([data, settings, digest], sort_keys=True)
     data["design"]["brep"] = shape
     return data, settings, hashlib.sha256(text.encode()).hexdigest()
+
+
+def proposed(path):
+    """Whether a raster path is a first proposal that nobody has looked at; older documents have none."""
+    return getattr(path, "Proposed", False)
+
+
+def replace_proposed(job):
+    """Removes the passes that were only proposed, for a program of the user's own; their labels."""
+    gone = [path for path in job_data.children(job, RasterPath) if proposed(path)]
+    labels = [path.Label for path in gone]
+    for path in gone:
+        job.Document.removeObject(path.Name)
+    return labels

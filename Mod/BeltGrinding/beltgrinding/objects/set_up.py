@@ -92,7 +92,9 @@ def wear_belt(job):
 
 
 def import_program(job, path, **properties):
-    """Adds a robot program's file (.src, .csv) as RobotPath to a job, or to a document."""
+    """Adds a robot program's file (.src, .csv) as RobotPath to a job, or to a document. In the job it takes the
+    place of passes that were only proposed (``set_up``), or both would be ground.
+    """
     document = job if isinstance(job, FreeCAD.Document) else job.Document
     program = document.addObject("Path::FeaturePython", "RobotPath")
     with removed_on_error(program):
@@ -103,6 +105,8 @@ def import_program(job, path, **properties):
             program.Machine = child(job, belt_machine.BeltMachine)
             job.addObject(program)
         program.recompute()
+    if job is not document:
+        program.Proxy.replaced = raster_path.replace_proposed(job)
     return program
 
 
@@ -120,6 +124,7 @@ def follow_path(job, source, **properties):
         program.Label = f"{source.Label} ground"
         job.addObject(program)
         program.recompute()
+    program.Proxy.replaced = raster_path.replace_proposed(job)
     return program
 
 

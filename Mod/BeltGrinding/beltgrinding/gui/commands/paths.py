@@ -4,7 +4,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import api, first_settings, freecad_path, robot_path
+from ...objects import api, freecad_path, robot_path
 from ...objects.proxy import type_of
 from ..common.compat import QtGui, translate
 from ..common.file_filters import programs_filter
@@ -37,11 +37,6 @@ def import_program(job, path):
         job.Document, translate("BeltGrinding", "Import robot program"), panel=True
     ) as step:
         program = api.import_program(job, path)
-        gone = first_settings.replace_proposed(job)
-        if gone:
-            program.Proxy.note = translate(
-                "BeltGrinding", "It takes the place of the passes that were proposed: {}"
-            ).format(", ".join(gone))
     if not step.failed:
         edit(program)
 

@@ -5,8 +5,7 @@ import FreeCADGui as Gui
 from ...engine import Cancelled, InputError
 from ...objects import first_settings, job_data
 from ...objects.belt_machine import BeltMachine
-from ...objects.first_settings import proposed
-from ...objects.raster_path import RasterPath
+from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
@@ -89,6 +88,11 @@ class JobPanel(Panel):
         self.finish()
         Gui.Selection.addSelectionGate(FaceGate())
         self.tint = FaceTint(self.document)
+        self.chosen = self._numbers()
+        for form in self.form.findChildren(Form):
+            if form.obj is not obj:
+                form.changed = self.estimate
+        self.law.changed = self.estimate
         self.estimate()
 
     def _fold(self, name, content, summary, title="", folded=False):
@@ -114,7 +118,6 @@ class JobPanel(Panel):
         if stock is not None and stock.Kind == "allowance":
             form = Form(stock, "")
             form.add("Allowance", translate("BeltGrinding", "Allowance"))
-            form.changed = self.estimate
             yield Fold(
                 "foldStock",
                 translate("BeltGrinding", "Stock"),
@@ -226,10 +229,26 @@ class JobPanel(Panel):
             return
         first_settings.apply(self.obj, found, self.first)
         self.first = self.obj.Proxy.proposed = found
+        self.chosen = self._numbers()
         for form in self.form.findChildren(Form):
             for name in form.rows:
                 if form.obj.getTypeIdOfProperty(name) in QUANTITIES | NUMBERS:
                     form.refresh(name)
+
+    def _numbers(self):
+        """What the feed of a new job was chosen by, and the feed."""
+        job, paths = self.obj, job_data.children(self.obj, RasterPath)
+        stock, machine = job_data.child(job, Stock), job_data.child(job, BeltMachine)
+        return [
+            (job.ToleranceLower.Value, job.ToleranceUpper.Value, job.LawCoefficient, job.Law),
+            stock and (stock.Kind, stock.Allowance.Value),
+            machine
+            and (
+                *(machine.WheelRadius.Value, machine.WheelWidth.Value, machine.Force.Value),
+                machine.BeltSpeed.Value,
+            ),
+            [(path.Feed.Value, path.StepOverShare) for path in paths if proposed(path)],
+        ]
 
     def estimate(self):
         """Says what the settings will cost."""
@@ -259,7 +278,15 @@ class JobPanel(Panel):
             )
         if self.first is not None:
             lines += [f"⚠ {error_text(note)}" for note in self.first["notes"]]
-            if "feed_mm_s" in self.first:
+            if "feed_mm_s" in self.first and self._numbers() != self.chosen:
+                lines.append(
+                    translate(
+                        "BeltGrinding",
+                        "⚠ Changed since the values were chosen from the part: the feed need not take the "
+                        "allowance off on the mean any more.",
+                    )
+                )
+            elif "feed_mm_s" in self.first:
                 lines.append(
                     translate(
                         "BeltGrinding",
@@ -278,7 +305,7 @@ class JobPanel(Panel):
 
     def apply(self):
         if self.passes is not None and not self.passes.isChecked():
-            first_settings.replace_proposed(self.obj)
+            replace_proposed(self.obj)
 
     def close(self):
         self.obj.Proxy.proposed = None

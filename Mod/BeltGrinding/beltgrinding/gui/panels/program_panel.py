@@ -111,10 +111,15 @@ class ProgramPanel(Panel):
         text = translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
             obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
         )
-        note = getattr(obj.Proxy, "note", "")  # of its import
-        self.tell("\n".join(filter(None, (text, note))))
+        replaced = getattr(obj.Proxy, "replaced", [])  # by its import
+        if replaced:
+            note = translate(
+                "BeltGrinding", "It takes the place of the passes that were proposed: {}"
+            )
+            text += "\n" + note.format(", ".join(replaced))
+        self.tell(text)
 
     def close(self):
         _open.remove(self)
-        self.obj.Proxy.note = ""
+        self.obj.Proxy.replaced = []
         self.walk.release()

@@ -16,6 +16,7 @@ job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
 beltgrinding.set_up(job)
 beltgrinding.make_belt(job)
 beltgrinding.import_program(job, "pass.csv")
+beltgrinding.make_raster(job)
 beltgrinding.simulate(job)
 beltgrinding.make_deviation(job)
 assert QtGui.QGuiApplication.primaryScreen().size().width() <= 1368

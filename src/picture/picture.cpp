@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kMostPixels = 8192;  // a side
 constexpr std::size_t kRays = 2;           // a pixel, in both directions
 constexpr std::size_t kRowsOfTask = 8;     // pixels
+constexpr std::size_t kPointsOfTask = 16;  // of lines of sight
 constexpr float kAmbient = 0.5F;           // share of the light that comes from everywhere
 constexpr float kCreaseCosine = 0.82F;  // 35 degrees: beyond the facets of a smooth triangulation
 constexpr float kDepthJump = 6.0F;      // rays' distances that a surface leaps at an outline
@@ -189,6 +190,26 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 const Box& Renderer::extents() const {
     return scene_->extents;
+}
+
+std::vector<std::uint8_t> Renderer::seen(const std::vector<Vec3>& points,
+                                         const std::vector<Vec3>& directions, double slack) const {
+    std::vector<std::uint8_t> seen(points.size() * directions.size());
+    std::vector<Vec3f> ways;
+    ways.reserve(directions.size());
+    for (const Vec3& direction : directions) ways.push_back(direction.normalized().cast<float>());
+    const auto near = static_cast<float>(slack);
+    parallel_blocks(points.size(), kPointsOfTask, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            const Vec3f from = (points[p] - scene_->origin).cast<float>();
+            for (std::size_t d = 0; d < ways.size(); ++d) {
+                const RayScene::Hit hit = scene_->rays->first(
+                    from, ways[d], near, std::numeric_limits<float>::infinity());
+                seen[p * ways.size() + d] = hit.distance < 0.0F ? 1 : 0;
+            }
+        }
+    });
+    return seen;
 }
 
 Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t height,

@@ -79,7 +79,25 @@ void bind_picture(py::module_& m) {
             "An orthographic camera that looks at target (mm) along direction, its picture height "
             "mm high, that sees nothing farther than near mm before target. Returns rgb (rows, "
             "columns, 3) uint8 and depth (rows, columns) float32, mm "
-            "beyond target; NaN: nothing there.");
+            "beyond target; NaN: nothing there.")
+        .def(
+            "seen",
+            [](const Renderer& renderer, const Array<double>& points,
+               const Array<double>& directions, double slack) {
+                const auto from = rows_of<Vec3, double>(points, "points");
+                const auto ways = rows_of<Vec3, double>(directions, "directions");
+                std::vector<std::uint8_t> seen;
+                {
+                    const py::gil_scoped_release release;
+                    seen = renderer.seen(from, ways, slack);
+                }
+                return own(std::move(seen))
+                    .reshape({static_cast<py::ssize_t>(from.size()),
+                              static_cast<py::ssize_t>(ways.size())});
+            },
+            py::arg("points"), py::arg("directions"), py::arg("slack"),
+            "Lines of sight, (n, m) uint8: 1 where nothing stands between points (n, 3) mm and a "
+            "camera far away in directions (m, 3); what lies within slack mm does not hide.");
 }
 
 }  // namespace beltgrinding::python

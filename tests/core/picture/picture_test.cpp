@@ -151,5 +151,17 @@ TEST(Renderer, RefusesWhatCannotBeDrawn) {
     EXPECT_THROW(renderer.render(kFromAbove, 10, 10, context), Cancelled);
 }
 
+TEST(Renderer, SeesPastWhatDoesNotHideAPoint) {
+    // A square of 4 mm, 1 mm above the point: hides it from above, not from the side.
+    const Renderer renderer({square(4.0, 0.0, 1.0, kRed), square(20.0, 0.0, 0.0, kBlue)});
+    const std::vector<Vec3> points{{0, 0, 0}, {5, 0, 0}};
+    const std::vector<Vec3> ways{{0, 0, 2}, {1, 0, 0.2}, {-1, 0, 0.2}, {0, 0, -1}};
+    const std::vector<std::uint8_t> expected{0, 1, 1, 1, 1, 1, 0, 1};
+    // From below the point's own surface lies within the slack.
+    EXPECT_EQ(renderer.seen(points, ways, 0.01), expected);
+    EXPECT_EQ(renderer.seen({{0, 0, 0}}, {{0, 0, 1}}, 1.5), std::vector<std::uint8_t>{1});
+    EXPECT_TRUE(renderer.seen({}, ways, 0.01).empty());
+}
+
 }  // namespace
 }  // namespace beltgrinding

@@ -11,6 +11,7 @@ import numpy as np
 from PIL import Image
 
 from ..engine import core
+from . import sight
 
 PART_COLOUR = 0xB9BDC3FF  # of what is not ground: neutral, unlike any deviation
 WIDTH, HEIGHT = 1600, 1200  # pixels
@@ -19,9 +20,9 @@ NARROWEST, WIDEST = 0.8, 1.7  # width by height of such a picture
 CLOSE_WIDTH, CLOSE_HEIGHT = 800, 600
 MARGIN = 1.06  # of the extents in the picture
 CHORD = 1e-3  # chord error of the rest of the part, of its diagonal
-TURN, TILT = 25.0, 20.0  # degrees by which a view leaves the surface's normal, to look like a body
+UPRIGHT = (0.0, 0.0, 1.0)
+AROUND, SAME_SIDE = 200, 0.2  # samples around a spot, at most; cosine between normals of one side
 STEEP = 30.0  # degrees from an axis within which it cannot be up
-CLOSED = 0.3  # of the area: a mean normal shorter than that says nothing
 CLOSE_UP = 40  # samples from the lower to the upper border of a close-up, at least
 CLOSEST_SHARE = 0.3  # of the field's diagonal, at most
 HIDDEN = 2.0  # samples that a point may lie behind what the picture shows there
@@ -75,10 +76,10 @@ class Studio:
 
     def __init__(self, field, colours, shape=None, context=None):
         self.field = field
-        points = field.points + field.height[:, None] * field.normals
+        self.points = field.points + field.height[:, None] * field.normals
         surfaces = [
             {
-                "vertices": points,
+                "vertices": self.points,
                 "triangles": field.triangles,
                 "normals": field.normals,
                 "colours": colours,
@@ -97,7 +98,7 @@ class Studio:
                     "colours": np.array([PART_COLOUR], dtype=np.uint32),
                 }
             )
-        self.corners = [_corners(points)] + [_corners(s["vertices"]) for s in surfaces[1:]]
+        self.corners = [_corners(self.points)] + [_corners(s["vertices"]) for s in surfaces[1:]]
         self.renderer = core.Renderer(surfaces, context)
 
     def view(
@@ -128,32 +129,43 @@ class Studio:
         )
 
     def both(self, context=None):
-        """The ``View`` in which the ground faces show best, and as large the one from the other side:
-        half a turn about what is upright.
+        """The ``View`` that shows most of the ground faces and, as large, the one that shows most of what
+        the first does not; both upright, and not along an axis, so that the part looks like a body.
         """
-        direction, up = front_camera(self.field)
-        front = self.whole(direction, up, context=context)
+        field, slack = self.field, HIDDEN * self.field.spacing
+        sides = sight.Sides(self.renderer, self.points, field.normals, field.areas, slack)
+        front = self.whole(-sides.front(), UPRIGHT, context=context)
         rows, columns = front.depth.shape
-        back = self.whole(turned(direction, up), up, columns, rows, context)
+        back = self.whole(-sides.back(), UPRIGHT, columns, rows, context)
         return front, back
 
     def close_up(self, point, normal, extent=0.0, context=None):
-        """A ``View`` straight on ``point`` along its ``normal``, ``extent`` mm and some around. What
-        hides the point is cut away.
+        """A ``View`` straight on ``point`` along its ``normal`` or, where something stands in the way, from
+        where it is seen; ``extent`` mm and some around. What hides the point from everywhere is cut away.
         """
         normal = np.asarray(normal, dtype=float)
         low, high = self.renderer.extents
         most = MARGIN * float(np.linalg.norm(np.subtract(high, low)))
         largest = CLOSEST_SHARE * float(np.linalg.norm(np.ptp(self.field.points, axis=0)))
         height = min(max(min(2.0 * extent, largest), CLOSE_UP * self.field.spacing), most)
-        up, near = _up_for(normal, self.field), 2.0 * most
+        slack = HIDDEN * self.field.spacing
+        away, _ = sight.towards(self.renderer, *self._around(point, normal, extent), normal, slack)
+        up, near = _up_for(away, self.field), 2.0 * most
         while True:
             size = CLOSE_WIDTH, CLOSE_HEIGHT
-            view = self.view(point, -normal, up, height, *size, near, context)
-            slack = HIDDEN * self.field.spacing
+            view = self.view(point, -away, up, height, *size, near, context)
             if near < slack or view.shows(point, slack)[0]:
                 return view
             near = 0.5 * min(near, float(-view.depth[CLOSE_HEIGHT // 2, CLOSE_WIDTH // 2]))
+
+    def _around(self, point, normal, extent):
+        """(points, normals) of a place: the point itself, and the samples around on its side."""
+        reach = max(0.5 * extent, 2.0 * self.field.spacing)
+        near = np.flatnonzero(np.linalg.norm(self.field.points - point, axis=1) < reach)
+        near = near[self.field.normals[near] @ normal > SAME_SIDE]
+        near = near[sight.thinned(len(near), AROUND)]
+        points = np.vstack([point, self.points[near]])
+        return points, np.vstack([normal, self.field.normals[near]])
 
 
 def _rest(shape, field):
@@ -195,31 +207,6 @@ def square(direction, up):
     direction = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
     up = np.asarray(up, dtype=float) - np.dot(up, direction) * direction
     return direction, up / np.linalg.norm(up)
-
-
-def front_camera(field):
-    """(direction, up) from which the ground faces are seen best: against their mean normal or, where
-    they close around the part, along the axis against which most of their area faces; turned and
-    tilted a little, and with an axis of the part upright, so that the part looks like a body.
-    """
-    area = field.areas.astype(float)[:, None]
-    mean = (area * field.normals).sum(axis=0) / max(area.sum(), 1e-300)
-    if np.linalg.norm(mean) < CLOSED:
-        axes = np.vstack([np.eye(3), -np.eye(3)])
-        facing = (area * np.clip(field.normals @ axes.T, 0.0, None)).sum(axis=0)
-        mean = axes[int(np.argmax(np.round(facing / facing.max(), 3)))]
-    out = mean / np.linalg.norm(mean)
-    up = _up_for(out, field)
-    side = np.cross(up, out)
-    turn, tilt = np.radians(TURN), np.radians(TILT)
-    level = np.cos(turn) * out + np.sin(turn) * side
-    return -(np.cos(tilt) * level + np.sin(tilt) * up), up
-
-
-def turned(direction, up):
-    """A direction after half a turn about ``up``: the other side, seen from as high."""
-    up = up / np.linalg.norm(up)
-    return 2.0 * np.dot(direction, up) * up - direction
 
 
 def _up_for(out, field):

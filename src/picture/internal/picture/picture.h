@@ -57,6 +57,12 @@ class Renderer {
     Picture render(const Camera& camera, std::size_t width, std::size_t height,
                    const RunContext& context = {}) const;
 
+    /// Lines of sight: 1 at [p * directions.size() + d] where nothing stands between `points[p]`
+    /// and a camera far away in `directions[d]` (not zero, any length), else 0. What lies within
+    /// `slack` mm of a point does not hide it.
+    std::vector<std::uint8_t> seen(const std::vector<Vec3>& points,
+                                   const std::vector<Vec3>& directions, double slack) const;
+
   private:
     struct Scene;
     std::unique_ptr<Scene> scene_;

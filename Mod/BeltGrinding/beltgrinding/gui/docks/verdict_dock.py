@@ -10,8 +10,8 @@ from ...objects.robot_path import RobotPath
 from ...objects.section import forget_field
 from ..common.compat import QtCore, QtGui, translate
 from ..common.verdict_words import headline
-from ..scene import camera
 from ..scene.cell_view import CellView
+from ..scene.sight import Sight
 from ..scene.verdict_scene import VerdictScene
 from ..widgets.pose_walk import PoseTable
 from .object_dock import ObjectDock
@@ -21,6 +21,7 @@ WIDTH = 470  # pixels of the dock as it comes
 SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other
 AROUND = 1.5  # times a cluster's length that the camera sees
 LEAST_SEEN = 10.0  # mm
+WHEELS = 3.2  # radii of the wheel that are seen at a motion
 COLOURS = {"pass": "#1b5e20", "fail": "#b3261e", "unknown": "#8a6d00"}
 
 
@@ -31,7 +32,7 @@ class VerdictDock(ObjectDock):
         super().__init__(translate("BeltGrinding", "Verdict"), "BeltGrinding_VerdictDock")
         self.found = self.scene = self.wheel = None
         self.field = self.cluster_of = None
-        self.shown_path = None
+        self.shown_path = self.sight = None
         body = QtGui.QWidget()
         layout = QtGui.QVBoxLayout(body)
         self.overall = QtGui.QLabel()
@@ -126,7 +127,7 @@ class VerdictDock(ObjectDock):
         if 0 <= row < len(self.shown_regions):
             worst = self.shown_regions[row][0]["worst"]
             if worst is not None and self._read_field():
-                self._fly(worst["sample"], LEAST_SEEN * 2.0)
+                self._sight().at_samples(self.field, [worst["sample"]], LEAST_SEEN * 2.0)
 
     def go_to_cluster(self, row):
         """Looks at a cluster, marks it, and lists its motions."""
@@ -142,22 +143,22 @@ class VerdictDock(ObjectDock):
             self.field, self.cluster_of = objects.cluster_of_samples(job, self.obj.Simulation)
         if self.scene is None:
             self.scene = VerdictScene(self.obj.Document)
-        self.scene.show(self.field, self.cluster_of == row, cluster["worst"]["sample"])
+        inside = self.cluster_of == row
+        self.scene.show(self.field, inside, cluster["worst"]["sample"])
         middle = np.mean(cluster["box_mm"], axis=0)
         size = max(AROUND * cluster["extent_mm"], LEAST_SEEN)
-        self._fly(cluster["worst"]["sample"], size, middle)
+        samples = [cluster["worst"]["sample"], *np.flatnonzero(inside)]
+        self._sight().at_samples(self.field, samples, size, middle)
 
     def _read_field(self):
         if self.field is None:
             self.field = objects.field_of(self.obj.Simulation)
         return self.field is not None
 
-    def _fly(self, sample, size, middle=None):
-        """Looks against the sample's normal, at the sample itself or at ``middle`` (mm)."""
-        normal = self.field.normals[sample]
-        point = self.field.points[sample] if middle is None else middle
-        for view in Gui.getDocument(self.obj.Document.Name).mdiViewsOfType("Gui::View3DInventor"):
-            camera.fly_to(view, point.tolist(), normal.tolist(), size)
+    def _sight(self):
+        if self.sight is None:
+            self.sight = Sight(self.obj.getParentGroup())
+        return self.sight
 
     # Motions
 
@@ -184,6 +185,10 @@ class VerdictDock(ObjectDock):
         if path is None or motion["pose"] >= path.PoseCount:
             return self._show_wheel(None, 0)
         self._show_wheel(path, motion["pose"])
+        contact = self.wheel.frames()["contact"]
+        radius = 0.0 if path.Machine is None else path.Machine.WheelRadius.Value
+        size = max(LEAST_SEEN, WHEELS * radius)
+        self._sight().at_contact(self.wheel, contact[:3, 3], size)
         if self.shown_path is not path:
             self.poses.show_path(path)
             self.shown_path = path
@@ -247,7 +252,9 @@ class VerdictDock(ObjectDock):
             self.wheel.close()
         if self.scene is not None:
             self.scene.close()
-        self.wheel = self.scene = self.shown_path = None
+        if self.sight is not None:
+            self.sight.clear()
+        self.wheel = self.scene = self.shown_path = self.sight = None
         self.poses.hide()
 
     def _forget(self):

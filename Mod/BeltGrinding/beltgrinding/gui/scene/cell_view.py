@@ -12,10 +12,20 @@ from ...base.frames import work_from_frames
 from ...job.bodies import WHEEL
 from ...objects import bodies
 from .robot_view import RobotView
-from .shapes3d import axes, body, material, separator, set_matrix, unpickable, wheel
+from .shapes3d import (
+    axes,
+    body,
+    faint,
+    material,
+    mesh_of,
+    separator,
+    set_matrix,
+    unpickable,
+    wheel,
+)
 
 PLACES = {"wheel": "contact"}  # where a body goes, if it is not called as in a job
-ALARM, TINT = (0.86, 0.12, 0.10), "BeltGrindingTint"
+ALARM, TINT, FADE = (0.86, 0.12, 0.10), "BeltGrindingTint", "BeltGrindingFade"
 CELL = {
     "holding": "tool_in_hand",
     **dict.fromkeys(
@@ -100,14 +110,32 @@ class CellView:
         their own."""
         self.tinted = tuple(names)
         for name, node in self.bodies.items():
-            first = node.getChild(0)
-            if first.getName() == TINT:
-                node.removeChild(first)
+            colour = None
             if name in self.tinted:
                 colour = material(ALARM, 0.4)
-                colour.setName(TINT)
                 colour.setOverride(True)
-                node.insertChild(colour, 0)
+            _put_first(node, TINT, colour)
+
+    def fade(self, names):
+        """Draws the bodies of these names see-through; the others as they are."""
+        for name, node in self.bodies.items():
+            _put_first(node, FADE, faint() if name in names else None)
+
+    def solids(self):
+        """{name as events have it: (points (n, 3) mm, triangles (m, 3))} of bodies and robot at the pose,
+        in the part's coordinates."""
+        if self.machine is None:
+            return {}
+        frames, found = self.frames(), self.robot.solids()
+        for name, frame, obj in bodies.listed(self.machine):
+            points, faces = mesh_of(obj)
+            if len(faces) and PLACES.get(frame, frame) in frames:
+                place = frames[PLACES.get(frame, frame)]
+                points = np.array(points) @ place[:3, :3].T + place[:3, 3]
+                found[name] = points, np.array(faces)
+            elif len(faces):
+                found[name] = np.array(points), np.array(faces)
+        return found
 
     def cell(self):
         return CELL if self.machine is None else self.machine.Proxy.cell(self.machine)
@@ -148,6 +176,16 @@ class CellView:
         return (
             int(near[np.lexsort((depth[near], np.round(distance[near])))[0]]) if len(near) else None
         )
+
+
+def _put_first(group, name, node):
+    """Puts a node of this name before a group's others, in place of one of that name; None: none."""
+    for k in reversed(range(group.getNumChildren())):
+        if group.getChild(k).getName() == name:
+            group.removeChild(k)
+    if node is not None:
+        node.setName(name)
+        group.insertChild(node, 0)
 
 
 def project(view, points):

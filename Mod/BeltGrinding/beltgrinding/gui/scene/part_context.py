@@ -1,5 +1,6 @@
 """The faces of the part that are not ground, and all its edges, for orientation."""
 
+import numpy as np
 import Part
 from pivy import coin
 
@@ -8,12 +9,14 @@ from ...objects import job_data
 
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
-DEFLECTION = 0.002  # chord error, as a share of the part's diagonal
+DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
+REST = "BeltGrindingRest"  # name of the node of the faces that are not ground
 
 
 def rest_of_part(job):
     """Coin node with the job's part without the faces to be ground, and with its edges; not picked."""
     root = coin.SoSeparator()
+    root.setName(REST)
     try:
         shape, numbers = job_data.design(job)
     except InputError:
@@ -39,6 +42,12 @@ def rest_of_part(job):
         root.addChild(node)
     root.addChild(_edges(shape, deflection))
     return root
+
+
+def tessellated(shape):
+    """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here."""
+    points, faces = shape.tessellate(_deflection(shape))
+    return np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
 
 
 def edges_of_part(job):

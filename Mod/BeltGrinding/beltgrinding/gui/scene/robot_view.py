@@ -21,13 +21,14 @@ class RobotView:
         self.root = coin.SoSwitch()
         self.places, self.bodies = [], {}
         self.arm = self.joints = None
+        self.shapes, self.at = [], []  # of the links: (points, triangles), frames at the pose
         self.followed = None  # (n, 6) degrees, where the whole path has been followed
 
     def choose(self, robot):
         """A job's robot, with its defaults; its errors are the panel's."""
         self.joints = self.followed = None
         self.root.removeAllChildren()
-        self.places, self.bodies = [], {}
+        self.places, self.bodies, self.shapes = [], {}, []
         try:
             robot = robots.checked(robot)
             self.arm = robots.arm_of(robot)
@@ -50,8 +51,19 @@ class RobotView:
         self.root.whichChild = coin.SO_SWITCH_ALL
         self.near = self.joints
         work = work_from_base @ self.base_from_robot
-        for place, link in zip(self.places, self.arm.links(self.joints)):
-            set_matrix(place, work @ link)
+        self.at = [work @ link for link in self.arm.links(self.joints)]
+        for place, frame in zip(self.places, self.at):
+            set_matrix(place, frame)
+
+    def solids(self):
+        """{name: (points (n, 3) mm, triangles (m, 3))} of the links as drawn; empty where they are not."""
+        if self.joints is None:
+            return {}
+        return {
+            name: (points @ frame[:3, :3].T + frame[:3, 3], faces)
+            for (name, points, faces), frame in zip(self.shapes, self.at)
+            if len(faces)
+        }
 
     def _build(self, links):
         """Nodes of the links, to be placed."""
@@ -63,6 +75,7 @@ class RobotView:
                     solid.addChild(separator(material(colour), shape))
             self.root.addChild(separator(place, solid))
             self.places.append(place)
+            self.shapes.append((name, *_joined(parts)))
             if solid.getNumChildren():
                 self.bodies[name] = solid
 
@@ -78,3 +91,11 @@ class RobotView:
         if not len(rows):
             return None
         return rows[np.argmin(np.abs(rows - self.near).max(axis=1))]
+
+
+def _joined(parts):
+    """(points, triangles) of several meshes as one."""
+    parts = [(np.asarray(p, dtype=float).reshape(-1, 3), np.asarray(f, dtype=int)) for p, f in parts]
+    starts = np.cumsum([0, *(len(points) for points, _ in parts)])
+    faces = [f.reshape(-1, 3) + start for (_, f), start in zip(parts, starts)]
+    return np.vstack([points for points, _ in parts]), np.vstack(faces)

@@ -31,6 +31,16 @@ def material(colour, transparency=0.0):
     return node
 
 
+def faint():
+    """A material that makes what comes after it see-through, whatever its colour."""
+    node = coin.SoMaterial()
+    for name in ("ambientColor", "diffuseColor", "specularColor", "emissiveColor", "shininess"):
+        getattr(node, name).setIgnored(True)
+    node.transparency = 0.85
+    node.setOverride(True)
+    return node
+
+
 def unpickable():
     style = coin.SoPickStyle()
     style.style = coin.SoPickStyle.UNPICKABLE

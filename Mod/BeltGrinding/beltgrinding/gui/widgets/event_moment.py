@@ -11,11 +11,10 @@ from ...objects.robot_path import RobotPath
 from ..common import event_texts
 from ..common.compat import QtGui
 from ..common.event_texts import COLOURS
-from ..scene.camera import fly_to
 from ..scene.cell_view import CellView
+from ..scene.sight import Sight
 
 LEAST_SIZE, WHEELS = 20.0, 3.2  # mm; radii of the wheel that the view shows
-ASIDE = 0.65  # of the view's direction along the wheel's axis: the contact is seen from the side
 
 
 class EventMoment:
@@ -26,6 +25,7 @@ class EventMoment:
         self.cell = self.mark = None
         self.tinted = []  # views of cells
         self.paths = None
+        self.sight = Sight(job)
 
     def job(self):
         """The job, or None if it or its document is no longer there."""
@@ -60,7 +60,8 @@ class EventMoment:
         contact = cell.frames()["contact"]
         point = contact[:3, 3] if event["point"] is None else np.array(event["point"])
         self._mark(event, point)
-        self._fly(job, contact, point, cell)
+        radius = job_data.child(job, BeltMachine).WheelRadius.Value
+        self.sight.at_contact(cell, point, max(LEAST_SIZE, WHEELS * radius))
 
     def _own_cell(self, job):
         if self.cell is None:
@@ -92,21 +93,6 @@ class EventMoment:
                     scene.removeChild(node)
             self.mark = None
 
-    def _fly(self, job, contact, point, cell):
-        machine = job_data.child(job, BeltMachine)
-        size = max(LEAST_SIZE, WHEELS * machine.WheelRadius.Value)
-        moved = cell.carried(cell.frames())  # the part may be drawn as it moves
-        axis, away = contact[:3, 1], -contact[:3, 2]
-        for view in self._views():
-            ahead = np.array(view.getViewDirection())
-            side = -axis if axis @ (moved[:3, :3].T @ ahead) > 0.0 else axis  # the nearer one
-            place = ASIDE * side + (1.0 - ASIDE) * away
-            # Half way to the wheel's centre, so that both are in the picture.
-            target = point + 0.2 * size * away
-            target = moved[:3, :3] @ target + moved[:3, 3]
-            turned = (moved[:3, :3] @ place).tolist(), (moved[:3, :3] @ away).tolist()
-            fly_to(view, target.tolist(), turned[0], size, turned[1])
-
     def untint(self):
         """Bodies get their own colours back."""
         for cell in self.tinted:
@@ -115,6 +101,7 @@ class EventMoment:
 
     def close(self):
         """Takes everything out of the 3D views."""
+        self.sight.clear()
         self.untint()
         self._unmark()
         self._drop_cell()

@@ -29,6 +29,8 @@ namespace beltgrinding {
 namespace {
 
 constexpr std::size_t kBlock = 16384;              // samples of one task
+constexpr std::size_t kMostColours = 4096;         // of a palette: every GL takes such a texture
+constexpr float kKnownRow = 0.25F, kMissingRow = 0.75F;  // middles of the texture's rows
 constexpr std::uint32_t kUncoloured = 0xFFB0B0B0;  // grey, until colours are set
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Vec3f) == 3 * sizeof(float));
@@ -59,15 +61,25 @@ SbVec3f to_coin(const Vec3f& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// Names of buffers that can only be deleted when their context is current again.
+/// 0xRRGGBBAA as four opaque bytes r g b a.
+std::uint32_t bytes_of(std::uint32_t colour) {
+    const std::uint32_t c = colour | 255U;
+    if constexpr (std::endian::native == std::endian::little)
+        return c >> 24U | (c >> 8U & 0xFF00U) | (c << 8U & 0xFF0000U) | c << 24U;
+    return c;
+}
+
+/// Names of buffers and of a texture that can only be deleted when their context is current again.
 struct Orphans {
-    std::array<GLuint, 4> names;
+    std::array<GLuint, 5> names;
+    GLuint texture;
 };
 
 void delete_orphans(void* closure, std::uint32_t context) {
     auto* orphans = static_cast<Orphans*>(closure);
     cc_glglue_glDeleteBuffers(cc_glglue_instance(static_cast<int>(context)),
                               static_cast<GLsizei>(orphans->names.size()), orphans->names.data());
+    if (orphans->texture != 0) glDeleteTextures(1, &orphans->texture);
     delete orphans;
 }
 
@@ -115,7 +127,7 @@ SoHeightField::~SoHeightField() {
         SoGLCacheContextElement::scheduleDeleteCallback(
             // Out of memory, nothing would be left to do.
             // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new)
-            context, delete_orphans, new Orphans{{b.vertex, b.normal, b.colour, b.index}});
+            context, delete_orphans, new Orphans{{b.vertex, b.normal, b.colour, b.value, b.index}, b.texture});
     }
 }
 
@@ -151,8 +163,9 @@ void SoHeightField::setSamples(std::span<const double> points, std::span<const f
     vertices_.assign(n, Vec3f::Zero());
     colours_.assign(n, kUncoloured);
     heights_.clear();
+    values_.clear();
     for (auto& [context, b] : buffers_) {
-        b.vertices.all = b.normals.all = b.colours.all = b.indices.all = true;
+        b.vertices.all = b.normals.all = b.colours.all = b.values.all = b.indices.all = true;
     }
     setHeights(std::vector<double>(n, 0.0));
 }
@@ -198,11 +211,7 @@ void SoHeightField::setColours(std::span<const std::uint32_t> colours) {
     blocks(n, [&](std::size_t begin, std::size_t end) {
         auto& [first, last] = done[begin / kBlock];
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t c = colours[i] | 255U;
-            std::uint32_t bytes = c;
-            if constexpr (std::endian::native == std::endian::little) {
-                bytes = c >> 24U | (c >> 8U & 0xFF00U) | (c << 8U & 0xFF0000U) | c << 24U;
-            }
+            const std::uint32_t bytes = bytes_of(colours[i]);
             if (colours_[i] == bytes) continue;
             colours_[i] = bytes;
             if (first == last) first = i;
@@ -211,19 +220,66 @@ void SoHeightField::setColours(std::span<const std::uint32_t> colours) {
     });
     Stale changed;
     for (const auto& [first, last] : done) changed.add(first, last);
-    if (changed.begin == changed.end) return;
-    for (auto& [context, b] : buffers_) b.colours.add(changed.begin, changed.end);
+    if (changed.begin == changed.end && values_.empty()) return;
+    values_.clear();
+    for (auto& [context, b] : buffers_) {
+        b.colours.add(changed.begin, changed.end);
+        b.values.all = true;
+    }
+    touch();
+}
+
+void SoHeightField::setValues(std::span<const double> values, double low, double high,
+                              std::span<const std::uint32_t> palette, std::uint32_t missing) {
+    const std::size_t n = size();
+    check_length(values.size(), n, "values");
+    if (!(low < high) || !std::isfinite(high - low) || palette.empty() ||
+        palette.size() > kMostColours) {
+        throw InputError("coin.palette",
+                         "a palette has 1 to {most} colours and spans a range of values",
+                         {{"most", kMostColours}});
+    }
+    const bool fresh = values_.size() != n;
+    values_.resize(n);
+    std::vector<std::pair<std::size_t, std::size_t>> done(block_count(n), {0, 0});
+    blocks(n, [&](std::size_t begin, std::size_t end) {
+        auto& [first, last] = done[begin / kBlock];
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool known = !std::isnan(values[i]);
+            const auto share = known ? static_cast<float>((values[i] - low) / (high - low)) : 0.0F;
+            const std::array<float, 2> at{share, known ? kKnownRow : kMissingRow};
+            if (!fresh && values_[i] == at) continue;
+            values_[i] = at;
+            if (first == last) first = i;
+            last = i + 1;
+        }
+    });
+    std::vector<std::uint32_t> rows;
+    rows.reserve(2 * palette.size());
+    for (const std::uint32_t colour : palette) rows.push_back(bytes_of(colour));
+    rows.resize(2 * palette.size(), bytes_of(missing));
+    const bool recoloured = rows != palette_;
+    palette_ = std::move(rows);
+    Stale changed;
+    for (const auto& [first, last] : done) changed.add(first, last);
+    if (changed.begin == changed.end && !recoloured) return;
+    for (auto& [context, b] : buffers_) {
+        b.values.add(changed.begin, changed.end);
+        b.values.all = b.values.all || fresh;
+        b.palette_stale = b.palette_stale || recoloured;
+    }
     touch();
 }
 
 SoHeightField::Buffers& SoHeightField::buffers(const void* glue, std::uint32_t context) {
     const auto [it, is_new] = buffers_.try_emplace(context);
     if (is_new) {
-        std::array<GLuint, 4> names{};
+        std::array<GLuint, 5> names{};
         cc_glglue_glGenBuffers(static_cast<const cc_glglue*>(glue),
                                static_cast<GLsizei>(names.size()), names.data());
         Buffers& b = it->second;
-        b.vertex = names[0], b.normal = names[1], b.colour = names[2], b.index = names[3];
+        b.vertex = names[0], b.normal = names[1], b.colour = names[2];
+        b.value = names[3], b.index = names[4];
     }
     return it->second;
 }
@@ -231,6 +287,24 @@ SoHeightField::Buffers& SoHeightField::buffers(const void* glue, std::uint32_t c
 void SoHeightField::contextDestroyed(std::uint32_t context, void* self) {
     // The buffers go with their context.
     static_cast<SoHeightField*>(self)->buffers_.erase(context);
+}
+
+void SoHeightField::bindPalette(Buffers& b) {
+    if (b.texture == 0) glGenTextures(1, &b.texture);
+    glBindTexture(GL_TEXTURE_2D, b.texture);
+    if (b.palette_stale) {
+        // Nearest: a mean of two colours would stand for a value that is not there.
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, static_cast<GLsizei>(palette_.size() / 2), 2, 0,
+                     GL_RGBA, GL_UNSIGNED_BYTE, palette_.data());
+        b.palette_stale = false;
+    }
+    glEnable(GL_TEXTURE_2D);
+    glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
 }
 
 void SoHeightField::GLRender(SoGLRenderAction* action) {
@@ -246,28 +320,37 @@ void SoHeightField::GLRender(SoGLRenderAction* action) {
     const cc_glglue* glue = cc_glglue_instance(static_cast<int>(context));
     const bool buffered = cc_glglue_has_vertex_buffer_object(glue) != 0;
     const void *vertices = nullptr, *normals = nullptr, *colours = nullptr, *indices = nullptr;
-    glPushAttrib(GL_LIGHTING_BIT | GL_CURRENT_BIT);
-    glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
+    const bool by_value = !values_.empty();
+    glPushAttrib(GL_LIGHTING_BIT | GL_CURRENT_BIT | GL_TEXTURE_BIT | GL_ENABLE_BIT);
+    glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT | GL_CLIENT_PIXEL_STORE_BIT);
     glColorMaterial(GL_FRONT_AND_BACK, GL_DIFFUSE);
     glEnable(GL_COLOR_MATERIAL);
     // With a buffer bound, a pointer is an offset into it.
     Buffers* b = nullptr;
+    Buffers unbuffered;  // keeps the palette's texture for this once
     if (buffered) {
         b = &buffers(glue, context);
         send(glue, GL_ARRAY_BUFFER, b->vertex, vertices_, b->vertices);
     } else {
         vertices = vertices_.data(), normals = normals_.data();
-        colours = colours_.data(), indices = triangles_.data();
+        colours = by_value ? static_cast<const void*>(values_.data()) : colours_.data();
+        indices = triangles_.data();
     }
     glVertexPointer(3, GL_FLOAT, 0, vertices);
     if (b != nullptr) send(glue, GL_ARRAY_BUFFER, b->normal, normals_, b->normals);
     glNormalPointer(GL_FLOAT, 0, normals);
-    if (b != nullptr) send(glue, GL_ARRAY_BUFFER, b->colour, colours_, b->colours);
-    glColorPointer(4, GL_UNSIGNED_BYTE, 0, colours);
-    if (b != nullptr) send(glue, GL_ELEMENT_ARRAY_BUFFER, b->index, triangles_, b->indices);
-    for (const GLenum array : {GL_VERTEX_ARRAY, GL_NORMAL_ARRAY, GL_COLOR_ARRAY}) {
-        glEnableClientState(array);
+    if (by_value) {
+        if (b != nullptr) send(glue, GL_ARRAY_BUFFER, b->value, values_, b->values);
+        glTexCoordPointer(2, GL_FLOAT, 0, colours);
+        bindPalette(b != nullptr ? *b : unbuffered);
+    } else {
+        if (b != nullptr) send(glue, GL_ARRAY_BUFFER, b->colour, colours_, b->colours);
+        glColorPointer(4, GL_UNSIGNED_BYTE, 0, colours);
     }
+    if (b != nullptr) send(glue, GL_ELEMENT_ARRAY_BUFFER, b->index, triangles_, b->indices);
+    const GLenum coloured = by_value ? GL_TEXTURE_COORD_ARRAY : GL_COLOR_ARRAY;
+    for (const GLenum array : {GLenum{GL_VERTEX_ARRAY}, GLenum{GL_NORMAL_ARRAY}, coloured})
+        glEnableClientState(array);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles_.size()), GL_UNSIGNED_INT,
                    indices);
     if (b != nullptr) {
@@ -276,6 +359,7 @@ void SoHeightField::GLRender(SoGLRenderAction* action) {
     }
     glPopClientAttrib();
     glPopAttrib();
+    if (unbuffered.texture != 0) glDeleteTextures(1, &unbuffered.texture);
     SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
 }
 

@@ -62,4 +62,14 @@ PYBIND11_MODULE(beltgrinding_coin, m) {
             node_at(node).setColours(values(colours));
         },
         py::arg("node"), py::arg("colours"), "(n,) uint32, 0xRRGGBBAA.");
+    m.def(
+        "set_values",
+        [](std::uintptr_t node, const Array<double>& given, double low, double high,
+           const Array<std::uint32_t>& palette, std::uint32_t missing) {
+            node_at(node).setValues(values(given), low, high, values(palette), missing);
+        },
+        py::arg("node"), py::arg("values"), py::arg("low"), py::arg("high"), py::arg("palette"),
+        py::arg("missing"),
+        "(n,) values, coloured at every pixel by palette (m,) 0xRRGGBBAA, which spans low to high; "
+        "missing: the colour of NaN.");
 }

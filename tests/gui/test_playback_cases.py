@@ -115,13 +115,16 @@ assert deviation.ViewObject.Proxy.legend.whichChild.getValue() < 0
 scene.cell.things["contact"].removeAllChildren()
 slider = field("timeSlider")
 slider.setValue(slider.maximum())
-seen = []
-colours = scene.field.drawn.set_colours
-scene.field.drawn.set_colours = lambda packed: (seen.append(set(packed.tolist())), colours(packed))
-scene.recolour(job)
 from beltgrinding import core
-field_ = doc.Simulation.Proxy.field(doc.Simulation)
-assert seen[0] == set(core.deviation_colours(field_, -0.05, 0.05, 0.15, 4, None).tolist())
+from beltgrinding.gui.scene import field_view
+seen = []
+values = scene.field.drawn.set_values
+scene.field.drawn.set_values = lambda *given: (seen.append(given), values(*given))
+scene.recolour(job)
+heights, low, high, palette, missing = seen[0]
+assert (low, high) == (-scene.scale[2], scene.scale[2])
+middles = [low + (high - low) * (k + 0.5) / len(palette) for k in range(len(palette))]
+assert list(palette) == list(core.colour_scale(-0.05, 0.05, 0.15, middles, 4, None))
 
 # The preferences' colours, too.
 from beltgrinding.gui.preferences_page import PreferencesPage
@@ -131,7 +134,7 @@ page.colours["ColourAbove"].show_colour(0x20A040FF)
 page.saveSettings()
 settle()
 assert scene.scale[4] is not None and 0x20A040FF in scene.scale[4]
-assert seen[-1] == set(core.deviation_colours(field_, -0.05, 0.05, 0.15, 4, scene.scale[4]).tolist())
+assert list(seen[-1][3]) == list(core.colour_scale(-0.05, 0.05, 0.15, middles, 4, scene.scale[4]))
 dock.close()
 settle()
 assert deviation.ViewObject.SwitchNode.whichChild.getValue() >= 0

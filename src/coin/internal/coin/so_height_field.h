@@ -3,6 +3,7 @@
 #include <Inventor/nodes/SoShape.h>
 #include <Inventor/nodes/SoSubNode.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -13,8 +14,9 @@
 
 namespace beltgrinding {
 
-/// A Coin node that draws a height field: one vertex and one colour a sample, from vertex buffers
-/// of which only what has changed is sent to the graphics card. Lit or flat by the SoLightModel
+/// A Coin node that draws a height field: one vertex and one colour or value a sample, from vertex
+/// buffers of which only what has changed is sent to the graphics card. Values are coloured by a
+/// palette at every pixel, so that a border between two colours runs through the triangles. Lit or flat by the SoLightModel
 /// before it; seen from both sides by the SoShapeHints. A pick gives an SoFaceDetail whose point
 /// details hold the samples at the triangle's corners. Lengths in mm, frame: work.
 ///
@@ -39,6 +41,11 @@ class SoHeightField : public SoShape {
     void setHeights(std::span<const double> heights);
     /// One colour 0xRRGGBBAA a sample; drawn opaque. Throws InputError for a wrong number.
     void setColours(std::span<const std::uint32_t> colours);
+    /// One value a sample in place of its colour: `palette` (0xRRGGBBAA, at most 4096) spans
+    /// [low, high], beyond which its ends go on; where a value is NaN, `missing` is drawn. Throws
+    /// InputError for a wrong number or an empty range.
+    void setValues(std::span<const double> values, double low, double high,
+                   std::span<const std::uint32_t> palette, std::uint32_t missing);
     std::size_t size() const { return points_.size(); }
 
     void GLRender(SoGLRenderAction* action) override;
@@ -59,11 +66,13 @@ class SoHeightField : public SoShape {
     };
     /// The buffers of one GL context (several views share one, or do not).
     struct Buffers {
-        unsigned vertex = 0, normal = 0, colour = 0, index = 0;
-        Stale vertices, normals, colours, indices;
+        unsigned vertex = 0, normal = 0, colour = 0, value = 0, index = 0, texture = 0;
+        Stale vertices, normals, colours, values, indices;
+        bool palette_stale = true;
     };
 
     Buffers& buffers(const void* glue, std::uint32_t context);
+    void bindPalette(Buffers& b);
     static void contextDestroyed(std::uint32_t context, void* self);
     SoDetail* detail(const TriangleHit& hit) const;
 
@@ -72,6 +81,9 @@ class SoHeightField : public SoShape {
     std::vector<Vec3f> vertices_;
     std::vector<double> heights_;
     std::vector<std::uint32_t> colours_;  // bytes in the order r g b a
+    /// Texture coordinates: where in the palette, and in what row; empty: colours are drawn.
+    std::vector<std::array<float, 2>> values_;
+    std::vector<std::uint32_t> palette_;  // two rows of bytes r g b a: values, missing ones
     std::vector<Triangle> triangles_;
     Eigen::AlignedBox3f box_;
     TrianglePicker picker_;

@@ -1,4 +1,5 @@
-"""A height field in the 3D view, fast enough to follow a run: one vertex and one colour a sample.
+"""A height field in the 3D view, fast enough to follow a run: one vertex and one value a sample, coloured
+at every pixel.
 
 Drawn by our own Coin node, SoHeightField (module ``beltgrinding_coin``), where that shares its Coin
 with pivy and FreeCAD; else by Coin's stock nodes, which do the same more slowly.
@@ -15,6 +16,8 @@ STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHe
 PICK_RADIUS = 1.0  # pixels
 DEVIATION, REMOVED, UNCERTAINTY, FACE = "deviation", "removed depth", "uncertainty", "face"
 PRESSURE, CONTACT = "pressure", "contact"
+LEAST = 1e-9  # of a scale: half its range
+PALETTE = 2048  # colours from one end of a scale to the other
 MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT)
 
 
@@ -52,6 +55,9 @@ class _OwnNode:
 
     def set_colours(self, packed):
         self.module.set_colours(self.address, packed)
+
+    def set_values(self, values, low, high, palette, missing):
+        self.module.set_values(self.address, values, low, high, palette, missing)
 
 
 class _StockNodes:
@@ -139,15 +145,25 @@ class FieldView:
         if values is not None:
             values = self._one_each(values, np.float64)
         if mode == FACE:
-            colours = core.face_colours(self.faces)
+            self.drawn.set_colours(core.face_colours(self.faces))
         elif mode == DEVIATION:
             values = self.heights if values is None else values
-            colours = core.height_colours(values, self.flags, *limits)
+            if self.own_node:
+                end = max(float(limits[2]), LEAST)
+                palette = core.colour_scale(*limits[:3], _middles(-end, end), *limits[3:])
+                self._set_values(values, -end, end, palette)
+            else:
+                self.drawn.set_colours(core.height_colours(values, self.flags, *limits))
         elif mode in MODES:
             if values is None:
                 values = self._known(mode)
             limits = limits or ((1.0,) if mode == CONTACT else ())
-            colours = core.magnitude_colours(values, self.flags, *limits)
+            if self.own_node:
+                end = max(float(limits[0]), LEAST)
+                palette = core.uncertainty_scale(end, _middles(0.0, end))
+                self._set_values(values, 0.0, end, palette)
+            else:
+                self.drawn.set_colours(core.magnitude_colours(values, self.flags, *limits))
         else:
             raise InputError(
                 "gui.colour_mode",
@@ -155,7 +171,12 @@ class FieldView:
                 mode=mode,
                 modes=", ".join(MODES),
             )
-        self.drawn.set_colours(colours)
+
+    def _set_values(self, values, low, high, palette):
+        missed = (self.flags & core.MISSED) != 0
+        values = np.where(missed, np.nan, values)
+        (missing,) = core.colour_scale(-1.0, 1.0, 2.0, [np.nan])
+        self.drawn.set_values(values, low, high, palette, int(missing))
 
     def _known(self, mode):
         if mode == REMOVED:
@@ -222,3 +243,8 @@ class FieldView:
         matrix = coin.SoGetMatrixAction(region)
         matrix.apply(search.getPath())
         return matrix.getMatrix()
+
+
+def _middles(low, high):
+    """The values in the middle of a palette's colours."""
+    return (low + (high - low) * (np.arange(PALETTE) + 0.5) / PALETTE).tolist()

@@ -1,45 +1,30 @@
-"""The legend of the deviation: a colour bar with numbers and words, laid over the 3D view.
+"""The legend of the deviation, laid over the 3D view: what it says, and where it stands.
 
 An end of the bar is an arrow where values beyond it have its colour, or may have.
 """
 
+import numpy as np
 from pivy import coin
 
 from ...engine import core
 from ...objects import preferences
 from ..common.compat import translate
+from ..common.theme import theme
+from . import legend_picture
+from .legend_picture import Spec
 
-BAR_STEPS = 120
-# In the legend's own coordinates: the view is 2 high, its middle 0.
-LEFT, WIDTH, HEIGHT = 0.0, 0.07, 1.3
+BAR_STEPS = 240
 LABEL_GAP = 0.07  # of half the bar: a line of text
-RIGHT = 0.36  # of its ground: room for a line of 14 letters in a view of 600 pixels
-LETTERS = 15  # of a line
-LINE = 0.085  # from line to line, in a view of 350 pixels
-TIP = 0.05  # height of an arrow
-COLUMN = RIGHT + 0.08  # from a legend to the next one beside it
-PLACE = "BeltGrinding_LegendPlace"  # name of the node that says where it is
 # Whether values lie beyond the lower end and the upper one; true, too, where that is not known.
 OPEN = (True, True)
+BORDER = 0.008  # of the view's width
+CUBE, CROSS = 0.28, 0.14  # of the view's height: FreeCAD's cube in a corner, its axes in another
+BETTER = 0.02  # of the part's points that another place must hide less, for the legend to go there
+KEPT = 6  # pictures: views of other sizes, and both themes
 
 
-def _rgb(packed):
-    return tuple((int(packed) >> shift & 255) / 255.0 for shift in (24, 16, 8))
-
-
-def put_in_column(node, column):
-    """Puts a legend, or a group that holds one, beside ``column`` others."""
-    search = coin.SoSearchAction()
-    search.setName(PLACE)
-    search.setSearchingAll(True)
-    search.apply(node)
-    if search.getPath() is not None:
-        place = coin.cast(search.getPath().getTail(), "SoTranslation")
-        place.translation = (-0.95 + COLUMN * column, -0.5 * HEIGHT, 0)
-
-
-def scan_node(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
-    """The legend of a scan's heights, or of their difference from the prediction; always in the
+def scan(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
+    """The ``Spec`` of a scan's heights, or of their difference from the prediction; always in the
     standard colours without steps.
     """
     if difference:
@@ -49,8 +34,8 @@ def scan_node(lower, upper, limit, out_of_date=False, difference=False, beyond=O
     return _deviation(lower, upper, limit, out_of_date, 0, None, text, beyond, not difference)
 
 
-def node(lower, upper, limit, out_of_date=False, bands=0, beyond=OPEN):
-    """The legend of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
+def deviation(lower, upper, limit, out_of_date=False, bands=0, beyond=OPEN):
+    """The ``Spec`` of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
     each ramp; ``beyond``: as OPEN.
     """
     text = translate("BeltGrinding", "deviation, {}")
@@ -71,7 +56,7 @@ def _deviation(lower, upper, limit, out_of_date, bands, choice, text, beyond, ju
         good = translate("BeltGrinding", "good")
         at = _height(0.5 * (lower + upper), limit)
         nearest = min(labels, key=lambda height: abs(height - at))
-        if abs(nearest - at) > 0.5 * LABEL_GAP * HEIGHT:
+        if abs(nearest - at) > 0.5 * LABEL_GAP:
             labels[at] = good
         else:  # no room for a line between
             labels[nearest] += " " + good
@@ -79,7 +64,22 @@ def _deviation(lower, upper, limit, out_of_date, bands, choice, text, beyond, ju
             translate("BeltGrinding", "cut too deep"),
             translate("BeltGrinding", "too much left"),
         )
-    return _legend(colours, labels, text.format(unit.symbol), out_of_date, beyond, words)
+    return Spec(
+        [int(c) for c in colours],
+        labels,
+        text.format(unit.symbol),
+        words,
+        tuple(beyond),
+        _warning(out_of_date),
+    )
+
+
+def _warning(out_of_date):
+    return translate("BeltGrinding", "out of date: simulate again") if out_of_date else ""
+
+
+def _height(value, limit):
+    return (value + limit) / (2 * limit)
 
 
 def label_values(lower, upper, limit, bands=0):
@@ -98,151 +98,126 @@ def label_values(lower, upper, limit, bands=0):
     return values
 
 
-def uncertainty_node(limit, out_of_date=False):
-    """The legend of the deviation's standard deviation, up to ``limit`` mm."""
+def uncertainty(limit, out_of_date=False):
+    """The ``Spec`` of the deviation's standard deviation, up to ``limit`` mm."""
     colours = core.uncertainty_scale(
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
     unit = preferences.deviation_unit()
-    labels = {HEIGHT * k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
+    labels = {k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
     text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
-    return _legend(colours, labels, text, out_of_date, (False, True), ("", ""))
+    colours = [int(c) for c in colours]
+    return Spec(colours, labels, text, ("", ""), (False, True), _warning(out_of_date))
 
 
-def _legend(colours, labels, title, out_of_date, beyond, words):
-    """Colour bar with texts by height at the view's left border; not picked, not counted by
-    fitAll. ``words``: below the bar and above it.
+class Legend:
+    """A legend over the 3D views: ``node`` goes into a scene, where it is not picked and not counted by
+    fitAll. It takes a twelfth of a view's width and stands where it hides least of the part.
     """
-    outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
-    group = coin.SoAnnotation()
-    outer.addChild(group)
-    pick = coin.SoPickStyle()
-    pick.style = coin.SoPickStyle.UNPICKABLE
-    group.addChild(pick)
-    camera = coin.SoOrthographicCamera()
-    camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
-    camera.position = (0, 0, 1)
-    camera.height = 2.0
-    group.addChild(camera)
-    light = coin.SoLightModel()
-    light.model = coin.SoLightModel.BASE_COLOR
-    group.addChild(light)
-    shift = coin.SoTranslation()
-    shift.setName(PLACE)
-    shift.translation = (-0.95, -0.5 * HEIGHT, 0)
-    group.addChild(shift)
-    titles = [*_lines(title), words[1]] if words[1] else _lines(title)
-    top = HEIGHT + (TIP if beyond[1] else 0.0)
-    bottom = -TIP if beyond[0] else 0.0
-    if words[0]:
-        bottom -= 0.02 + LINE
-    warnings = (
-        _lines(translate("BeltGrinding", "out of date: simulate again")) if out_of_date else []
-    )
-    group.addChild(_panel(bottom, top + 0.13 + LINE * (len(titles) - 1), len(warnings)))
-    rgb = [_rgb(c) for c in colours]
-    group.addChild(_bar(rgb))
-    for there, colour, end, way in zip(beyond, (rgb[0], rgb[-1]), (0.0, HEIGHT), (-TIP, TIP)):
-        if there:
-            group.addChild(_arrow(colour, end, way))
-    text_colour = coin.SoBaseColor()
-    text_colour.rgb = (0.0, 0.0, 0.0)
-    group.addChild(text_colour)
-    font = coin.SoFont()
-    font.name = "Sans"
-    font.size = 14
-    group.addChild(font)
-    for height, text in labels.items():
-        group.addChild(_label(text, LEFT + WIDTH + 0.02, height))
-    for k, line in enumerate(reversed(titles)):
-        group.addChild(_label(line, LEFT, top + 0.06 + LINE * k))
-    if words[0]:
-        group.addChild(_label(words[0], LEFT, bottom))
-    if warnings:
-        warning = coin.SoBaseColor()
-        warning.rgb = (0.7, 0.15, 0.1)
-        group.addChild(warning)
-    for k, line in enumerate(warnings):
-        group.addChild(_label(line, LEFT, bottom - 0.1 - LINE * k))
-    return outer
+
+    def __init__(self):
+        self.spec, self.points = None, np.zeros((0, 3))
+        self.column = 0  # how many others stand beside it
+        self.places = {}  # of a view's size: the place where it stood last
+        self.pictures = {}  # (size, dark): (SbVec2s, bytes)
+        self.drawn = None  # what the image holds
+        self.box = None  # (left, bottom, right, top) in pixels, as drawn last
+        self.node = coin.SoType.fromName("SoSkipBoundingGroup").createInstance()
+        self.node = self.node or coin.SoSeparator()
+        watch = coin.SoCallback()
+        watch.setCallback(self._watch, None)
+        annotation = coin.SoAnnotation()
+        annotation.renderCaching = coin.SoSeparator.OFF
+        camera = coin.SoOrthographicCamera()
+        camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
+        camera.position = (0, 0, 1)
+        camera.height = 2.0
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        self.shift, self.image = coin.SoTranslation(), coin.SoImage()
+        for node in (style, camera, self.shift, self.image):
+            annotation.addChild(node)
+        # Looked at while views of several sizes are drawn: a change must not ask for another drawing.
+        for node in (annotation, self.shift, self.image):
+            node.enableNotify(False)
+        self.node.addChild(watch)
+        self.node.addChild(annotation)
+
+    def show(self, spec):
+        """Shows a ``Spec``."""
+        if spec != self.spec:
+            self.spec = spec
+            self.pictures.clear()
+            self.drawn = None
+            self.node.touch()
+
+    def avoid(self, points):
+        """Points (n, 3) of the part, mm, that it should not hide."""
+        self.points = np.asarray(points, dtype=float).reshape(-1, 3)
+
+    def _watch(self, _, action):
+        if self.spec is None or not action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
+            return
+        state = action.getState()
+        width, height = coin.SoViewportRegionElement.get(state).getViewportSizePixels().getValue()
+        seen = self._seen(state, width, height)
+        key = width, height, theme().dark
+        if key not in self.pictures:
+            while len(self.pictures) >= KEPT:
+                self.pictures.pop(next(iter(self.pictures)))
+            self.pictures[key] = _pixels(legend_picture.draw(self.spec, width, height))
+        size, pixels = self.pictures[key]
+        if self.drawn != key:
+            self.image.image.setValue(coin.SbVec2s(*size), 4 if pixels else 0, pixels)
+            self.drawn = key
+        left, bottom = self._place(seen, size, width, height)
+        self.box = left, bottom, left + size[0], bottom + size[1]
+        self.shift.translation = (2.0 * left / width - 1.0, 2.0 * bottom / height - 1.0, 0.0)
+
+    def _seen(self, state, width, height):
+        """(n, 2) pixels at which the part's points are drawn."""
+        if not len(self.points):
+            return np.zeros((0, 2))
+        volume = coin.SoViewVolumeElement.get(state).getMatrix()
+        model = coin.SoModelMatrixElement.get(state)
+        matrix = np.array(model.getValue()).reshape(4, 4)
+        matrix = matrix @ np.array(volume.getValue()).reshape(4, 4)
+        clip = np.hstack([self.points, np.ones((len(self.points), 1))]) @ matrix
+        inside = clip[:, 3] > 1e-9
+        shares = 0.5 * (clip[inside, :2] / clip[inside, 3:] + 1.0)
+        return shares * (width, height)
+
+    def _place(self, seen, size, width, height):
+        """(left, bottom) in pixels: at a side, or in a corner that FreeCAD leaves free."""
+        border = round(BORDER * width)
+        low, high = CROSS * height, (1.0 - CUBE) * height - size[1]
+        level = 0.5 * (height - size[1])
+        shift = self.column * (size[0] + border)
+        left, right = border + shift, width - border - size[0] - shift
+        aside = min(max(level, low), max(high, border))  # below the cube, above the axes
+        choices = [(left, level), (right, aside), (left, border), (left, height - size[1] - border)]
+        hidden = [_share(seen, (x, y, x + size[0], y + size[1])) for x, y in choices]
+        best = int(np.argmin(hidden))
+        before = self.places.get((width, height), 0)
+        if hidden[best] > hidden[before] - BETTER:
+            best = before
+        self.places[(width, height)] = best
+        return tuple(round(x) for x in choices[best])
 
 
-def _lines(text):
-    """A text in two lines, if it is long and has a place for that."""
-    for mark in (": ", " - "):
-        first, found, rest = text.partition(mark)
-        if found and len(text) > LETTERS:
-            return [first + mark.rstrip(), rest]
-    return [text]
+def _share(points, box):
+    """The share of points (n, 2) in a box (left, bottom, right, top)."""
+    if not len(points):
+        return 0.0
+    inside = (points > box[:2]).all(axis=1) & (points < box[2:]).all(axis=1)
+    return float(inside.mean())
 
 
-def _panel(low, high, lines_below):
-    """A light ground about what is between ``low`` and ``high``: FreeCAD's own background may be dark."""
-    group = coin.SoSeparator()
-    material = coin.SoMaterial()
-    material.diffuseColor = (1.0, 1.0, 1.0)
-    material.transparency = 0.25
-    group.addChild(material)
-    low -= 0.06 + (0.045 + LINE * lines_below if lines_below else 0.0)
-    right = LEFT + RIGHT
-    points = coin.SoCoordinate3()
-    corners = [(LEFT - 0.04, low), (right, low), (right, high), (LEFT - 0.04, high)]
-    points.point.setValues(0, 4, [(x, y, -0.001) for x, y in corners])
-    group.addChild(points)
-    face = coin.SoFaceSet()
-    face.numVertices = 4
-    group.addChild(face)
-    return group
-
-
-def _height(value, limit):
-    return HEIGHT * (value + limit) / (2 * limit)
-
-
-def _label(text, x, y):
-    group = coin.SoSeparator()
-    move = coin.SoTranslation()
-    move.translation = (x, y - 0.012, 0)
-    group.addChild(move)
-    node = coin.SoText2()
-    node.string = text
-    group.addChild(node)
-    return group
-
-
-def _arrow(colour, end, way):
-    """A tip on the bar: its base at the height ``end``, its point ``way`` from there."""
-    group = coin.SoSeparator()
-    binding = coin.SoMaterialBinding()  # the mesh behind has a colour a vertex
-    binding.value = coin.SoMaterialBinding.OVERALL
-    base = coin.SoBaseColor()
-    base.rgb = colour
-    points = coin.SoCoordinate3()
-    corners = [(LEFT, end, 0), (LEFT + WIDTH, end, 0), (LEFT + 0.5 * WIDTH, end + way, 0)]
-    points.point.setValues(0, 3, corners)
-    face = coin.SoFaceSet()
-    face.numVertices = 3
-    for node in (binding, base, points, face):
-        group.addChild(node)
-    return group
-
-
-def _bar(colours):
-    group = coin.SoSeparator()
-    material = coin.SoBaseColor()
-    material.rgb.setValues(0, BAR_STEPS, colours)
-    binding = coin.SoMaterialBinding()
-    binding.value = coin.SoMaterialBinding.PER_FACE
-    corners, indices = [], []
-    for k in range(BAR_STEPS + 1):
-        y = HEIGHT * k / BAR_STEPS
-        corners += [(LEFT, y, 0), (LEFT + WIDTH, y, 0)]
-    for k in range(BAR_STEPS):
-        indices += [2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2, -1]
-    points = coin.SoCoordinate3()
-    points.point.setValues(0, len(corners), corners)
-    faces = coin.SoIndexedFaceSet()
-    faces.coordIndex.setValues(0, len(indices), indices)
-    for node in (material, binding, points, faces):
-        group.addChild(node)
-    return group
+def _pixels(image):
+    """((width, height), bytes from the lower left, RGBA) of a QImage; ((1, 1), b"") of None."""
+    if image is None:
+        return (1, 1), b""
+    turned = image.mirrored(False, True)
+    data = np.frombuffer(turned.constBits(), dtype=np.uint8)
+    rows = data.reshape(turned.height(), turned.bytesPerLine())[:, : 4 * turned.width()]
+    return (turned.width(), turned.height()), rows.tobytes()

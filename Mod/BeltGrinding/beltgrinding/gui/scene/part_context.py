@@ -10,6 +10,7 @@ from ...objects import job_data
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
 DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
+SPREAD = 600  # points over a part
 REST = "BeltGrindingRest"  # name of the node of the faces that are not ground
 
 
@@ -48,6 +49,23 @@ def tessellated(shape):
     """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here."""
     points, faces = shape.tessellate(_deflection(shape))
     return np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
+
+
+def points_of_part(job):
+    """(n, 3) some hundred points spread over a job's part by area, mm; none where it has no part."""
+    try:
+        points, triangles = tessellated(job_data.design(job)[0])
+    except (AttributeError, InputError):  # without a job
+        return np.zeros((0, 3))
+    if not len(triangles):
+        return points[:SPREAD]
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    chance = np.random.default_rng(1)  # the same ones every time
+    chosen = chance.choice(len(triangles), SPREAD, p=areas / areas.sum())
+    u, v = chance.random((2, SPREAD, 1))
+    u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)
+    return a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]
 
 
 def edges_of_part(job):

@@ -12,8 +12,7 @@ from ...objects.robot_path import RobotPath
 from . import legend
 from .cell_view import CellView
 from .field_view import DEVIATION, FieldView
-from .part_context import rest_of_part
-from .shapes3d import separator
+from .part_context import points_of_part, rest_of_part
 
 SAME = 1e-9  # s
 
@@ -45,9 +44,10 @@ class Scene:
         self.cell = CellView(job.Document, machine)
         self.cell.set_path(programs[0].Proxy.arrays(programs[0])["frames"])
         self.cell.root.addChild(self.field.node)
-        # The carrier would move the legend with the part.
-        self.legend = separator(coin.SoResetTransform(), self._legend())
-        self.cell.root.addChild(self.legend)
+        self.legend = legend.Legend()
+        self.legend.avoid(points_of_part(job))
+        self._show_legend()
+        self.cell.root.addChild(self.legend.node)
         if deviation is None or not deviation.ViewObject.Visibility:
             self.cell.root.addChild(rest_of_part(job))  # else the deviation draws it
         self.hidden = []  # (view, switch, what it showed)
@@ -87,13 +87,13 @@ class Scene:
             bands = bands_of(self.deviation)
         return (*scale, bands, preferences.colours())
 
-    def _legend(self):
-        return legend.node(*self.scale[:3], bands=self.scale[3])
+    def _show_legend(self):
+        self.legend.show(legend.deviation(*self.scale[:3], bands=self.scale[3]))
 
     def recolour(self, job):
         """Takes the scale over anew. What a changed Deviation has turned on is turned off again."""
         self.scale = self._scale(job)
-        self.legend.replaceChild(1, self._legend())
+        self._show_legend()
         self.field.colour_by(DEVIATION, *self.scale)
         for _, switch, _ in self.hidden:
             switch.whichChild = coin.SO_SWITCH_NONE

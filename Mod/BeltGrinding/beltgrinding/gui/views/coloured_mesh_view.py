@@ -7,13 +7,14 @@ is framed, not painted.
 from pivy import coin
 
 from ..common.compat import make_matt
-from ..scene import legend
+from ..scene.legend import Legend
+from ..scene.part_context import points_of_part
 from .view import View
 
 
 class ColouredMeshView(View):
-    """Base. The object has ``VertexColors``; subclasses have ``legend_node()``, None where nothing can
-    be said yet.
+    """Base. The object has ``VertexColors``; subclasses have ``legend_spec()``, a legend.Spec or
+    None where nothing can be said yet.
     """
 
     def __init__(self, view):
@@ -26,8 +27,9 @@ class ColouredMeshView(View):
         light = coin.SoLightModel()
         light.model = coin.SoLightModel.BASE_COLOR
         view.RootNode.insertChild(light, 0)
-        self.legend = coin.SoSwitch()
-        view.RootNode.addChild(self.legend)
+        self.drawn, self.legend = Legend(), coin.SoSwitch()
+        self.legend.addChild(self.drawn.node)
+        view.RootNode.insertChild(self.legend, 0)  # before what says how the mesh is drawn
         self.update_legend()
 
     def finishRestoring(self):
@@ -47,25 +49,26 @@ class ColouredMeshView(View):
             self.view.Coloring = False
             self.view.Coloring = True
 
-    def legend_node(self):
+    def legend_spec(self):
         raise NotImplementedError
 
     def update_legend(self):
-        node = self.legend_node()
-        if node is not None:
-            self.legend.removeAllChildren()
-            self.legend.addChild(node)
+        spec = self.legend_spec()
+        if spec is not None:
+            self.drawn.show(spec)
             self._show_legend()
 
     def _show_legend(self):
         shown = self.view.Visibility
+        if shown:
+            self.drawn.avoid(points_of_part(self.view.Object.getParentGroup()))
         self.legend.whichChild = coin.SO_SWITCH_ALL if shown else coin.SO_SWITCH_NONE
         column = 0  # one legend beside the other
         for obj in self.view.Object.Document.Objects:
             proxy = getattr(obj.ViewObject, "Proxy", None)
             if isinstance(proxy, ColouredMeshView) and obj.ViewObject.Visibility:
                 if getattr(proxy, "legend", None) is not None:
-                    legend.put_in_column(proxy.legend, column)
+                    proxy.drawn.column = column
                     column += 1
 
 

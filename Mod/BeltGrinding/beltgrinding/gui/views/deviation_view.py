@@ -3,7 +3,9 @@
 from pivy import coin
 
 from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of
+from ..common.compat import QtCore
 from ..scene import legend
+from ..scene.crisp_colours import CrispColours
 from ..scene.part_context import rest_of_part
 from .coloured_mesh_view import ColouredMeshView
 
@@ -34,6 +36,7 @@ class DeviationView(ColouredMeshView):
         view.RestOfPart = True
 
     def attach(self, view):
+        self.crisp = CrispColours(view.RootNode)
         super().attach(view)
         self.rest = coin.SoSwitch()
         # Before the mesh's materials and light, which it would inherit.
@@ -49,6 +52,7 @@ class DeviationView(ColouredMeshView):
             self.view.removeProperty("Lit")
         super().finishRestoring()
         self.update_rest()
+        QtCore.QTimer.singleShot(0, self._redraw)  # the simulation may come after it
 
     def updateData(self, obj, name):
         if getattr(self, "view", None) is None:
@@ -56,6 +60,8 @@ class DeviationView(ColouredMeshView):
         if name == "VertexColors":
             self.colour()
             self.update_rest()
+        if name == "Shown":  # what the object says last
+            self.update_crisp()
         if name in LEGEND:
             self.update_legend()
 
@@ -65,18 +71,31 @@ class DeviationView(ColouredMeshView):
         super().onChanged(view, name)
         if name in ("Visibility", "RestOfPart"):
             self.update_rest()
+        if name in ("Visibility", "DisplayMode", "Transparency"):
+            self.update_crisp()
 
-    def legend_node(self):
+    def legend_spec(self):
         obj = self.view.Object
         if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
             return None
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
-            return legend.uncertainty_node(obj.UncertaintyLimit.Value, obj.OutOfDate)
+            return legend.uncertainty(obj.UncertaintyLimit.Value, obj.OutOfDate)
         if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
-            return legend.scan_node(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
+            return legend.scan(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
         beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
-        return legend.node(*scale, obj.OutOfDate, bands_of(obj), beyond)
+        return legend.deviation(*scale, obj.OutOfDate, bands_of(obj), beyond)
+
+    def update_crisp(self):
+        """Draws the colours with crisp borders, where that can be done."""
+        if self.view.Visibility:
+            self.crisp.update(self.view)
+
+    def _redraw(self):
+        try:
+            self.update_crisp()
+        except (ReferenceError, RuntimeError):
+            pass  # the document is closed again
 
     def update_rest(self):
         """Draws the faces that are not ground; what is cut below them would else be hidden."""

@@ -54,12 +54,12 @@ class GroundMeshView(ColouredMeshView):
         if name in ("VertexColors", "OutOfDate"):
             self.update_legend()
 
-    def legend_node(self):
+    def legend_spec(self):
         obj = self.view.Object
         if getattr(obj, "ColourLimit", None) is None or obj.ColourLimit.Value <= 0:
             return None
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
-        return legend.node(*scale, obj.OutOfDate)
+        return legend.deviation(*scale, obj.OutOfDate)
 
     def doubleClicked(self, view):
         from ...objects import ground_mesh

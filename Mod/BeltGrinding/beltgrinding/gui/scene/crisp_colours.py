@@ -1,0 +1,83 @@
+"""The deviation's colours with crisp borders, drawn in place of FreeCAD's mesh, which has a colour a vertex."""
+
+import json
+
+from pivy import coin
+
+from ...objects import preferences
+from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of, scan_heights
+from . import field_view
+from .field_view import FieldView
+from .shapes3d import unpickable
+
+PLAIN = "Shaded"  # the display mode that is drawn here; FreeCAD draws the others
+
+
+class CrispColours:
+    """Nodes to be put before those of a Deviation's mesh. The mesh stays, is picked, and is saved with its
+    colours; it is only not drawn where this can."""
+
+    def __init__(self, root):
+        self.field = self.shape = self.result = None
+        self.switch, self.mesh_style = coin.SoSwitch(), coin.SoDrawStyle()
+        self.mesh_style.style = coin.SoDrawStyle.FILLED
+        root.insertChild(self.mesh_style, 0)
+        root.insertChild(self.switch, 0)
+
+    def update(self, view):
+        """Draws the object of a view provider as it is now."""
+        result = _drawable(view)
+        if result is None or not self._load(view.Object, result):
+            return self.hide()
+        self._colour(view.Object)
+        self.switch.whichChild = coin.SO_SWITCH_ALL
+        self.mesh_style.style = coin.SoDrawStyle.INVISIBLE
+        self.mesh_style.setOverride(True)
+
+    def hide(self):
+        """Leaves the drawing to FreeCAD."""
+        self.field = self.shape = self.result = None
+        self.switch.whichChild = coin.SO_SWITCH_NONE
+        self.switch.removeAllChildren()
+        self.mesh_style.setOverride(False)
+        self.mesh_style.style = coin.SoDrawStyle.FILLED
+
+    def _load(self, obj, result):
+        """Takes the object's field, if another one is drawn; False where there is none."""
+        if result == self.result:
+            return True
+        field = obj.Simulation.Proxy.field(obj.Simulation)
+        if field is None or field.size != obj.Mesh.CountPoints:
+            return False
+        self.field, self.shape, self.result = field, FieldView(field), result
+        self.switch.removeAllChildren()
+        drawn = coin.SoSeparator()
+        drawn.addChild(unpickable())
+        drawn.addChild(self.shape.node)
+        self.switch.addChild(drawn)
+        return True
+
+    def _colour(self, obj):
+        field = self.field
+        scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
+        if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
+            self.shape.colour_by(field_view.UNCERTAINTY, obj.UncertaintyLimit.Value)
+        elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
+            heights = scan_heights(obj, field)
+            self.shape.colour_by(field_view.DEVIATION, *scale, values=heights)
+        else:
+            self.shape.colour_by(
+                field_view.DEVIATION, *scale, bands_of(obj), preferences.colours()
+            )
+
+
+def _drawable(view):
+    """What names the result that a view provider's object shows; None where FreeCAD had better draw it."""
+    obj = view.Object
+    simulation = getattr(obj, "Simulation", None)
+    if simulation is None or not field_view.has_own_node():
+        return None
+    if view.DisplayMode != PLAIN or view.Transparency or not obj.Placement.isIdentity():
+        return None
+    result = json.loads(obj.Shown or "[null]")[0]
+    return result if result == [simulation.Fingerprint, simulation.WallTime] else None

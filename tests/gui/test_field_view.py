@@ -205,6 +205,63 @@ same(colour_at(30, 20), 0x20A020FF)
     )
 
 
+def test_a_border_between_colours_runs_through_the_triangles(freecad):
+    freecad.run(
+        SCENE
+        + """
+from PySide import QtGui
+from beltgrinding.gui.scene.field_view import DEVIATION, FACE, REMOVED
+scale = (-0.05, 0.05, 0.3)
+heights = 0.2 * (field.points[:, 0] - 30.0) / 30.0  # over the border at x = 37.5, inside of a cell
+missed = np.abs(field.points[:, 1] - 30) < 3
+show.flags = np.where(missed, field.flags | core.MISSED, field.flags)
+show.set_heights(0.0 * heights)
+show.colour_by(DEVIATION, *scale, values=heights)
+settle()
+view.saveImage("crisp.png", 1600, 1000, "White")
+image = QtGui.QImage("crisp.png")
+row = [image.pixelColor(x, 500).getRgb()[:3] for x in range(300, 1300)]
+good, high = (
+    tuple(int(core.colour_scale(*scale, [v])[0]) >> shift & 255 for shift in (24, 16, 8)) for v in (0.0, 0.0505)
+)
+near = lambda a, b: max(abs(x - y) for x, y in zip(a, b)) <= 12
+at = max(k for k, c in enumerate(row) if near(c, good))
+# A pixel further it is the colour of too much; a cell is 20 pixels wide.
+assert any(near(c, high) for c in row[at + 1 : at + 4]), row[at - 2 : at + 6]
+palette = np.array([[int(c) >> shift & 255 for shift in (24, 16, 8)] for c in core.colour_scale(*scale, np.linspace(-0.3, 0.3, 4096).tolist())])
+other = lambda c: np.abs(palette - c).max(axis=1).min() > 3 and c != (255, 255, 255)
+rare = [c for c in set(row) if other(c)]
+assert len(rare) <= 4, rare  # pixels on the border that several rays share
+
+# What was missed has its own colour, and no rainbow around it.
+(grey,) = core.colour_scale(*scale, [np.nan])
+same(colour_at(15, 30), grey)
+column = [image.pixelColor(900, y).getRgb()[:3] for y in range(150, 850)]
+grey = tuple(int(grey) >> shift & 255 for shift in (24, 16, 8))
+rare = [c for c in set(column) if other(c) and not near(c, grey)]
+assert len(rare) <= 6, rare
+
+# One colour a sample again, and values again.
+show.colour_by(FACE)
+same(colour_at(30, 10), core.face_colours(field.faces)[0])
+show.colour_by(REMOVED, 0.4, values=np.full(field.size, 0.4))
+same(colour_at(30, 10), core.uncertainty_scale(0.4, [0.4])[0])
+show.colour_by(DEVIATION, 0.0, 0.0, 0.0)  # no range: nothing to tell apart, and no error
+
+import beltgrinding_coin
+one = np.zeros(field.size)
+for values, low, high, palette in ((one[:3], 0, 1, [1]), (one, 1, 1, [1]), (one, 0, 1, []), (one, 0, 1, [1] * 5000), (one, 0, np.inf, [1])):
+    try:
+        beltgrinding_coin.set_values(show.drawn.address, values, low, high, palette, 0)
+    except InputError:
+        continue
+    raise AssertionError((low, high, len(palette)))
+""",
+        window=True,
+        KIND="own",
+    )
+
+
 def test_an_address_that_is_no_node_is_refused(freecad):
     freecad.run(
         """

@@ -147,7 +147,7 @@ camera = Gui.ActiveDocument.ActiveView.getCamera()
 menu("Verdict")
 tree(doc.Verdict)
 clusters = field("clusters")
-deep = next(k for k in range(clusters.rowCount()) if clusters.item(k, 1).text() == "too deep")
+deep = next(k for k in range(clusters.rowCount()) if clusters.item(k, 1).text() == "cut too deep")
 clusters.setCurrentCell(deep, 0)
 settle()
 assert field("motions").rowCount() > 3

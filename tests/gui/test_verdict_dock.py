@@ -44,7 +44,7 @@ screenshot("verdict1.png")
 found = verdict.Proxy.data(verdict)
 deep = next(i for i, c in enumerate(found["clusters"]) if c["side"] == "below")
 assert clusters.rowCount() == len(found["clusters"])
-assert clusters.item(deep, 1).text() == "too deep" and clusters.item(deep, 5).text() == "7"
+assert clusters.item(deep, 1).text() == "cut too deep" and clusters.item(deep, 5).text() == "7"
 clusters.setCurrentCell(deep, 0)
 settle()
 camera = view.getCameraNode()

@@ -50,7 +50,7 @@ def text(verdict):
 def _told(cluster, programs):
     x, y, z = cluster["worst"]["point_mm"]
     told = (
-        f"{cluster['area_mm2']:.1f} mm2 {'too high' if cluster['side'] == 'above' else 'too deep'}, "
+        f"{cluster['area_mm2']:.1f} mm2 {'too much left' if cluster['side'] == 'above' else 'cut too deep'}, "
         f"at worst {cluster['worst']['value_mm']:+.3f} mm at ({x:.1f}, {y:.1f}, {z:.1f})"
     )
     if (cluster["untouched_share"] or 0.0) > 0.5:

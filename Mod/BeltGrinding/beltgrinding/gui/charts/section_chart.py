@@ -7,6 +7,7 @@ import numpy as np
 from ...inspection import section_plot
 from ...objects.preferences import deviation_unit, length_text
 from ..common.compat import QtCore, QtGui, translate
+from ..common.theme import readable, theme
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot
 NEAR = 40  # pixels around the mouse in which a point is shown
@@ -77,9 +78,9 @@ class SectionChart(QtGui.QWidget):
     def paintEvent(self, event):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
-        painter.fillRect(self.rect(), QtGui.QColor("white"))
+        painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
         if self.plot is None:
-            painter.setPen(QtGui.QColor("#6b7078"))
+            painter.setPen(QtGui.QColor(theme().faint))
             painter.drawText(
                 self.rect(), QtCore.Qt.AlignCenter, translate("BeltGrinding", "No section")
             )
@@ -89,11 +90,9 @@ class SectionChart(QtGui.QWidget):
         painter.save()
         painter.setClipRect(self.area())
         for layer in self.plot["layers"]:
-            colour = QtGui.QColor(layer["colour"])
             if "polygons" in layer:
                 painter.setPen(QtCore.Qt.NoPen)
-                colour.setAlphaF(0.7)
-                painter.setBrush(colour)
+                painter.setBrush(_band(layer))
                 for polygon in layer["polygons"]:
                     painter.drawPolygon(self._polygon(polygon))
                 continue
@@ -108,7 +107,7 @@ class SectionChart(QtGui.QWidget):
     def _grid(self, painter):
         area, (x0, y0, x, y) = self.area(), self.scales()
         width, height = area.width() / x, area.height() / y
-        grey, dark = QtGui.QColor("#e3e5e8"), QtGui.QColor("#30343a")
+        grey, dark = QtGui.QColor(theme().grid), QtGui.QColor(theme().text)
         values, decimals = section_plot.ticks(x0, x0 + width, max(int(area.width() / 90), 2))
         for value in values:
             at = area.left() + (value - x0) * x
@@ -131,7 +130,7 @@ class SectionChart(QtGui.QWidget):
         painter.setPen(dark)
         box = QtCore.QRectF(area.left(), area.bottom() + 20, area.width(), 18)
         painter.drawText(box, QtCore.Qt.AlignCenter, self._x_label())
-        painter.setPen(QtGui.QColor("#6b7078"))
+        painter.setPen(QtGui.QColor(theme().faint))
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
 
@@ -151,11 +150,11 @@ class SectionChart(QtGui.QWidget):
         for layer in self.plot["layers"]:
             text = LABELS[layer["key"]]
             if "polygons" in layer:
-                painter.fillRect(QtCore.QRectF(x, 9, 22, 10), QtGui.QColor(layer["colour"]))
+                painter.fillRect(QtCore.QRectF(x, 9, 22, 10), _band(layer))
             else:
                 painter.setPen(_pen(layer))
                 painter.drawLine(QtCore.QPointF(x, 14), QtCore.QPointF(x + 22, 14))
-            painter.setPen(QtGui.QColor("#30343a"))
+            painter.setPen(QtGui.QColor(theme().text))
             painter.drawText(QtCore.QPointF(x + 27, 18), text)
             x += 44 + metrics.boundingRect(text).width()
 
@@ -175,10 +174,10 @@ class SectionChart(QtGui.QWidget):
         x = min(at[0] + 12, self.width() - width - 2)
         y = min(max(at[1] - height - 10, 2), self.height() - height - 2)
         box = QtCore.QRectF(x, y, width, height)
-        painter.setPen(QtGui.QColor("#6b7078"))
-        painter.setBrush(QtGui.QColor(255, 255, 255, 235))
+        painter.setPen(QtGui.QColor(theme().faint))
+        painter.setBrush(QtGui.QColor(theme().ground))
         painter.drawRoundedRect(box, 3, 3)
-        painter.setPen(QtGui.QColor("#30343a"))
+        painter.setPen(QtGui.QColor(theme().text))
         painter.drawText(box.adjusted(7, 4, -7, -4), int(QtCore.Qt.AlignLeft), text)
 
     def value_text(self, piece, k):
@@ -268,8 +267,15 @@ def _position(event):
     return event.position() if hasattr(event, "position") else event.pos()
 
 
+def _band(layer):
+    """The colour of an area: see-through, the more so on a dark ground."""
+    colour = QtGui.QColor(layer["colour"])
+    colour.setAlphaF(0.3 if theme().dark else 0.7)
+    return colour
+
+
 def _pen(layer):
-    pen = QtGui.QPen(QtGui.QColor(layer["colour"]), layer["width"])
+    pen = QtGui.QPen(readable(layer["colour"]), layer["width"])
     if layer["dash"]:
         pen.setDashPattern([value / layer["width"] for value in layer["dash"]])
     return pen

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
+from ..common.theme import readable, theme
 
 ROWS = (  # column of the steps, unit, colour
     ("force", "N", "#1f5fa8"),
@@ -96,7 +97,7 @@ class StripChart(QtGui.QWidget):
             ratio = self.devicePixelRatioF()
             self.picture = QtGui.QPixmap(self.size() * ratio)
             self.picture.setDevicePixelRatio(ratio)
-            self.picture.fill(QtGui.QColor("white"))
+            self.picture.fill(QtGui.QColor(theme().ground))
             painter = QtGui.QPainter(self.picture)
             self._draw(painter)
             painter.end()
@@ -108,7 +109,7 @@ class StripChart(QtGui.QWidget):
         index = self._index()
         height = self._height()
         for k, (name, unit, colour) in enumerate(self.rows()):
-            painter.setPen(QtGui.QColor(colour))
+            painter.setPen(readable(colour))
             value = f"{self.lines[name][1][index]:.4g} {unit}" if index is not None else ""
             box = QtCore.QRect(6, int(EVENTS + k * height + 0.5 * height), LEFT - 16, 16)
             painter.drawText(box, int(QtCore.Qt.AlignLeft), value)
@@ -133,14 +134,14 @@ class StripChart(QtGui.QWidget):
             times, values = self.lines[name]
             top, bottom = EVENTS + k * height + 4, EVENTS + (k + 1) * height - 4
             most = float(values.max()) if len(values) else 0.0
-            painter.setPen(QtGui.QColor("#dddddd"))
+            painter.setPen(QtGui.QColor(theme().grid))
             painter.drawLine(LEFT, round(bottom), LEFT + width, round(bottom))
-            painter.setPen(QtGui.QColor("black"))
+            painter.setPen(QtGui.QColor(theme().text))
             label = f"{self.texts[name]}, 0…{most:.3g} {unit}"
             painter.drawText(6, round(EVENTS + k * height + 0.5 * height - 2), label)
             x, y = envelope(times, values, self.duration, width)
             y = bottom - (bottom - top) * y / (most or 1.0)
-            painter.setPen(QtGui.QPen(QtGui.QColor(colour), 1.2))
+            painter.setPen(QtGui.QPen(readable(colour), 1.2))
             points = [QtCore.QPointF(LEFT + a, b) for a, b in zip(x.tolist(), y.tolist())]
             painter.drawPolyline(QtGui.QPolygonF(points))
         painter.setPen(QtCore.Qt.NoPen)

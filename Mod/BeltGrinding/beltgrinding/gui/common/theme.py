@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import FreeCADGui as Gui
 
-from .compat import QtGui
+from .compat import QtCore, QtGui
 
 
 class Theme(NamedTuple):
@@ -15,39 +15,35 @@ class Theme(NamedTuple):
     faint: str  # of less important text
     grid: str
     warning: str
+    doubt: str
     dark: bool
 
 
-LIGHT = Theme("#ffffff", "#22262b", "#6b7078", "#e3e5e8", "#b3261e", False)
-DARK = Theme("#26292e", "#e4e7ea", "#9aa1aa", "#3b4047", "#ff8a80", True)
+LIGHT = Theme("#ffffff", "#22262b", "#6b7078", "#e3e5e8", "#b3261e", "#8a6d00", False)
+DARK = Theme("#26292e", "#e4e7ea", "#9aa1aa", "#3b4047", "#ff8a80", "#ffd54f", True)
+HALF = 0.5  # of the lightness
 DIM, BRIGHT = 0.35, 0.75  # of a colour's lightness on a dark ground, and what it becomes at least
 _known = {}  # what the window looked like -> Theme
 
 
 def theme():
-    """The window's ``Theme``. Not by its palette: a style sheet, which is how FreeCAD 0.20 gets dark, leaves
-    that as it is. The colour in which a label's text is drawn tells."""
+    """The window's ``Theme``. Not by its palette: a style sheet, which is how FreeCAD gets dark, leaves that
+    as it is. The colour that a label's text gets tells, and what the window's ground is drawn in."""
     window = Gui.getMainWindow()
     key = QtGui.QApplication.instance().styleSheet(), window.palette().cacheKey()
     if key not in _known:
         _known.clear()
-        _known[key] = DARK if _light_text(window) else LIGHT
+        _known[key] = DARK if _looks_dark(window) else LIGHT
     return _known[key]
 
 
-def _light_text(window):
-    box = QtGui.QGroupBox(window)  # in one, as most of our labels are
-    label = QtGui.QLabel("\u2588\u2588", box)
-    label.resize(40, 20)
+def _looks_dark(window):
+    label = QtGui.QLabel("a", window)
     label.ensurePolished()
-    image = label.grab().toImage()
-    middle = image.height() // 2
-    drawn = [image.pixelColor(x, middle) for x in range(image.width())]
-    ground = drawn[-1].lightnessF()
-    box.deleteLater()
-    text = max((c.lightnessF() for c in drawn), key=lambda one: abs(one - ground))
-    # Where a style sheet leaves the ground see-through, the text alone tells.
-    return text > 0.5
+    text = label.palette().windowText().color()
+    label.deleteLater()
+    ground = window.grab(QtCore.QRect(1, 1, 4, 4)).toImage().pixelColor(1, 1)
+    return text.lightnessF() > HALF or ground.lightnessF() < HALF
 
 
 def readable(colour):
@@ -57,3 +53,8 @@ def readable(colour):
         hue, saturation, lightness, alpha = found.getHslF()
         found.setHslF(max(hue, 0.0), saturation, min(DIM + 0.8 * lightness, BRIGHT), alpha)
     return found
+
+
+def warning_style(warns=True):
+    """The style sheet of a label that warns; '' of one that does not."""
+    return f"color: {theme().warning}; font-weight: bold;" if warns else ""

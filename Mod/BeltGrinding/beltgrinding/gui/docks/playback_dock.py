@@ -13,6 +13,7 @@ from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..common.runner import Runner
+from ..common.theme import warning_style
 from ..scene.playback_scene import SAME, Scene
 from ..widgets.steady import steady
 
@@ -180,7 +181,7 @@ class Playback(QtGui.QDockWidget):
         text = translate("BeltGrinding", "Out of date: an input has changed since; simulate again.")
         self.stale = QtGui.QLabel(text)
         self.stale.setObjectName("playbackOutOfDate")
-        self.stale.setStyleSheet("color: #b3261e; font-weight: bold;")
+        self.stale.setStyleSheet(warning_style())
         self.stale.setVisible(simulation.OutOfDate)
         body.addWidget(self.stale)
         body.addWidget(self.chart, 1)

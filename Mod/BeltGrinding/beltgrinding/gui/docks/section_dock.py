@@ -12,6 +12,7 @@ from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..common.save_dialog import file_to_write
+from ..common.theme import warning_style
 from .object_dock import ObjectDock
 from ..widgets.steady import steady
 
@@ -174,7 +175,7 @@ class SectionDock(ObjectDock):
 
     def _say(self, text, error):
         self.figures.setText(text)
-        self.figures.setStyleSheet("color: #b3261e; font-weight: bold;" if error else "")
+        self.figures.setStyleSheet(warning_style(error))
 
     def _show_plane(self, obj):
         line = obj.Cut == objects.LINE

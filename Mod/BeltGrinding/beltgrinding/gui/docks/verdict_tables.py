@@ -2,9 +2,9 @@
 
 from ..common.compat import QtGui, translate
 from ..common.messages import note_texts
+from ..common.theme import theme
 from ..common.verdict_words import shares
 
-BAD, UNKNOWN = QtGui.QColor("#b3261e"), QtGui.QColor("#8a6d00")
 
 
 def table(name, titles):
@@ -52,7 +52,8 @@ def doubts(found):
     lines = [
         shares(found),
         translate(
-            "BeltGrinding", "Removed {:,.1f} mm³, left {:,.1f} mm³, too deep {:,.1f} mm³"
+            "BeltGrinding",
+            "Removed {:,.1f} mm³, too much left {:,.1f} mm³, cut too deep {:,.1f} mm³",
         ).format(
             found["removed_volume_mm3"], found["excess_volume_mm3"], found["gouge_volume_mm3"]
         ),
@@ -96,7 +97,7 @@ def _region_titles():
         translate("BeltGrinding", "Where"),
         translate("BeltGrinding", "Verdict"),
         translate("BeltGrinding", "In, %"),
-        translate("BeltGrinding", "High, %"),
+        translate("BeltGrinding", "Left, %"),
         translate("BeltGrinding", "Deep, %"),
         translate("BeltGrinding", "Worst, mm"),
         translate("BeltGrinding", "Beyond, mm"),
@@ -105,7 +106,9 @@ def _region_titles():
 
 
 def _colour(verdict):
-    return {"pass": None, "fail": BAD, "unknown": UNKNOWN}[verdict]
+    look = theme()
+    colour = {"pass": None, "fail": look.warning, "unknown": look.doubt}[verdict]
+    return None if colour is None else QtGui.QColor(colour)
 
 
 def _regions(found, face_name):
@@ -165,8 +168,8 @@ def _cluster_titles():
 def _clusters(found, face_name):
     """[(texts, None)] of the clusters, largest first."""
     sides = {
-        "above": translate("BeltGrinding", "too high"),
-        "below": translate("BeltGrinding", "too deep"),
+        "above": translate("BeltGrinding", "too much left"),
+        "below": translate("BeltGrinding", "cut too deep"),
     }
     rows = []
     for cluster in found["clusters"]:

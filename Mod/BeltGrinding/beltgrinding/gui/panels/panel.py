@@ -7,6 +7,7 @@ from ...engine import InputError
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
+from ..common.theme import warning_style
 from ..widgets.fold import slim
 from ..widgets.form import Form
 
@@ -39,7 +40,7 @@ class Panel:
     def tell(self, text, error=False):
         """A message in the panel; '' hides it."""
         self.note.setText(text)
-        self.note.setStyleSheet("color: #b3261e; font-weight: bold;" if error else "")
+        self.note.setStyleSheet(warning_style(error))
         self.note.setVisible(bool(text))
 
     def check(self):

@@ -10,6 +10,7 @@ from ...objects.proxy import type_of
 from ...presets import library as presets, rubber
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..common.theme import warning_style
 from ..widgets.steady import steady
 
 YOUNGS_MODULUS = next(key for key in belt_machine.KEYS if key.name == "YoungsModulus")
@@ -110,7 +111,7 @@ class PresetForm(QtGui.QGroupBox):
         if found.problems:
             wrong = _hint("PresetProblems")
             wrong.setText("\n".join(error_text(problem) for problem in found.problems))
-            wrong.setStyleSheet("color: #b3261e;")
+            wrong.setStyleSheet(warning_style())
             wrong.show()
             self.rows.addRow(wrong)
 

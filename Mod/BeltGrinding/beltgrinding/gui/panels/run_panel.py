@@ -11,9 +11,9 @@ from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
 from ..common.status_progress import StatusProgress
+from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
 
-BAD = "#b3261e"
 
 
 class RunPanel:
@@ -105,7 +105,7 @@ class RunPanel:
 
     def _say(self, text, error=False):
         self.state.setText(text)
-        self.state.setStyleSheet(f"color: {BAD}; font-weight: bold;" if error else "")
+        self.state.setStyleSheet(warning_style(error))
 
     def _arrange(self, running):
         self.bar.setVisible(running)

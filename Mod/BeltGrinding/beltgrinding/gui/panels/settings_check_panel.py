@@ -9,7 +9,8 @@ from ..common.compat import QtGui, translate
 from ..common.messages import note_texts
 from ..common.report_language import words
 from ..common.runner import Runner
-from .run_panel import BAD, RunPanel
+from ..common.theme import theme
+from .run_panel import RunPanel
 
 TABLE_HEIGHT = 320  # pixels
 
@@ -98,7 +99,7 @@ class SettingsCheckPanel(RunPanel):
                 item = QtGui.QTableWidgetItem(cell)
                 item.setToolTip(about.format(name, value, error, limit))
                 if not one["ok"]:
-                    item.setForeground(QtGui.QColor(BAD))
+                    item.setForeground(QtGui.QColor(theme().warning))
                 self.table.setItem(row, column, item)
         self.table.resizeColumnToContents(1)
         self.table.resizeRowsToContents()

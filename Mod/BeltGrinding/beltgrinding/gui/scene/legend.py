@@ -11,6 +11,7 @@ from ...objects import preferences
 from ..common.compat import translate
 from ..common.theme import theme
 from . import legend_picture
+from .labels import pixels
 from .legend_picture import Spec
 
 BAR_STEPS = 240
@@ -165,10 +166,10 @@ class Legend:
         if key not in self.pictures:
             while len(self.pictures) >= KEPT:
                 self.pictures.pop(next(iter(self.pictures)))
-            self.pictures[key] = _pixels(legend_picture.draw(self.spec, width, height))
-        size, pixels = self.pictures[key]
+            self.pictures[key] = pixels(legend_picture.draw(self.spec, width, height))
+        size, data = self.pictures[key]
         if self.drawn != key:
-            self.image.image.setValue(coin.SbVec2s(*size), 4 if pixels else 0, pixels)
+            self.image.image.setValue(coin.SbVec2s(*size), 4 if data else 0, data)
             self.drawn = key
         left, bottom = self._place(seen, size, width, height)
         self.box = left, bottom, left + size[0], bottom + size[1]
@@ -211,13 +212,3 @@ def _share(points, box):
         return 0.0
     inside = (points > box[:2]).all(axis=1) & (points < box[2:]).all(axis=1)
     return float(inside.mean())
-
-
-def _pixels(image):
-    """((width, height), bytes from the lower left, RGBA) of a QImage; ((1, 1), b"") of None."""
-    if image is None:
-        return (1, 1), b""
-    turned = image.mirrored(False, True)
-    data = np.frombuffer(turned.constBits(), dtype=np.uint8)
-    rows = data.reshape(turned.height(), turned.bytesPerLine())[:, : 4 * turned.width()]
-    return (turned.width(), turned.height()), rows.tobytes()

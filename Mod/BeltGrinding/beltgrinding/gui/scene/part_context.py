@@ -57,10 +57,10 @@ def points_of_part(job):
         points, triangles = tessellated(job_data.design(job)[0])
     except (AttributeError, InputError):  # without a job
         return np.zeros((0, 3))
-    if not len(triangles):
-        return points[:SPREAD]
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    if not areas.sum() > 0.0:
+        return points[:SPREAD]
     chance = np.random.default_rng(1)  # the same ones every time
     chosen = chance.choice(len(triangles), SPREAD, p=areas / areas.sum())
     u, v = chance.random((2, SPREAD, 1))

@@ -12,6 +12,7 @@ from ..common import event_texts
 from ..common.compat import QtGui
 from ..common.event_texts import COLOURS
 from ..scene.cell_view import CellView
+from ..scene.labels import label
 from ..scene.sight import Sight
 
 LEAST_SIZE, WHEELS = 20.0, 3.2  # mm; radii of the wheel that the view shows
@@ -138,13 +139,6 @@ def pin(point, colour, text):
         marker.markerIndex = getattr(coin.SoMarkerSet, name)
         top.addChild(tone)
         top.addChild(marker)
-    tone = coin.SoBaseColor()
-    tone.rgb = (0.0, 0.0, 0.0)
-    font = coin.SoFont()
-    font.size = 15.0
-    label = coin.SoText2()
-    label.string = "   " + text
-    for node in (tone, font, label):
-        top.addChild(node)
+    top.addChild(label(text, colour))
     root.addChild(top)
     return root

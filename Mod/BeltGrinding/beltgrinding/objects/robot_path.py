@@ -124,6 +124,16 @@ class RobotPath(Proxy):
                 hashed.update(np.ascontiguousarray(array).tobytes())
         return hashed.hexdigest()
 
+    def contacts(self, obj):
+        """(n, 3) mm: where the wheel touches the part at the poses, in the part's coordinates."""
+        if len(self.arrays(obj)["frames"]) < 2:
+            return np.zeros((0, 3))
+        return self._tool_path(obj, self.arrays(obj)["feeds"]).work_from_contact()[:, :3, 3]
+
+    def _tool_path(self, obj, feeds):
+        cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
+        return core.ToolPath(**{**self.arrays(obj), "feeds": feeds}, **cell)
+
     def execute(self, obj):
         if obj.SourceObject is not None:
             follow(obj)
@@ -134,8 +144,7 @@ class RobotPath(Proxy):
         feeds = arrays["feeds"]
         if obj.FeedOverride.Value > 0:
             feeds = np.full(len(feeds), obj.FeedOverride.Value)
-        cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
-        path = core.ToolPath(**{**arrays, "feeds": feeds}, **cell)
+        path = self._tool_path(obj, feeds)
         contacts = path.work_from_contact()
         obj.PoseCount = len(contacts)
         steps = np.diff(contacts[:, :3, 3], axis=0)

@@ -10,6 +10,7 @@ from ..inspection import section as sections
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
+REMOVED = 1e-3  # mm: less does not count as ground
 PLANE, LINE = "plane", "line"
 SETTINGS = (
     ("Cut", "Enumeration", "a plane, or the line on the surface from Start to End"),
@@ -135,10 +136,23 @@ def show(obj, section):
 
 
 def first_plane(field):
-    """(point, normal) of a plane across the longest side of the field's box, through a sample in the
-    middle: it always meets the surface.
+    """(point, normal) of a plane across the longest side of what was ground, through its middle: it always
+    meets the surface.
     """
-    points = field.points
+    points = field.points[ground(field)]
     axis = int(np.argmax(np.ptp(points, axis=0)))
-    middle = points[np.argsort(points[:, axis])[len(points) // 2]]
-    return tuple(middle.tolist()), tuple(np.eye(3)[axis].tolist())
+    return middle_of_ground(field), tuple(np.eye(3)[axis].tolist())
+
+
+def ground(field):
+    """Indices of the samples at which something was removed; of all where nothing was."""
+    found = np.flatnonzero(field.stock_height - field.height > REMOVED)
+    return found if len(found) else np.arange(field.size)
+
+
+def middle_of_ground(field):
+    """(x, y, z) of the sample that is nearest to the middle of the ground area, mm."""
+    chosen = ground(field)
+    points, areas = field.points[chosen], field.areas[chosen].astype(float)
+    middle = (areas[:, None] * points).sum(axis=0) / max(areas.sum(), 1e-300)
+    return tuple(points[np.argmin(np.linalg.norm(points - middle, axis=1))].tolist())

@@ -10,6 +10,7 @@ from . import (
     belt_machine,
     job_data,
     job_object,
+    mesh_part,
     raster_path,
     robot_path,
     stock as stocks,
@@ -21,10 +22,12 @@ from .simulation import simulated
 
 
 def make_job(design, faces=(), **properties):
-    """Adds a job to the design's document. ``design``: a Part object; ``faces``: names such as
+    """Adds a job to the design's document. ``design``: a Part object, or a Mesh object, of whose triangles
+    a Part object with faces is made; ``faces``: names such as
     "Face3" or numbers from 1, none for all; or ``design`` is a list of (object, names).
     """
     links = design if isinstance(design, (list, tuple)) else [(design, faces)]
+    links = [(mesh_part.faces_of(o) if hasattr(o, "Mesh") else o, subs) for o, subs in links]
     links = [
         (obj, tuple(f"Face{s}" if isinstance(s, int) else s for s in subs) or ("",))
         for obj, subs in links

@@ -31,9 +31,11 @@ class NewJob(Command):
         for one in Gui.Selection.getSelectionEx(document.Name):
             if hasattr(one.Object, "Shape") and one.Object.Shape.Faces:
                 links.append((one.Object, [s for s in one.SubElementNames if s.startswith("Face")]))
+            elif hasattr(one.Object, "Mesh"):
+                links.append((one.Object, []))
         if not links:
             raise InputError(
-                "gui.select_faces", "Select the faces to be ground, or the part, first."
+                "gui.select_faces", "Select the faces to be ground, the part, or a mesh, first."
             )
         with transaction(
             document, translate("BeltGrinding", "New grinding job"), panel=True

@@ -1,8 +1,17 @@
 """Icons of the workbench: SVG files in Resources/icons."""
 
+from pathlib import Path
+
+import FreeCAD
 import FreeCADGui as Gui
 
 from ...base.resources import resources
+from .compat import QtCore, QtGui
+from .theme import theme
+
+SIZE = 64  # pixels of an icon that is put together
+BADGE = 0.62  # of its side: the mark in its corner
+_marked = {}  # name -> file
 
 
 def icon(name):
@@ -13,3 +22,44 @@ def icon(name):
 def qicon(name):
     """The icon as QIcon, drawn by FreeCAD: Qt draws no SVG itself where its plugin is missing."""
     return Gui.getIcon(icon(name))
+
+
+def stale_icon(name):
+    """Path of the icon ``name`` with the mark of what is out of date in its corner."""
+    if name not in _marked:
+        picture = QtGui.QPixmap(SIZE, SIZE)
+        picture.fill(QtCore.Qt.transparent)
+        painter = QtGui.QPainter(picture)
+        painter.drawPixmap(0, 0, qicon(name).pixmap(SIZE, SIZE))
+        badge = round(BADGE * SIZE)
+        mark = qicon("BeltGrinding_OutOfDate").pixmap(badge, badge)
+        painter.drawPixmap(SIZE - badge, SIZE - badge, mark)
+        painter.end()
+        path = Path(FreeCAD.getTempPath()) / f"{name}_OutOfDate.png"
+        if not picture.save(str(path)):
+            return icon("BeltGrinding_OutOfDate")
+        _marked[name] = str(path)
+    return _marked[name]
+
+
+MEDIA = {  # polygons in a square of 16, drawn in the colour of the window's text
+    "play": [((4, 2), (13, 8), (4, 14))],
+    "pause": [((4, 2), (7, 2), (7, 14), (4, 14)), ((9, 2), (12, 2), (12, 14), (9, 14))],
+    "next": [((3, 2), (10, 8), (3, 14)), ((11, 2), (13, 2), (13, 14), (11, 14))],
+    "previous": [((13, 2), (6, 8), (13, 14)), ((5, 2), (3, 2), (3, 14), (5, 14))],
+}
+
+
+def media_icon(name):
+    """QIcon of a button of the playback: Qt's own are dark in every theme."""
+    picture = QtGui.QPixmap(SIZE, SIZE)
+    picture.fill(QtCore.Qt.transparent)
+    painter = QtGui.QPainter(picture)
+    painter.setRenderHint(QtGui.QPainter.Antialiasing)
+    painter.setPen(QtCore.Qt.NoPen)
+    painter.setBrush(QtGui.QColor(theme().text))
+    for corners in MEDIA[name]:
+        points = [QtCore.QPointF(x * SIZE / 16, y * SIZE / 16) for x, y in corners]
+        painter.drawPolygon(QtGui.QPolygonF(points))
+    painter.end()
+    return QtGui.QIcon(picture)

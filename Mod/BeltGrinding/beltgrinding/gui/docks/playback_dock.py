@@ -11,6 +11,7 @@ from ...objects import job_data
 from ...objects.simulation import Simulation
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.icons import media_icon
 from ..common.messages import error_text
 from ..common.runner import Runner
 from ..common.theme import warning_style
@@ -131,24 +132,21 @@ class Playback(QtGui.QDockWidget):
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
         row = QtGui.QHBoxLayout()
-        style = self.style()
-
         def button(name, picture, text, action):
             made = QtGui.QToolButton()
             made.setObjectName(name)
-            made.setIcon(style.standardIcon(picture))
+            made.setIcon(media_icon(picture))
             made.setToolTip(text)
             made.clicked.connect(lambda *_: action())
             row.addWidget(made)
             return made
 
-        icons = QtGui.QStyle
         text = translate("BeltGrinding", "Previous event")
-        button("previousEvent", icons.SP_MediaSkipBackward, text, lambda: self.step(-1))
+        button("previousEvent", "previous", text, lambda: self.step(-1))
         text = translate("BeltGrinding", "Play or pause")
-        self.play_button = button("play", icons.SP_MediaPlay, text, self.toggle)
+        self.play_button = button("play", "play", text, self.toggle)
         text = translate("BeltGrinding", "Next event")
-        button("nextEvent", icons.SP_MediaSkipForward, text, lambda: self.step(1))
+        button("nextEvent", "next", text, lambda: self.step(1))
         self.speed = steady(QtGui.QComboBox())
         self.speed.setObjectName("speed")
         self.speed.setToolTip(translate("BeltGrinding", "Speed, as a multiple of the real time"))
@@ -196,11 +194,11 @@ class Playback(QtGui.QDockWidget):
             self.go(0.0)
         self.last = time.monotonic()
         self.clock.start()
-        self.play_button.setIcon(self.style().standardIcon(QtGui.QStyle.SP_MediaPause))
+        self.play_button.setIcon(media_icon("pause"))
 
     def pause(self):
         self.clock.stop()
-        self.play_button.setIcon(self.style().standardIcon(QtGui.QStyle.SP_MediaPlay))
+        self.play_button.setIcon(media_icon("play"))
 
     def scrub(self, moment):
         """Goes to a moment by hand: a playback pauses."""

@@ -241,9 +241,8 @@ class SectionDock(ObjectDock):
         if index < 3:
             point, normal = self.obj.Point, list(AXES.values())[index]
             field = objects.field_of(self.obj.Simulation)
-            if field is not None:  # through the middle of the surface
-                middle = 0.5 * (field.points.min(axis=0) + field.points.max(axis=0))
-                point = tuple(middle.tolist())
+            if field is not None:
+                point = objects.middle_of_ground(field)
             self.change(Cut=objects.PLANE, Point=point, Normal=normal)
         elif index == 3:
             self.change(Cut=objects.PLANE)

@@ -2,17 +2,31 @@
 
 import FreeCADGui as Gui
 
-from ...calibration import calibrate as calibration, plot as calibration_plot
+from ...base.files import cannot_be_written, write_whole
+from ...calibration import calibrate as calibration, example, plot as calibration_plot
 from ...engine import Cancelled, InputError
 from ...objects import job_data, properties
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.save_dialog import file_to_write
 from ..widgets.form import MINIMUM_WIDTH
 
 WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
 LONG = 12  # characters of an interval's two ends that fit beside each other
+COLUMNS = (  # of the table, as the panel names them
+    "force_N",
+    "belt_speed_m_s",
+    "rpm",
+    "time_s",
+    "feed_mm_s",
+    "length_mm",
+    "area_mm2",
+    "removed_volume_mm3",
+    "depth_mm",
+    "work_J",
+)
 TABLES = "Measured grinds (*.csv *.txt);;All files (*)"
 
 
@@ -36,6 +50,21 @@ class CalibrationPanel:
             translate("BeltGrinding", "CSV with columns such as force_N, time_s, area_mm2")
         )
         fields.addRow(translate("BeltGrinding", "Measured grinds"), self.file)
+        body.addLayout(fields)
+        columns = QtGui.QLabel(
+            translate(
+                "BeltGrinding",
+                "A CSV, a line a grind. Columns: {}; {} or {}; {} or {}, {}; {}; {} or {}; and, if the belt "
+                "wears, {}.",
+            ).format(*(f"<b>{name}</b>" for name in COLUMNS))
+        )
+        columns.setObjectName("columns")
+        columns.setWordWrap(True)
+        body.addWidget(columns)
+        text = translate("BeltGrinding", "Save an example...")
+        self._button(body, text, self.save_example).setObjectName("saveExample")
+        fields = QtGui.QFormLayout()
+        fields.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         self.diameter = self._number(
             fields,
             "driveWheelDiameter",
@@ -108,6 +137,19 @@ class CalibrationPanel:
     def _show_parts(self, on):
         for widget in (self.table, self.plot, self.larger, self.warnings, self.use):
             widget.setVisible(on)
+
+    def save_example(self):
+        """Writes a table of made-up grinds where the user says, and takes it."""
+        title = translate("BeltGrinding", "Save an example")
+        path = file_to_write(title, "grinds.csv", TABLES)
+        if not path:
+            return
+        try:
+            write_whole(path, example.table().encode())
+        except OSError as error:
+            self.state.setText(error_text(cannot_be_written(path, error)))
+            return
+        self.file.setProperty("fileName", path)
 
     def fit(self):
         """Reads the table and fits, in a thread of its own."""

@@ -107,8 +107,13 @@ class Scene:
         self.cell.close()
         for view, switch, child in self.hidden:
             try:
-                if view.Visibility:
-                    switch.whichChild = child
+                if not view.Visibility:
+                    continue
+                switch.whichChild = child
+                if child < 0 and switch == view.SwitchNode:  # shown while it was turned off here
+                    view.DisplayMode = view.DisplayMode
+                if hasattr(view.Proxy, "colour"):
+                    view.Proxy.colour()
             except (ReferenceError, RuntimeError):
                 pass  # the object is gone
         self.hidden = []

@@ -3,7 +3,7 @@
 from pivy import coin
 
 from ..common.compat import translate
-from ..common.icons import icon
+from ..common.icons import icon, stale_icon
 from ..scene import legend
 from ..scene.part_context import edges_of_part
 from .coloured_mesh_view import ColouredMeshView
@@ -41,7 +41,7 @@ class GroundMeshView(ColouredMeshView):
 
     def getIcon(self):
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
 
     def updateData(self, obj, name):
         if getattr(self, "view", None) is None:

@@ -2,9 +2,12 @@
 
 from pivy import coin
 
+from ...engine import InputError
 from ...objects.robot_path import load_program
 from ..common.compat import translate
-from ..common.icons import icon, qicon
+from ..common.icons import icon, stale_icon, qicon
+from ..scene import path_arrows
+from .coloured_mesh_view import frame_selected
 from .deviation_view import DeviationView
 from .ground_mesh_view import GroundMeshView
 from .section_view import SectionView
@@ -23,6 +26,9 @@ __all__ = [
     "StockView",
     "VerdictView",
 ]
+
+
+LINE_WIDTH = 2  # pixels of a path
 
 
 class Undrawn(View):
@@ -89,7 +95,8 @@ class BeltView(Undrawn):
 
 
 class RobotPathView(View):
-    """The line begins at the first pose; FreeCAD's own begins at the document's origin."""
+    """The line begins at the first pose, FreeCAD's own at the document's origin. It has arrows, and keeps its
+    colours when it is selected."""
 
     ICON = "BeltGrinding_ImportProgram"
     COMMANDS = (
@@ -101,11 +108,41 @@ class RobotPathView(View):
 
     def attach(self, view):
         super().attach(view)
+        self.arrows = coin.SoSwitch()
+        view.RootNode.addChild(self.arrows)
+        frame_selected(view)
+        if view.LineWidth == 1:  # FreeCAD's default
+            view.LineWidth = LINE_WIDTH
         self.start(view.Object)
+
+    def finishRestoring(self):
+        frame_selected(self.view)
+        self.draw_arrows()
 
     def updateData(self, obj, name):
         if name == "Path" and getattr(self, "view", None) is not None:
             self.start(obj)
+            self.draw_arrows()
+
+    def onChanged(self, view, name):
+        if name in ("Visibility", "NormalColor") and getattr(self, "arrows", None) is not None:
+            self.draw_arrows()
+
+    def draw_arrows(self):
+        """Draws the arrows of the path as it is."""
+        view = self.view
+        self.arrows.whichChild = coin.SO_SWITCH_NONE
+        self.arrows.removeAllChildren()
+        obj = view.Object
+        if not view.Visibility or getattr(obj, "Proxy", None) is None or not obj.Path.Size:
+            return
+        try:
+            points = obj.Proxy.contacts(obj)
+        except InputError:
+            return  # the object says what is wrong when it is computed
+        node = path_arrows.arrows(points, obj.Proxy.arrays(obj)["rapid"], view.NormalColor)
+        self.arrows.addChild(node)
+        self.arrows.whichChild = coin.SO_SWITCH_ALL
 
     def start(self, obj):
         """Tells the view where the path begins."""
@@ -149,7 +186,7 @@ class VerdictView(Undrawn):
 
     def getIcon(self):
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
 
     def updateData(self, obj, name):
         if name == "OutOfDate" and getattr(self, "view", None) is not None:
@@ -176,7 +213,7 @@ class SimulationView(Undrawn):
 
     def getIcon(self):
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return icon("BeltGrinding_OutOfDate" if stale else self.ICON)
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
 
     def updateData(self, obj, name):
         if name == "OutOfDate" and getattr(self, "view", None) is not None:

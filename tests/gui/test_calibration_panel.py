@@ -45,3 +45,26 @@ assert job.Law != "local"
 """,
         window=True,
     )
+
+
+def test_an_example_of_a_table_is_saved_and_fits(freecad):
+    freecad.run(
+        """
+from support.hands import *
+job = prepare()
+menu("Calibrate removal law...")
+assert "force_N" in field("columns").text() and "removed_volume_mm3" in field("columns").text()
+name_file(Path.cwd() / "grinds.csv")
+press("Save an example...")
+assert Path("grinds.csv").read_text().count("\\n") > 30
+press("Fit")
+wait(lambda: "median error" in field("calibrationState").text())
+table = field("calibrationTable")
+assert abs(float(table.item(1, 1).text().split()[0]) - 1) < 0.15  # the pressure's exponent
+name_file(Path.cwd() / "no folder" / "grinds.csv")
+press("Save an example...")
+assert "cannot be written" in field("calibrationState").text()
+press("Close")
+""",
+        window=True,
+    )

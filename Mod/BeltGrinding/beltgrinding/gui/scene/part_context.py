@@ -45,9 +45,10 @@ def rest_of_part(job):
     return root
 
 
-def tessellated(shape):
-    """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here."""
-    points, faces = shape.tessellate(_deflection(shape))
+def tessellated(shape, whole=None):
+    """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here; ``whole``: what it is a
+    face of."""
+    points, faces = shape.tessellate(_deflection(whole or shape))
     return np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
 
 

@@ -5,7 +5,7 @@ from pivy import coin
 
 from .shapes3d import separator, triangles, unpickable
 
-SIZE, THICK = 0.022, 0.32  # length of an arrow, of the path's extents; its radius, of its length
+SIZE, THICK = 0.02, 0.3  # length of an arrow, of the extents where it grinds; its radius, of its length
 APART = 6.0  # lengths of an arrow from one to the next
 MOST = 400
 AROUND = 6  # corners of an arrow's base
@@ -18,8 +18,10 @@ def arrows(points, rapid, colour):
     root = separator()
     if len(points) < 2:
         return root
-    length = SIZE * float(np.linalg.norm(np.ptp(points, axis=0)))
-    places, ways = placed(points, np.asarray(rapid, dtype=bool), length)
+    rapid = np.asarray(rapid, dtype=bool)
+    grinding = points[~rapid] if not rapid.all() else points
+    length = SIZE * float(np.linalg.norm(np.ptp(grinding, axis=0)))
+    places, ways = placed(points, rapid, length)
     if not len(places):
         return root
     corners, faces = cones(places, ways, length)

@@ -5,7 +5,9 @@ import math
 import numpy as np
 from pivy import coin
 
-RUBBER, CORE, BODY = (0.25, 0.27, 0.30), (0.72, 0.74, 0.78), (0.55, 0.60, 0.68)
+RUBBER, CORE, BODY = (0.20, 0.22, 0.25), (0.72, 0.74, 0.78), (0.55, 0.60, 0.68)
+BELT = (0.48, 0.25, 0.15)  # the grain
+BELT_THICKNESS = 0.012  # of the wheel's radius, as it is drawn
 AXES = ((0.84, 0.15, 0.16), (0.17, 0.55, 0.20), (0.13, 0.36, 0.78))  # x, y, z
 AROUND = 72  # parts of the wheel's circumference
 ACROSS = 9  # points of its profile across the width
@@ -98,20 +100,24 @@ def revolved(line):
 
 
 def wheel(machine):
-    """The contact wheel in the contact frame (its centre at z = -R): rim see-through, core, axes."""
+    """The contact wheel in the contact frame (its centre at z = -R): core, rim, the belt around it, axes."""
     line = profile(machine)
     radius = machine.WheelRadius.Value
     least = max(float(line[:, 1].min()) - max(machine.RimThickness.Value, 0.02 * radius), 0.0)
     first, last = line[0], line[-1]
-    rim = np.vstack([[first[0], least], line, [last[0], least]])
+    # The belt is a part of the radius: its grain is what touches.
+    under = line - [0.0, min(BELT_THICKNESS * radius, 0.5 * (line[:, 1].min() - least))]
+    rim = np.vstack([[first[0], least], under, [last[0], least]])
+    belt = np.vstack([under[:1], line, under[-1:]])
     core = np.array([[first[0], 0.0], [first[0], least], [last[0], least], [last[0], 0.0]])
     move = coin.SoTranslation()
     move.translation = (0.0, 0.0, -radius)
     return separator(
         separator(
             move,
-            separator(material(CORE, 0.5), triangles(*revolved(core))),
-            separator(material(RUBBER, 0.6), triangles(*revolved(rim))),
+            separator(material(CORE), triangles(*revolved(core))),
+            separator(material(RUBBER), triangles(*revolved(rim))),
+            separator(material(BELT), triangles(*revolved(belt))),
         ),
         axes(0.5 * radius),
     )

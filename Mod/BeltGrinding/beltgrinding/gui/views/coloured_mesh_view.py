@@ -9,6 +9,7 @@ from pivy import coin
 from ..common.compat import make_matt
 from ..scene.legend import Legend
 from ..scene.part_context import points_of_part
+from .showing import show_stock
 from .view import View
 
 
@@ -40,6 +41,7 @@ class ColouredMeshView(View):
     def onChanged(self, view, name):
         if name == "Visibility" and getattr(self, "legend", None) is not None:
             self._show_legend()
+            show_stock(view.Object.getParentGroup())
 
     def colour(self):
         """Draws the colours: 0.20 forgets them on reopening and whenever the mesh is set."""

@@ -3,13 +3,17 @@
 from pivy import coin
 
 from ...engine import InputError
+from ...objects.deviation import Deviation
+from ...objects.ground_mesh import GroundMesh
+from ...objects.job_data import child, children
 from ...objects.robot_path import load_program
 from ..common.compat import translate
 from ..common.icons import icon, stale_icon, qicon
-from ..scene import path_arrows
+from ..scene import path_arrows, stock_shell
 from .coloured_mesh_view import frame_selected
 from .deviation_view import DeviationView
 from .ground_mesh_view import GroundMeshView
+from .showing import show_stock
 from .section_view import SectionView
 from .view import View
 
@@ -59,14 +63,54 @@ class JobView(View):
         "BeltGrinding_ImportResult",
     )
 
+    def updateData(self, obj, name):
+        if name in ("DesignFaces", "FlipNormals", "Group"):
+            show_stock(obj)
+
     def panel(self, obj):
         from ..panels.job_panel import JobPanel
 
         return JobPanel(obj)
 
 
-class StockView(Undrawn):
+class StockView(View):
+    """A uniform allowance is drawn as a shell until there is a result; another stock is an object of its own."""
+
     ICON = "BeltGrinding_Stock"
+
+    def attach(self, view):
+        super().attach(view)
+        self.shell = coin.SoSwitch()
+        view.addDisplayMode(self.shell, "Shell")
+
+    def getDisplayModes(self, view):
+        return ["Shell"]
+
+    def getDefaultDisplayMode(self):
+        return "Shell"
+
+    def finishRestoring(self):
+        self.update_shell()
+
+    def updateData(self, obj, name):
+        if name in ("Kind", "Allowance") and getattr(self, "view", None) is not None:
+            self.update_shell()
+
+    def onChanged(self, view, name):
+        if name == "Visibility" and getattr(self, "shell", None) is not None:
+            self.update_shell()
+
+    def update_shell(self):
+        """Draws the stock as it is now; nothing beside a result that is shown."""
+        obj, job = self.view.Object, self.view.Object.getParentGroup()
+        self.shell.whichChild = coin.SO_SWITCH_NONE
+        self.shell.removeAllChildren()
+        if job is None or not self.view.Visibility or getattr(obj, "Kind", "") != "allowance":
+            return
+        results = [*children(job, Deviation), *children(job, GroundMesh)]
+        if not any(result.ViewObject.Visibility for result in results):
+            self.shell.addChild(stock_shell.shell(job, obj.Allowance.Value))
+            self.shell.whichChild = coin.SO_SWITCH_ALL
 
     def panel(self, obj):
         from ..panels.settings_panels import StockPanel

@@ -1,0 +1,56 @@
+"""The stock before grinding, as a see-through shell on the faces to be ground."""
+
+import numpy as np
+from pivy import coin
+
+from ...engine import InputError
+from ...objects import job_data
+from .part_context import tessellated
+from .shapes3d import material, separator, triangles, unpickable
+
+COLOUR, SEE_THROUGH = (0.96, 0.72, 0.30), 0.62
+CREASE = 0.6  # rad
+
+
+def shell(job, allowance):
+    """Coin node of a uniform ``allowance`` (mm) on a job's faces; empty where there is none."""
+    root = separator(unpickable())
+    try:
+        shape, numbers = job_data.design(job)
+    except InputError:
+        return root
+    if not allowance > 0.0:
+        return root
+    tessellated(shape)  # all faces as one: their edges meet
+    side = -1.0 if job.FlipNormals else 1.0
+    for number in numbers:
+        points, faces = tessellated(shape.Faces[number - 1], shape)
+        if len(faces):
+            points, faces = thickened(points, faces, side * allowance)
+            root.addChild(separator(material(COLOUR, SEE_THROUGH), triangles(points, faces, CREASE)))
+    return root
+
+
+def thickened(points, faces, thickness):
+    """(points, triangles) of a surface's copy, ``thickness`` mm along its normals, and of the walls between
+    their borders."""
+    normals = np.zeros_like(points)
+    corners = points[faces]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    for k in range(3):
+        np.add.at(normals, faces[:, k], areas)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    _, first, counts = np.unique(
+        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    border = edges[first[counts == 1]]
+    above = border + len(points)
+    walls = np.concatenate(
+        [
+            np.column_stack([border[:, 0], border[:, 1], above[:, 1]]),
+            np.column_stack([border[:, 0], above[:, 1], above[:, 0]]),
+        ]
+    )
+    both = np.vstack([points, points + thickness * normals])
+    return both, np.vstack([faces + len(points), walls])

@@ -304,8 +304,8 @@ for name, bad, good in (
     assert Gui.Control.activeDialog() and field("note").text(), bad  # refused, and said why
     type_in(name, good)
     assert not marked(name) and field(name).toolTip() == tip, (name, good)
-for bad in ("nonsense", "1 +"):  # marked as it is typed; FreeCAD takes it back afterwards
-    line = field("Spacing").findChild(QtGui.QLineEdit)
+for bad in ("nonsense", "1 +"):  # marked as it is typed
+    line = field("Spacing")
     line.selectAll()
     line.insert(bad)
     assert marked("Spacing") and bad in line.toolTip(), line.toolTip()
@@ -366,7 +366,7 @@ view.setAnimationEnabled(False)
 view.viewTop()
 view.fitAll()
 scene = view.getSceneGraph()
-doc.RobotPath.ViewObject.Visibility = False
+doc.RobotPath.ViewObject.Visibility = doc.Stock.ViewObject.Visibility = False
 Gui.Selection.clearSelection()
 def green():
     settle()

@@ -13,6 +13,8 @@ WHEEL = """
 KINDS = QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QSlider
 
 def shown(widget):
+    if hasattr(widget, "rawValue"):
+        return widget.text()
     line = widget.findChild(QtGui.QLineEdit)
     for name in ("currentIndex", "value"):
         found = getattr(widget, name, None)
@@ -31,7 +33,8 @@ def turn(widget):
         QtGui.QApplication.sendEvent(widget, event)
 
 def fields():
-    return [w for kind in KINDS for w in visible(kind) if not isinstance(w, QtGui.QScrollBar)]
+    entries = [w for w in visible(QtGui.QLineEdit) if hasattr(w, "rawValue")]
+    return entries + [w for kind in KINDS for w in visible(kind) if not isinstance(w, QtGui.QScrollBar)]
 
 def turn_over_all(before):
     view_widget().setFocus()
@@ -240,6 +243,54 @@ menu("Simulate")
 wait(lambda: doc.getObject("Simulation") is not None)
 texts = [label.text() for label in visible(QtGui.QLabel)]
 assert any("law.coefficient_mm2_per_N is 0" in text for text in texts), texts
+""",
+        window=True,
+    )
+
+
+def test_an_entry_shows_the_units_of_the_trade_and_takes_any(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from FreeCAD import Units
+machine = doc.BeltMachine
+machine.BeltSpeed = "20 m/s"
+menu("Belt machine")
+assert field("BeltSpeed").text() == "20 m/s", field("BeltSpeed").text()
+for typed, value, text in (
+    ("25", 25000, "25 m/s"), ("18 m/s", 18000, "18 m/s"), ("15000 mm/s", 15000, "15 m/s"),
+    ("1,5", 1500, "1.5 m/s"), ("2 * 11", 22000, "22 m/s"), ("1200 m/min", 20000, "20 m/s"),
+):
+    type_in("BeltSpeed", typed)
+    assert abs(machine.BeltSpeed.Value - value) < 1e-6, (typed, machine.BeltSpeed)
+    assert field("BeltSpeed").text() == text, (typed, field("BeltSpeed").text())
+for bad in ("3 mm", "-4", "fast", ""):
+    line = field("BeltSpeed")
+    line.selectAll()
+    line.insert(bad) if bad else line.clear()
+    assert line.styleSheet() and abs(machine.BeltSpeed.Value - 20000) < 1e-6, bad
+    type_in("BeltSpeed", "20 m/s")
+    assert not field("BeltSpeed").styleSheet()
+
+# Up and down, an expression, and a number in its place.
+for key, text in ((QtCore.Qt.Key_Up, "21 m/s"), (QtCore.Qt.Key_Down, "20 m/s")):
+    event = QtGui.QKeyEvent(QtCore.QEvent.KeyPress, key, QtCore.Qt.NoModifier)
+    QtGui.QApplication.sendEvent(field("BeltSpeed"), event)
+    assert field("BeltSpeed").text() == text
+type_in("BeltSpeed", "=10 m/s + 2 m/s")
+assert abs(machine.BeltSpeed.Value - 12000) < 1e-6 and machine.ExpressionEngine, machine.BeltSpeed
+assert field("BeltSpeed").text() == "12 m/s" and field("BeltSpeed").font().italic()
+type_in("BeltSpeed", "14")
+assert not machine.ExpressionEngine and abs(machine.BeltSpeed.Value - 14000) < 1e-6
+assert not field("BeltSpeed").font().italic()
+press("Cancel")
+
+# Deviations in mm or micrometres, as the preferences say; what is typed bare is in that.
+from beltgrinding.gui.widgets.quantity_entry import QuantityEntry, written
+assert written(-0.05, "mm") == "-0.05 mm" and written(0.0, "N") == "0 N" and written(-50e-3, "\u00b5m") == "-50 \u00b5m"
+entry = QuantityEntry(0.05, Units.Length, "\u00b5m")
+assert entry.text() == "50 \u00b5m"
+assert entry.parsed("70") == 0.07 and entry.parsed("0.07 mm") == 0.07 and abs(entry.parsed("30 um") - 0.03) < 1e-12
 """,
         window=True,
     )

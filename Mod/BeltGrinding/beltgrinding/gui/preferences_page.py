@@ -38,7 +38,7 @@ class PreferencesPage:
         box, rows = _group(translate("BeltGrinding", "New jobs"))
         self.defaults = {}
         for (name, prop, _), text in zip(preferences.JOB_DEFAULTS, texts):
-            field = quantity_field(Units.Quantity(0.0, Units.Length))
+            field = quantity_field(Units.Quantity(0.0, Units.Length), "mm")
             field.setObjectName(name)
             if "Tolerance" not in prop:
                 field.setProperty("minimum", 1e-6)

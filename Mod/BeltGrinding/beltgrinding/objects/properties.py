@@ -157,6 +157,24 @@ def limits(obj, name):
     return scaled[0], scaled[1], open_low
 
 
+UNITS = {  # what a key ends with: the unit
+    "_mm_s2": "mm/s²",
+    "_mm_s": "mm/s",
+    "_m_s": "m/s",
+    "_mm": "mm",
+    "_deg": "°",
+    "_N": "N",
+    "_MPa": "MPa",
+}
+
+
+def unit_of(obj, name):
+    """The unit of a job's key that a property mirrors; '' where it is none or has none."""
+    key = _keys.get((type_of(obj), name))
+    found = () if key is None else (unit for end, unit in UNITS.items() if key.key.endswith(end))
+    return next(iter(found), "")
+
+
 def check_limits(obj, keys):
     """Raises InputError for the first property that lies outside of the schema's limits."""
     for key in keys:

@@ -129,14 +129,11 @@ class Legend:
         watch.setCallback(self._watch, None)
         annotation = coin.SoAnnotation()
         annotation.renderCaching = coin.SoSeparator.OFF
-        camera = coin.SoOrthographicCamera()
-        camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
-        camera.position = (0, 0, 1)
-        camera.height = 2.0
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
         self.shift, self.image = coin.SoTranslation(), coin.SoImage()
-        for node in (style, camera, self.shift, self.image):
+        # No camera of its own: after one, a pick's ray would go on from there.
+        for node in (style, self.shift, self.image):
             annotation.addChild(node)
         # Looked at while views of several sizes are drawn: a change must not ask for another drawing.
         for node in (annotation, self.shift, self.image):
@@ -173,7 +170,11 @@ class Legend:
             self.drawn = key
         left, bottom = self._place(seen, size, width, height)
         self.box = left, bottom, left + size[0], bottom + size[1]
-        self.shift.translation = (2.0 * left / width - 1.0, 2.0 * bottom / height - 1.0, 0.0)
+        volume = coin.SoViewVolumeElement.get(state)
+        depth = volume.getNearDist() + 0.5 * volume.getDepth()
+        at = volume.getPlanePoint(depth, coin.SbVec2f(left / width, bottom / height))
+        model = coin.SoModelMatrixElement.get(state)
+        self.shift.translation = model.inverse().multVecMatrix(at)
 
     def _seen(self, state, width, height):
         """(n, 2) pixels at which the part's points are drawn."""

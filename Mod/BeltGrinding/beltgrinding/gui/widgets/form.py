@@ -9,6 +9,8 @@ from FreeCAD import Placement, Rotation, Units, Vector
 from ...engine import InputError
 from ...objects.properties import limits
 from ..common.compat import QtCore, QtGui, translate
+from . import quantity_entry
+from .quantity_entry import QuantityEntry
 from .steady import steady
 
 QUANTITIES = {
@@ -33,10 +35,14 @@ NOT_NEGATIVE = {
 }
 
 
-def quantity_field(quantity):
-    """FreeCAD's entry for a number with its unit; its property rawValue is in FreeCAD's own unit."""
-    widget = _spin_box()
-    show_quantity(widget, quantity)
+def quantity_field(quantity, symbol):
+    """An entry for a number with its unit, shown in ``symbol``'s; its property rawValue is in FreeCAD's own unit.
+    FreeCAD's entry where its unit system is not metric."""
+    if quantity_entry.metric():
+        widget = QuantityEntry(quantity.Value, quantity.Unit, symbol)
+    else:
+        widget = _spin_box()
+        show_quantity(widget, quantity)
     widget.setMinimumWidth(MINIMUM_WIDTH)
     return widget
 
@@ -53,8 +59,18 @@ def _spin_box():
     raise RuntimeError("FreeCAD's entry for quantities cannot be made")
 
 
+def watch_quantity(widget, changed):
+    """Calls ``changed()`` when the value of a ``quantity_field`` is another one."""
+    if isinstance(widget, QuantityEntry):
+        widget.valueChanged.connect(lambda _: changed())
+    else:
+        widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), lambda _: changed())
+
+
 def show_quantity(widget, quantity):
-    """Puts a quantity into FreeCAD's entry."""
+    """Puts a quantity into a ``quantity_field``."""
+    if isinstance(widget, QuantityEntry):
+        return widget.show_value(Units.Quantity(quantity).Value)
     # FreeCAD's two decimals would round the value itself, not only its text.
     quantity = Units.Quantity(quantity)
     quantity.Format = {"Precision": 7, "NumberFormat": "g", "Denominator": 8}
@@ -139,6 +155,12 @@ class Form(QtGui.QGroupBox):
             return self._out_of_limits(name, value)
         if text.startswith("="):
             return ""  # an expression, which FreeCAD checks itself
+        widget = self.rows[name][1]
+        if isinstance(widget, QuantityEntry):
+            try:
+                return self._out_of_limits(name, widget.parsed(text))
+            except ValueError as error:
+                return str(error)
         try:
             quantity = Units.Quantity(text)
         except Exception:  # the kind differs between FreeCAD's generations
@@ -167,6 +189,8 @@ class Form(QtGui.QGroupBox):
 
     def _shown(self, name, value):
         unit = getattr(getattr(self.obj, name), "Unit", None)
+        if unit is not None and isinstance(self.rows[name][1], QuantityEntry):
+            return quantity_entry.written(value, quantity_entry.symbol_of(self.obj, name))
         return f"{value:g}" if unit is None else Units.Quantity(value, unit).UserString
 
     def mark(self, name, mistake):
@@ -221,16 +245,21 @@ class Form(QtGui.QGroupBox):
 
     def _quantity(self, name, kind):
         value = getattr(self.obj, name)
-        widget = quantity_field(value)
-        if kind in NOT_NEGATIVE:
-            widget.setProperty("minimum", 0.0)
-        Gui.ExpressionBinding(widget).bind(self.obj, name)
+        widget = quantity_field(value, quantity_entry.symbol_of(self.obj, name))
+        if isinstance(widget, QuantityEntry):
+            widget.bind(self.obj, name)
+            negative = kind in NOT_NEGATIVE
+            widget.refused = lambda v: bool(negative and v < 0.0 or self._out_of_limits(name, v))
+        else:
+            if kind in NOT_NEGATIVE:
+                widget.setProperty("minimum", 0.0)
+            Gui.ExpressionBinding(widget).bind(self.obj, name)
 
-        def changed(*_):
+        def changed():
             raw = float(widget.property("rawValue"))
             self._set(name, Units.Quantity(raw, value.Unit))
 
-        widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), changed)
+        watch_quantity(widget, changed)
         return widget
 
     def _number(self, name, signed=False):
@@ -295,16 +324,16 @@ class FrameField(QtGui.QWidget):
         angles = placement.Rotation.toEuler()
         self.fields = []
         for i, (name, value) in enumerate(zip("XYZABC", (*placement.Base, *angles))):
-            field = quantity_field(Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
-            field.findChild(QtGui.QLineEdit).setCursorPosition(0)
+            unit, symbol = (Units.Length, "mm") if i < 3 else (Units.Angle, "°")
+            field = quantity_field(Units.Quantity(value, unit), symbol)
             field.setObjectName(name)
             field.setToolTip(name)
-            field.connect(field, QtCore.SIGNAL("valueChanged(double)"), self._changed)
+            watch_quantity(field, self._changed)
             grid.addWidget(QtGui.QLabel(name), i, 0)
             grid.addWidget(field, i, 1)
             self.fields.append(field)
         self.notify = changed
 
-    def _changed(self, *_):
+    def _changed(self):
         x, y, z, a, b, c = (float(field.property("rawValue")) for field in self.fields)
         self.notify(Placement(Vector(x, y, z), Rotation(a, b, c)))

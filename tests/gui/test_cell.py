@@ -73,7 +73,7 @@ assert np.allclose(wheel[:3, 3], [30, 20, 20.2]) and np.allclose(wheel[:3, 2], [
 assert not field("cellMoves").isEnabled()  # tool in hand: the wheel moves anyway
 
 frame = field("BaseFromWork")
-line = [w for w in frame.findChildren(QtGui.QWidget, "X")][0].findChild(QtGui.QLineEdit)
+line = [w for w in frame.findChildren(QtGui.QWidget, "X")][0]
 line.setFocus(); line.selectAll(); line.insert("10 mm"); line.editingFinished.emit()
 settle()
 assert machine.BaseFromWork.Base.x == 10
@@ -179,7 +179,6 @@ machine.CheckCollisions = True
 machine.FlangeFromTcp = FreeCAD.Placement()
 
 line = [w for w in field("BaseFromRobot").findChildren(QtGui.QWidget, "X")][0]
-line = line.findChild(QtGui.QLineEdit)
 line.setFocus(); line.selectAll(); line.insert("-1500 mm"); line.editingFinished.emit()
 settle()
 assert "Out of reach" in field("joints").text() and robot.root.whichChild.getValue() == -1

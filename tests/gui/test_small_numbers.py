@@ -84,7 +84,7 @@ assert turn_over_all(others) > 3
 
 # One that is clicked into is turned by it as ever.
 menu("Belt machine")
-radius = field("WheelRadius", QtGui.QAbstractSpinBox)
+radius = field("WheelRadius")
 window.activateWindow()  # without a window manager nobody else does
 settle()
 radius.setFocus()

@@ -13,10 +13,18 @@ def make_child(job, proxy, name, label, properties):
     found = job.Document.addObject("App::FeaturePython", name)
     with removed_on_error(found):
         proxy(found)
-        found.Label = label
+        called(found, label)
         set_by_name(found, properties)
         job.addObject(found)
     return found
+
+
+def called(obj, label):
+    """Gives a new object the label that it has in the user's language; English ones are FreeCAD's, numbered
+    where there are several."""
+    if obj.Label.rstrip("0123456789") != label:
+        obj.Label = label
+    return obj
 
 
 class removed_on_error:

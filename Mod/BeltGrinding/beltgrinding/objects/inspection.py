@@ -2,6 +2,8 @@
 Offered by ``api``.
 """
 
+import FreeCAD
+
 from ..engine import InputError
 from . import (
     deviation as deviations,
@@ -11,7 +13,7 @@ from . import (
     section as sections,
     verdict as verdicts,
 )
-from .creation import removed_on_error
+from .creation import called, removed_on_error
 from .job_data import child
 from .properties import set_by_name
 from .simulation import simulated
@@ -19,17 +21,19 @@ from .simulation import simulated
 
 def make_deviation(job):
     """Adds the coloured deviation of the job's simulation, or returns the one that is there."""
-    return _follower(job, deviations.Deviation, "Mesh::FeaturePython", "Deviation")
+    label = FreeCAD.Qt.translate("BeltGrinding", "Deviation")
+    return _follower(job, deviations.Deviation, "Mesh::FeaturePython", "Deviation", label)
 
 
 def make_verdict(job):
     """Adds the verdict on the job's simulation, or returns the one that is there. It follows the
     result and the job's tolerances.
     """
-    return _follower(job, verdicts.Verdict, "App::FeaturePython", "Verdict")
+    label = FreeCAD.Qt.translate("BeltGrinding", "Verdict")
+    return _follower(job, verdicts.Verdict, "App::FeaturePython", "Verdict", label)
 
 
-def _follower(job, proxy, kind, name):
+def _follower(job, proxy, kind, name, label):
     """The job's child that shows its result and follows it, made where it is missing."""
     simulation = simulated(job)
     found = child(job, proxy)
@@ -37,6 +41,7 @@ def _follower(job, proxy, kind, name):
         found = job.Document.addObject(kind, name)
         with removed_on_error(found):
             proxy(found)
+            called(found, label)
             found.Simulation = simulation
             job.addObject(found)
             found.Proxy.update(found)
@@ -72,7 +77,7 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
     found = job.Document.addObject("App::FeaturePython", "Section")
     with removed_on_error(found):
         sections.Section(found)
-        found.Label = "Cross-section"
+        found.Label = FreeCAD.Qt.translate("BeltGrinding", "Cross-section")
         found.Simulation = simulation
         found.Point, found.Normal = sections.first_plane(field)
         if point is not None:
@@ -101,7 +106,7 @@ def make_ground_mesh(job, **properties):
     found = job.Document.addObject("Mesh::FeaturePython", "GroundPart")
     with removed_on_error(found):
         ground_mesh.GroundMesh(found)
-        found.Label = "Ground part"
+        found.Label = FreeCAD.Qt.translate("BeltGrinding", "Ground part")
         found.Simulation = simulation
         job.addObject(found)
         set_by_name(found, properties)

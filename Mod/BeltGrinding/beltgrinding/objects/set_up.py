@@ -15,7 +15,7 @@ from . import (
     robot_path,
     stock as stocks,
 )
-from .creation import make_child, removed_on_error
+from .creation import called, make_child, removed_on_error
 from .job_data import child, children
 from .properties import set_by_name
 from .simulation import simulated
@@ -38,7 +38,7 @@ def make_job(design, faces=(), **properties):
         )
     job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
     with removed_on_error(job):
-        job.Label = "Belt grinding"
+        job.Label = FreeCAD.Qt.translate("BeltGrinding", "Belt grinding")
         job_object.BeltGrindingJob(job)
         job.DesignFaces = links
         job_data.design(job)
@@ -56,12 +56,14 @@ def make_stock(job, source=None, **properties):
         else:
             kind = "mesh" if hasattr(source, "Mesh") else "solid"
             properties = {"Kind": kind, "Source": source, **properties}
-    return make_child(job, stocks.Stock, "Stock", "Stock", properties)
+    label = FreeCAD.Qt.translate("BeltGrinding", "Stock")
+    return make_child(job, stocks.Stock, "Stock", label, properties)
 
 
 def make_belt_machine(job, **properties):
     """Adds the belt machine to a job, or changes the one it has."""
-    machine = make_child(job, belt_machine.BeltMachine, "BeltMachine", "Belt machine", properties)
+    label = FreeCAD.Qt.translate("BeltGrinding", "Belt machine")
+    machine = make_child(job, belt_machine.BeltMachine, "BeltMachine", label, properties)
     for path in children(job, robot_path.RobotPath):
         path.Machine = machine
     return machine
@@ -76,6 +78,7 @@ def make_belt(job, **properties):
         made = job.Document.addObject("App::FeaturePython", "Belt")
         with removed_on_error(made):
             belts.Belt(made)
+            called(made, FreeCAD.Qt.translate("BeltGrinding", "Belt"))
             set_by_name(made, properties)
             job.addObject(made)
         machine.Belt = made
@@ -145,7 +148,7 @@ def make_raster(job, faces=(), compute=True, **properties):
     path = job.Document.addObject("Path::FeaturePython", "RasterPath")
     with removed_on_error(path):
         raster_path.RasterPath(path)
-        path.Label = "Raster"
+        path.Label = FreeCAD.Qt.translate("BeltGrinding", "Raster")
         path.Faces = links
         path.Machine = machine
         set_by_name(path, properties)

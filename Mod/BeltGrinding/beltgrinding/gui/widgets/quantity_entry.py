@@ -97,12 +97,14 @@ class QuantityEntry(QtGui.QLineEdit):
     def parsed(self, text):
         """The value of a text in FreeCAD's unit. Raises ValueError with what is wrong."""
         text = text.strip().replace(",", ".").replace("um", "µm")
+        if not text:
+            raise ValueError(translate("BeltGrinding", "This is no number: {}").format("''"))
         try:
             value = float(text) * SIZES[self.symbol]
         except ValueError:
             value = self._with_unit(text)
         if not math.isfinite(value):
-            raise ValueError(translate("BeltGrinding", "This is no number: {}").format(text or "''"))
+            raise ValueError(translate("BeltGrinding", "This is no number: {}").format(text))
         return value
 
     def _with_unit(self, text):
@@ -113,7 +115,6 @@ class QuantityEntry(QtGui.QLineEdit):
         try:
             quantity = Units.Quantity(text)
         except Exception:  # the kind differs between FreeCAD's generations
-            text = text or "''"
             raise ValueError(translate("BeltGrinding", "This is no number: {}").format(text)) from None
         if quantity.Unit == self.unit:
             return quantity.Value
@@ -169,6 +170,16 @@ class QuantityEntry(QtGui.QLineEdit):
         steps = {QtCore.Qt.Key_Up: 1, QtCore.Qt.Key_Down: -1}.get(event.key(), 0)
         if not steps:
             return super().keyPressEvent(event)
+        self._step(steps)
+
+    def wheelEvent(self, event):
+        """Turns the value where one has clicked into it; else what lies below scrolls."""
+        if not self.hasFocus():
+            return event.ignore()
+        self._step(1 if event.angleDelta().y() > 0 else -1)
+        event.accept()
+
+    def _step(self, steps):
         shown = self.raw / SIZES[self.symbol]
         step = 1.0 if abs(shown) >= 1.0 else 0.01
         self.setText(written((shown + steps * step) * SIZES[self.symbol], self.symbol))

@@ -10,6 +10,7 @@ import numpy as np
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
 from . import preferences
+from .fields import field_of
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -123,7 +124,7 @@ class Deviation(Proxy):
         before = json.loads(obj.Shown or "[null, null]")
         if before == [result, shown]:
             return
-        field = simulation.Proxy.field(simulation)
+        field = field_of(simulation)
         if field is None:
             raise InputError(
                 "objects.no_field",
@@ -176,6 +177,26 @@ def bands_of(obj):
     return min(max(obj.Bands, 0), MOST_BANDS)
 
 
+_ready = []  # (field, its Mesh.Mesh) that a worker has made
+
+
+def prepare(field):
+    """Makes the mesh of a core.HeightField, for the next ``show`` of it; in any thread."""
+    _ready[:] = [(field, _mesh(field))]
+
+
+def _prepared(field):
+    found = next((mesh for one, mesh in _ready if one is field), None)
+    _ready.clear()
+    return found
+
+
+def _mesh(field):
+    mesh = Mesh.Mesh()
+    mesh.read(Stream=io.BytesIO(core.mesh_ply(field, True)), Format="PLY")
+    return mesh
+
+
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
@@ -196,7 +217,5 @@ def show(obj, field, scale, new_mesh=True):
     for name, key in SHARES.items():
         setattr(obj, name, 100.0 * statistics[key])
     if new_mesh:  # an assignment to Mesh drops the colours: it comes first
-        mesh = Mesh.Mesh()
-        mesh.read(Stream=io.BytesIO(core.mesh_ply(field, True)), Format="PLY")
-        obj.Mesh = mesh
+        obj.Mesh = _prepared(field) or _mesh(field)
     obj.VertexColors = colours.tolist()

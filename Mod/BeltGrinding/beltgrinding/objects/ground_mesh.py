@@ -3,6 +3,7 @@
 import io
 import json
 
+import FreeCAD
 import Mesh
 
 from ..engine import InputError, core
@@ -64,7 +65,7 @@ def _shown(obj):
 
 def make(obj):
     """Makes the mesh from the object's simulation. Raises InputError where that is out of date."""
-    from . import job_data, job_inputs
+    from . import job_data, job_inputs, waiting
 
     simulation, job = obj.Simulation, obj.getParentGroup()
     if simulation is None or job is None:
@@ -89,14 +90,19 @@ def make(obj):
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.to_data(job, folder)
         shape, flip = workpiece.read_design(data["design"]), data["design"]["flip_normals"]
-    mesh = core.ground_mesh(shape, field, True, obj.Deflection.Value, flip_normals=flip)
-    scale = colour_scale({"inspection": job_data.inspection(job)})
-    figures = closed_mesh.summary(mesh)
-    made = Mesh.Mesh()
-    made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")
+    scale, deflection = colour_scale({"inspection": job_data.inspection(job)}), obj.Deflection.Value
+
+    def work(_):
+        mesh = core.ground_mesh(shape, field, True, deflection, flip_normals=flip)
+        made = Mesh.Mesh()
+        made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")
+        return mesh, closed_mesh.summary(mesh), made, mesh.colours(*scale).tolist()
+
+    text = FreeCAD.Qt.translate("BeltGrinding", "Making the mesh of the ground part")
+    mesh, figures, made, colours = waiting.wait(work, text)
     obj.Mesh = made  # drops the colours: it comes first
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
-    obj.VertexColors = mesh.colours(*scale).tolist()
+    obj.VertexColors = colours
     obj.Closed = figures["closed"]
     obj.Volume, obj.DesignVolume = figures["volume_mm3"] or 0.0, figures["design_volume_mm3"] or 0.0
     obj.TurnedTriangles, obj.MissedVertices = (

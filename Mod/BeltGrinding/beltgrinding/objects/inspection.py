@@ -14,6 +14,7 @@ from . import (
     verdict as verdicts,
 )
 from .creation import called, removed_on_error
+from .fields import field_of
 from .job_data import child
 from .properties import set_by_name
 from .simulation import simulated
@@ -63,7 +64,7 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
     the longest side of the surface, in its middle. Raises InputError where there is nothing to cut.
     """
     simulation = simulated(job)
-    field = sections.field_of(simulation)
+    field = field_of(simulation)
     if field is None:
         raise InputError(
             "objects.no_field",

@@ -2,7 +2,7 @@
 
 from ..simulation import convergence, run as runs
 from ..simulation.result import Result
-from . import job_inputs, simulation as results
+from . import fields, job_inputs, simulation as results
 from .job_data import child
 
 
@@ -28,6 +28,7 @@ def store_result(job, result, fingerprint, files=None):
         results.Simulation(simulation)
         job.addObject(simulation)
     results.store(simulation, result, fingerprint, files)
+    fields.keep(simulation, result.field)
     simulation.touch()
     job.Document.recompute()
     return simulation

@@ -1,12 +1,12 @@
 """A cross-section of the result in the document: its plane, its figures, its line on the surface."""
 
 import json
-import os
 
 import numpy as np
 
 from ..engine import InputError
 from ..inspection import section as sections
+from .fields import field_of
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -34,24 +34,6 @@ OUTPUTS = (
     Output("LineCounts", "IntegerList", "Section", "points of each piece of it", True),
     Output("Shown", "String", "Section", "what was cut, and how", True),
 )
-_fields = {}  # the last field that was read, by the result it is of
-
-
-def field_of(simulation):
-    """core.HeightField of a Simulation, kept for the next call; None if there is none."""
-    path = simulation.HeightField
-    if not path or not os.path.exists(path):
-        return None
-    key = (path, simulation.Fingerprint, simulation.WallTime, os.stat(path).st_mtime_ns)
-    if key not in _fields:
-        _fields.clear()
-        _fields[key] = simulation.Proxy.field(simulation)
-    return _fields[key]
-
-
-def forget_field():
-    """Frees the field that ``field_of`` keeps."""
-    _fields.clear()
 
 
 class Section(Proxy):

@@ -7,7 +7,7 @@ from ..inspection import verdict as verdicts
 from .geometry import core_shape
 from .properties import Output, add_outputs
 from .proxy import Proxy
-from .section import field_of
+from .fields import field_of
 
 OUTPUTS = (
     Output("Overall", "String", "Verdict", "pass, fail or unknown"),

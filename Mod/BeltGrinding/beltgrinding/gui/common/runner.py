@@ -5,7 +5,7 @@ import time
 import weakref
 
 from ...engine import Cancelled, RunContext
-from ...objects import api, job_inputs, simulation as results
+from ...objects import api, deviation, job_inputs, simulation as results
 from ...simulation import run as runs
 from .compat import QtCore, translate
 
@@ -87,6 +87,8 @@ class Runner(Background):
         result = self.grind(context)
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
+        if self.then is not None:
+            deviation.prepare(result.field)  # what is shown next
         return result, results.files_of(result)
 
     def grind(self, context):

@@ -7,6 +7,7 @@ import numpy as np
 from ...engine import InputError
 from ...inspection import section as sections, section_plot
 from ...objects import preferences, section as objects
+from ...objects.fields import field_of, forget_field
 from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
@@ -186,7 +187,7 @@ class SectionDock(ObjectDock):
         plane = bool(not line and length > 0)  # Qt takes no bool of numpy's
         self.slider.setEnabled(plane)
         self.offset.setEnabled(plane)
-        field = objects.field_of(obj.Simulation) if obj.Simulation is not None else None
+        field = field_of(obj.Simulation) if obj.Simulation is not None else None
         if not plane or field is None:
             return
         normal /= length
@@ -240,7 +241,7 @@ class SectionDock(ObjectDock):
             return
         if index < 3:
             point, normal = self.obj.Point, list(AXES.values())[index]
-            field = objects.field_of(self.obj.Simulation)
+            field = field_of(self.obj.Simulation)
             if field is not None:
                 point = objects.middle_of_ground(field)
             self.change(Cut=objects.PLANE, Point=point, Normal=normal)
@@ -360,10 +361,10 @@ class SectionDock(ObjectDock):
     def _forget(self):
         self._stop_picking()
         self.obj = None
-        objects.forget_field()
+        forget_field()
         QtCore.QTimer.singleShot(0, self.refresh)
 
     def closeEvent(self, event):
         self._stop_picking()
-        objects.forget_field()
+        forget_field()
         super().closeEvent(event)

@@ -7,7 +7,7 @@ import numpy as np
 from ...objects import verdict as objects
 from ...objects.job_data import children, face_name
 from ...objects.robot_path import RobotPath
-from ...objects.section import forget_field
+from ...objects.fields import forget_field
 from ..common.compat import QtCore, QtGui, translate
 from ..common.verdict_words import headline
 from ..scene.cell_view import CellView

@@ -6,6 +6,7 @@ from pivy import coin
 
 from ...objects import preferences
 from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of, scan_heights
+from ...objects.fields import field_of
 from . import field_view
 from .field_view import FieldView
 from .shapes3d import unpickable
@@ -34,6 +35,10 @@ class CrispColours:
         self.mesh_style.style = coin.SoDrawStyle.INVISIBLE
         self.mesh_style.setOverride(True)
 
+    def shown(self):
+        """Whether the colours are drawn here, and not by FreeCAD."""
+        return self.shape is not None
+
     def hide(self):
         """Leaves the drawing to FreeCAD."""
         self.field = self.shape = self.result = None
@@ -46,7 +51,7 @@ class CrispColours:
         """Takes the object's field, if another one is drawn; False where there is none."""
         if result == self.result:
             return True
-        field = obj.Simulation.Proxy.field(obj.Simulation)
+        field = field_of(obj.Simulation)
         if field is None or field.size != obj.Mesh.CountPoints:
             return False
         self.field, self.shape, self.result = field, FieldView(field), result

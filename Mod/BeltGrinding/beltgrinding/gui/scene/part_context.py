@@ -10,8 +10,29 @@ from ...objects import job_data
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
 DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
+KEPT = 8  # tessellations
+_designs = []  # (what names it, shapes of the objects, design), the last one
+_rest = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
+_edge_lines = []  # (shape, (points, counts)), the last one
+_tessellated = []  # (shape, deflection, (points, triangles)), the last one first
 SPREAD = 600  # points over a part
 REST = "BeltGrindingRest"  # name of the node of the faces that are not ground
+
+
+def design_of(job):
+    """(shape, numbers of its ground faces from 1) as ``job_data.design``, which copies the shapes; the same
+    shape again as long as the objects have theirs, so that what was made of it is found again. Raises
+    InputError."""
+    sources = [obj.Shape for obj, _ in job.DesignFaces if hasattr(obj, "Shape")]
+    places = [obj.getGlobalPlacement().toMatrix().A for obj, _ in job.DesignFaces]
+    key = [obj.Name for obj, _ in job.DesignFaces], [subs for _, subs in job.DesignFaces], places
+    for kept, before, found in _designs:
+        if kept == key and len(before) == len(sources):
+            if all(a.isSame(b) for a, b in zip(before, sources)):
+                return found
+    found = job_data.design(job)
+    _designs[:] = [(key, sources, found)]
+    return found
 
 
 def rest_of_part(job):
@@ -19,13 +40,11 @@ def rest_of_part(job):
     root = coin.SoSeparator()
     root.setName(REST)
     try:
-        shape, numbers = job_data.design(job)
+        shape, numbers = design_of(job)
     except InputError:
         return root
     ground = set(numbers)
-    others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
-    deflection = _deflection(shape)
-    points, triangles = Part.Compound(others).tessellate(deflection) if others else ([], [])
+    points, triangles = _others(shape, ground)
     pick = coin.SoPickStyle()
     pick.style = coin.SoPickStyle.UNPICKABLE
     hints = coin.SoShapeHints()
@@ -34,28 +53,50 @@ def rest_of_part(job):
     material = coin.SoMaterial()
     material.diffuseColor = GREY
     coordinates = coin.SoCoordinate3()
-    coordinates.point.setValues(0, len(points), [tuple(point) for point in points])
-    indices = [index for a, b, c in triangles for index in (a, b, c, -1)]
+    coordinates.point.setValues(0, len(points), points.tolist())
+    indices = np.column_stack([triangles, np.full(len(triangles), -1)]).ravel().tolist()
     faces = coin.SoIndexedFaceSet()
     faces.coordIndex.setValues(0, len(indices), indices)
     root.addChild(pick)
-    for node in (hints, material, coordinates, faces) if triangles else ():
+    for node in (hints, material, coordinates, faces) if len(triangles) else ():
         root.addChild(node)
-    root.addChild(_edges(shape, deflection))
+    root.addChild(_edges(shape))
     return root
+
+
+def _others(shape, ground):
+    """(points, triangles) of a shape's faces but those numbered ``ground``, from 1."""
+    for kept, numbers, found in _rest:
+        if numbers == ground and kept.isSame(shape):
+            return found
+    others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
+    found = np.zeros((0, 3)), np.zeros((0, 3), dtype=int)
+    if others:
+        points, triangles = Part.Compound(others).tessellate(_deflection(shape))
+        found = np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(triangles)
+        found = found[0], found[1].reshape(-1, 3).astype(int)
+    _rest[:] = [(shape, ground, found)]
+    return found
 
 
 def tessellated(shape, whole=None):
     """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here; ``whole``: what it is a
     face of."""
-    points, faces = shape.tessellate(_deflection(whole or shape))
-    return np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
+    deflection = _deflection(whole or shape)
+    for kept, fine, found in _tessellated:
+        if fine == deflection and kept.isSame(shape):
+            return found
+    points, faces = shape.tessellate(deflection)
+    found = np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
+    _tessellated.insert(0, (shape, deflection, found))  # the shape stays, so that no other takes its place
+    del _tessellated[KEPT:]
+    return found
 
 
 def points_of_part(job):
     """(n, 3) some hundred points spread over a job's part by area, mm; none where it has no part."""
     try:
-        points, triangles = tessellated(job_data.design(job)[0])
+        points, triangles = tessellated(design_of(job)[0])
     except (AttributeError, InputError):  # without a job
         return np.zeros((0, 3))
     a, b, c = points[triangles].transpose(1, 0, 2)
@@ -73,13 +114,13 @@ def edges_of_part(job):
     """Coin node with the edges of the job's part; not picked."""
     root = coin.SoSeparator()
     try:
-        shape = job_data.design(job)[0]
+        shape = design_of(job)[0]
     except InputError:
         return root
     pick = coin.SoPickStyle()
     pick.style = coin.SoPickStyle.UNPICKABLE
     root.addChild(pick)
-    root.addChild(_edges(shape, _deflection(shape)))
+    root.addChild(_edges(shape))
     return root
 
 
@@ -87,7 +128,7 @@ def _deflection(shape):
     return DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
 
 
-def _edges(shape, deflection):
+def _edges(shape):
     """The edges as thin lines: without them, faces of one brightness run into one another, and the
     coloured ones have no light."""
     root = coin.SoSeparator()
@@ -95,13 +136,7 @@ def _edges(shape, deflection):
     light.model = coin.SoLightModel.BASE_COLOR
     colour = coin.SoBaseColor()
     colour.rgb = EDGE
-    points, counts = [], []
-    for edge in shape.Edges:
-        if edge.Degenerated:
-            continue
-        line = [tuple(point) for point in edge.discretize(Deflection=deflection)]
-        points += line
-        counts.append(len(line))
+    points, counts = _lines(shape)
     coordinates = coin.SoCoordinate3()
     coordinates.point.setValues(0, len(points), points)
     lines = coin.SoLineSet()
@@ -109,3 +144,19 @@ def _edges(shape, deflection):
     for node in (light, colour, coordinates, lines):
         root.addChild(node)
     return root
+
+
+def _lines(shape):
+    """(points, counts): the shape's edges as lines, one after the other."""
+    for kept, found in _edge_lines:
+        if kept.isSame(shape):
+            return found
+    points, counts = [], []
+    for edge in shape.Edges:
+        if edge.Degenerated:
+            continue
+        line = [tuple(point) for point in edge.discretize(Deflection=_deflection(shape))]
+        points += line
+        counts.append(len(line))
+    _edge_lines[:] = [(shape, (points, counts))]
+    return points, counts

@@ -6,9 +6,8 @@ from pivy import coin
 
 from ...engine import InputError, core
 from ...inspection import sight
-from ...objects import job_data
 from .camera import fly_to
-from .part_context import REST, tessellated
+from .part_context import REST, design_of, tessellated
 from .shapes3d import faint
 
 SEEN = 0.6  # of a place: less, and what hides it fades
@@ -107,7 +106,7 @@ class Sight:
         if self.part is None:
             job = self.document.getObject(self.name)
             try:
-                self.part = tessellated(job_data.design(job)[0])
+                self.part = tessellated(design_of(job)[0])
             except InputError:
                 self.part = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.uint32)
         return self.part

@@ -4,8 +4,7 @@ import numpy as np
 from pivy import coin
 
 from ...engine import InputError
-from ...objects import job_data
-from .part_context import tessellated
+from .part_context import design_of, tessellated
 from .shapes3d import material, separator, triangles, unpickable
 
 COLOUR, SEE_THROUGH = (0.96, 0.72, 0.30), 0.62
@@ -16,7 +15,7 @@ def shell(job, allowance):
     """Coin node of a uniform ``allowance`` (mm) on a job's faces; empty where there is none."""
     root = separator(unpickable())
     try:
-        shape, numbers = job_data.design(job)
+        shape, numbers = design_of(job)
     except InputError:
         return root
     if not allowance > 0.0:

@@ -58,7 +58,6 @@ class DeviationView(ColouredMeshView):
         if getattr(self, "view", None) is None:
             return
         if name == "VertexColors":
-            self.colour()
             self.update_rest()
         if name == "Shown":  # what the object says last
             self.update_crisp()
@@ -90,6 +89,12 @@ class DeviationView(ColouredMeshView):
         """Draws the colours with crisp borders, where that can be done."""
         if self.view.Visibility:
             self.crisp.update(self.view)
+        self.colour()
+
+    def colour(self):
+        """Lets FreeCAD take the vertices' colours over, which takes long, where it draws them."""
+        if not self.crisp.shown():
+            super().colour()
 
     def _redraw(self):
         try:

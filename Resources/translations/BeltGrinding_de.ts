@@ -2110,7 +2110,7 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     </message>
     <message>
         <source>Too much left</source>
-        <translation>Zu viel Aufmaß</translation>
+        <translation>Zu viel übrig</translation>
     </message>
     <message>
         <source>Tool in hand</source>
@@ -2566,7 +2566,7 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     </message>
     <message>
         <source>too much left</source>
-        <translation>zu viel Aufmaß</translation>
+        <translation>zu viel übrig</translation>
     </message>
     <message>
         <source>, line {}</source>
@@ -2694,7 +2694,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>Area with too much left</source>
-        <translation>Fläche mit zu viel Rest</translation>
+        <translation>Fläche, auf der zu viel übrig ist</translation>
     </message>
     <message>
         <source>Check</source>
@@ -2965,10 +2965,6 @@ im Mittel {} abgetragen</translation>
         <translation>Kantenradius</translation>
     </message>
     <message>
-        <source>High, %</source>
-        <translation>Zu hoch, %</translation>
-    </message>
-    <message>
         <source>In doubt</source>
         <translation>Zweifelhaft</translation>
     </message>
@@ -3011,10 +3007,6 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Only convex edges with a smaller radius; empty: all</source>
         <translation>Nur konvexe Kanten mit kleinerem Radius; leer: alles</translation>
-    </message>
-    <message>
-        <source>Removed {:,.1f} mm³, left {:,.1f} mm³, too deep {:,.1f} mm³</source>
-        <translation>Abgetragen {:,.1f} mm³, übrig {:,.1f} mm³, zu tief {:,.1f} mm³</translation>
     </message>
     <message>
         <source>Share, %</source>
@@ -3119,14 +3111,6 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>samples with defective stock</source>
         <translation>Punkte mit fehlendem Aufmaß</translation>
-    </message>
-    <message>
-        <source>too deep</source>
-        <translation>zu tief</translation>
-    </message>
-    <message>
-        <source>too high</source>
-        <translation>zu hoch</translation>
     </message>
     <message>
         <source>unknown</source>
@@ -3254,7 +3238,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>{:.2f} % in tolerance, {:.2f} % too much left, {:.2f} % cut too deep</source>
-        <translation>{:.2f} % in Toleranz, {:.2f} % zu viel übrig, {:.2f} % zu tief</translation>
+        <translation>{:.2f} % in Toleranz, {:.2f} % zu viel übrig, {:.2f} % zu tief geschliffen</translation>
     </message>
     <message>
         <source>Faces: {}. Area: {:,.0f} mm².</source>
@@ -3291,6 +3275,38 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>⚠ Changed since the values were chosen from the part: the feed need not take the allowance off on the mean any more.</source>
         <translation>⚠ Geändert, seit die Werte nach dem Bauteil gewählt wurden: Der Vorschub nimmt das Aufmaß im Mittel vielleicht nicht mehr ab.</translation>
+    </message>
+    <message>
+        <source>A CSV, a line a grind. Columns: {}; {} or {}; {} or {}, {}; {}; {} or {}; and, if the belt wears, {}.</source>
+        <translation>Eine CSV-Datei, eine Zeile je Schliff. Spalten: {}; {} oder {}; {} oder {}, {}; {}; {} oder {}; und, wenn sich das Band abnutzt, {}.</translation>
+    </message>
+    <message>
+        <source>Ground part</source>
+        <translation>Geschliffenes Teil</translation>
+    </message>
+    <message>
+        <source>Left, %</source>
+        <translation>Übrig, %</translation>
+    </message>
+    <message>
+        <source>Making the mesh of the ground part</source>
+        <translation>Das Netz des geschliffenen Teils wird gemacht</translation>
+    </message>
+    <message>
+        <source>Raster</source>
+        <translation>Raster</translation>
+    </message>
+    <message>
+        <source>Removed {:,.1f} mm³, too much left {:,.1f} mm³, cut too deep {:,.1f} mm³</source>
+        <translation>Abgetragen {:,.1f} mm³, zu viel übrig {:,.1f} mm³, zu tief geschliffen {:,.1f} mm³</translation>
+    </message>
+    <message>
+        <source>Save an example</source>
+        <translation>Beispiel speichern</translation>
+    </message>
+    <message>
+        <source>Save an example...</source>
+        <translation>Beispiel speichern ...</translation>
     </message>
 </context>
 <context>

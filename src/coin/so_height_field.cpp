@@ -28,10 +28,10 @@
 namespace beltgrinding {
 namespace {
 
-constexpr std::size_t kBlock = 16384;              // samples of one task
-constexpr std::size_t kMostColours = 4096;         // of a palette: every GL takes such a texture
+constexpr std::size_t kBlock = 16384;       // samples of one task
+constexpr std::size_t kMostColours = 4096;  // of a palette: every GL takes such a texture
 constexpr float kKnownRow = 0.25F, kMissingRow = 0.75F;  // middles of the texture's rows
-constexpr std::uint32_t kUncoloured = 0xFFB0B0B0;  // grey, until colours are set
+constexpr std::uint32_t kUncoloured = 0xFFB0B0B0;        // grey, until colours are set
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Vec3f) == 3 * sizeof(float));
 
@@ -127,7 +127,8 @@ SoHeightField::~SoHeightField() {
         SoGLCacheContextElement::scheduleDeleteCallback(
             // Out of memory, nothing would be left to do.
             // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new)
-            context, delete_orphans, new Orphans{{b.vertex, b.normal, b.colour, b.value, b.index}, b.texture});
+            context, delete_orphans,
+            new Orphans{{b.vertex, b.normal, b.colour, b.value, b.index}, b.texture});
     }
 }
 

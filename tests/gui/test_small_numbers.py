@@ -290,6 +290,9 @@ from beltgrinding.gui.widgets.quantity_entry import QuantityEntry, written
 assert written(-0.05, "mm") == "-0.05 mm" and written(0.0, "N") == "0 N" and written(-50e-3, "\u00b5m") == "-50 \u00b5m"
 entry = QuantityEntry(0.05, Units.Length, "\u00b5m")
 assert entry.text() == "50 \u00b5m"
+assert written(0.0254, "mil") == "1 mil"
+assert QuantityEntry(0.0, Units.Length, "mil").parsed("2") == 0.0508
+assert QuantityEntry(0.0, Units.Acceleration, "mm/s\u00b2").parsed("500 mm/s\u00b2") == 500.0
 assert entry.parsed("70") == 0.07 and entry.parsed("0.07 mm") == 0.07 and abs(entry.parsed("30 um") - 0.03) < 1e-12
 """,
         window=True,

@@ -16,9 +16,10 @@ namespace beltgrinding {
 
 /// A Coin node that draws a height field: one vertex and one colour or value a sample, from vertex
 /// buffers of which only what has changed is sent to the graphics card. Values are coloured by a
-/// palette at every pixel, so that a border between two colours runs through the triangles. Lit or flat by the SoLightModel
-/// before it; seen from both sides by the SoShapeHints. A pick gives an SoFaceDetail whose point
-/// details hold the samples at the triangle's corners. Lengths in mm, frame: work.
+/// palette at every pixel, so that a border between two colours runs through the triangles. Lit or
+/// flat by the SoLightModel before it; seen from both sides by the SoShapeHints. A pick gives an
+/// SoFaceDetail whose point details hold the samples at the triangle's corners. Lengths in mm,
+/// frame: work.
 ///
 /// All members belong to the thread that draws.
 class SoHeightField : public SoShape {

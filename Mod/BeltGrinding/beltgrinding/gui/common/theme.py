@@ -28,7 +28,8 @@ _known = {}  # what the window looked like -> Theme
 
 def theme():
     """The window's ``Theme``. Not by its palette: a style sheet, which is how FreeCAD gets dark, leaves that
-    as it is. The colour that a label's text gets tells, and what the window's ground is drawn in."""
+    as it is. The colour that a label's text gets tells, and what the window's ground is drawn in.
+    """
     window = Gui.getMainWindow()
     key = QtGui.QApplication.instance().styleSheet(), window.palette().cacheKey()
     if key not in _known:

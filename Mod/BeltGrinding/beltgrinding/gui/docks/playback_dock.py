@@ -132,6 +132,7 @@ class Playback(QtGui.QDockWidget):
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
         row = QtGui.QHBoxLayout()
+
         def button(name, picture, text, action):
             made = QtGui.QToolButton()
             made.setObjectName(name)

@@ -6,7 +6,6 @@ from ..common.theme import theme
 from ..common.verdict_words import shares
 
 
-
 def table(name, titles):
     """An empty table whose rows are chosen as a whole."""
     made = QtGui.QTableWidget(0, len(titles))

@@ -15,7 +15,6 @@ from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
 
 
-
 class RunPanel:
     """Base. Makes ``form`` and the widgets ``state``, ``bar`` and ``cancel``; subclasses lay them out, and
     show and hide their own in ``_arrange``.

@@ -71,9 +71,7 @@ class CrispColours:
             heights = scan_heights(obj, field)
             self.shape.colour_by(field_view.DEVIATION, *scale, values=heights)
         else:
-            self.shape.colour_by(
-                field_view.DEVIATION, *scale, bands_of(obj), preferences.colours()
-            )
+            self.shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
 
 
 def _drawable(view):

@@ -92,7 +92,10 @@ def draw(spec, width, height, ratio=1.0):
 def _bar(painter, spec, box, tip):
     """The colours, and an arrow at an end beyond which values have its colour."""
     painter.setPen(QtCore.Qt.NoPen)
-    colours = [QtGui.QColor(int(c) >> 24 & 255, int(c) >> 16 & 255, int(c) >> 8 & 255) for c in spec.colours]
+    colours = [
+        QtGui.QColor(int(c) >> 24 & 255, int(c) >> 16 & 255, int(c) >> 8 & 255)
+        for c in spec.colours
+    ]
     step = box.height() / len(colours)
     painter.setRenderHint(QtGui.QPainter.Antialiasing, False)
     for k, colour in enumerate(colours):

@@ -88,7 +88,9 @@ def tessellated(shape, whole=None):
             return found
     points, faces = shape.tessellate(deflection)
     found = np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
-    _tessellated.insert(0, (shape, deflection, found))  # the shape stays, so that no other takes its place
+    _tessellated.insert(
+        0, (shape, deflection, found)
+    )  # the shape stays, so that no other takes its place
     del _tessellated[KEPT:]
     return found
 

@@ -5,7 +5,10 @@ from pivy import coin
 
 from .shapes3d import separator, triangles, unpickable
 
-SIZE, THICK = 0.02, 0.3  # length of an arrow, of the extents where it grinds; its radius, of its length
+SIZE, THICK = (
+    0.02,
+    0.3,
+)  # length of an arrow, of the extents where it grinds; its radius, of its length
 APART = 6.0  # lengths of an arrow from one to the next
 MOST = 400
 AROUND = 6  # corners of an arrow's base
@@ -68,7 +71,8 @@ def cones(places, ways, length):
     angles = 2.0 * np.pi * np.arange(AROUND) / AROUND
     radius = THICK * length
     ring = radius * (
-        np.cos(angles)[None, :, None] * across[:, None] + np.sin(angles)[None, :, None] * third[:, None]
+        np.cos(angles)[None, :, None] * across[:, None]
+        + np.sin(angles)[None, :, None] * third[:, None]
     )
     base = places - 0.5 * length * ways
     tip = places + 0.5 * length * ways

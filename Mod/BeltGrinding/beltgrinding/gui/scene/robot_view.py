@@ -95,7 +95,9 @@ class RobotView:
 
 def _joined(parts):
     """(points, triangles) of several meshes as one."""
-    parts = [(np.asarray(p, dtype=float).reshape(-1, 3), np.asarray(f, dtype=int)) for p, f in parts]
+    parts = [
+        (np.asarray(p, dtype=float).reshape(-1, 3), np.asarray(f, dtype=int)) for p, f in parts
+    ]
     starts = np.cumsum([0, *(len(points) for points, _ in parts)])
     faces = [f.reshape(-1, 3) + start for (_, f), start in zip(parts, starts)]
     return np.vstack([points for points, _ in parts]), np.vstack(faces)

@@ -65,9 +65,7 @@ class Sight:
             places += ends
         # The camera stands where it is wanted if all is seen from there; facing is no matter here.
         facing = np.tile(wanted / np.linalg.norm(wanted), (len(places), 1))
-        others = {
-            name: solid for name, solid in cell.solids().items() if name not in cell.tinted
-        }
+        others = {name: solid for name, solid in cell.solids().items() if name not in cell.tinted}
         meshes = [self._part(), *others.values()]
         lift = max(SLACK * self._diagonal(), 0.5)
         to, share = self._towards(meshes, np.array(places) + lift * away, facing, wanted, lift)

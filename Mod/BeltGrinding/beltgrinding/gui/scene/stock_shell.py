@@ -26,7 +26,9 @@ def shell(job, allowance):
         points, faces = tessellated(shape.Faces[number - 1], shape)
         if len(faces):
             points, faces = thickened(points, faces, side * allowance)
-            root.addChild(separator(material(COLOUR, SEE_THROUGH), triangles(points, faces, CREASE)))
+            root.addChild(
+                separator(material(COLOUR, SEE_THROUGH), triangles(points, faces, CREASE))
+            )
     return root
 
 

@@ -17,6 +17,7 @@ DIGITS = 7
 SIZES = {  # in FreeCAD's own units: mm, mN, kPa, mm/s
     "mm": 1.0,
     "µm": 1e-3,
+    "mil": 0.0254,
     "°": 1.0,
     "N": 1000.0,
     "MPa": 1000.0,
@@ -33,7 +34,8 @@ KINDS = {  # where the schema says nothing
     "App::PropertyPressure": "MPa",
     "App::PropertyAcceleration": "mm/s²",
 }
-BY_PREFERENCE = {"ToleranceLower", "ToleranceUpper", "ColourLimit"}  # deviations: mm or µm
+BY_PREFERENCE = {"ToleranceLower", "ToleranceUpper", "ColourLimit"}  # deviations: mm, µm or mil
+LENGTHS, SPEEDS = {"mm", "µm", "mil"}, {"mm/s", "m/s"}
 
 
 def metric():
@@ -108,14 +110,16 @@ class QuantityEntry(QtGui.QLineEdit):
         return value
 
     def _with_unit(self, text):
-        for symbol, size in SIZES.items():
+        alike = next((one for one in (LENGTHS, SPEEDS) if self.symbol in one), {self.symbol})
+        for symbol in sorted(alike, key=len, reverse=True):
             if text.endswith(symbol) and _number(text[: -len(symbol)]) is not None:
-                if Units.Quantity(text.replace("²", "^2")).Unit == self.unit:
-                    return _number(text[: -len(symbol)]) * size
+                return _number(text[: -len(symbol)]) * SIZES[symbol]
         try:
             quantity = Units.Quantity(text)
         except Exception:  # the kind differs between FreeCAD's generations
-            raise ValueError(translate("BeltGrinding", "This is no number: {}").format(text)) from None
+            raise ValueError(
+                translate("BeltGrinding", "This is no number: {}").format(text)
+            ) from None
         if quantity.Unit == self.unit:
             return quantity.Value
         if quantity.Unit != Units.Unit():

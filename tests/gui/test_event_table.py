@@ -90,6 +90,16 @@ widget.show_events(events)
 press("Close")
 assert scene_graph.getNumChildren() == children
 assert not doc.Simulation.OutOfDate
+
+# A macro closes it without asking it: likewise.
+from beltgrinding.gui.panels import simulation_panel
+simulation_panel.show_result(doc.Simulation)
+settle()
+field("events").selectRow(0)
+pause()
+assert scene_graph.getNumChildren() > children
+Gui.Control.closeDialog()
+wait(lambda: scene_graph.getNumChildren() == children, 10)
 """,
         window=True,
     )

@@ -177,3 +177,52 @@ assert freed == [True] * 3 and told == [(None, None)], (freed, told)
 """,
         window=True,
     )
+
+
+def test_garbage_is_freed_on_the_windows_thread_while_a_work_goes_on(freecad):
+    freecad.run(
+        """
+import gc, threading
+from support.hands import *
+from beltgrinding.gui.common import runner
+start()
+here, freed = threading.get_ident(), []
+
+class Circle:
+    def __init__(self):
+        self.me, self.widget = self, QtGui.QWidget()
+    def __del__(self):
+        freed.append(threading.get_ident())
+
+def work(context):
+    kept = []
+    for k in range(200):
+        kept.append([{str(i): [i]} for i in range(500)])  # Python's collector would run here
+        time.sleep(0.002)
+    return len(kept)
+
+assert gc.isenabled()
+done = []
+for k in range(20):
+    Circle()
+first = runner.Background(work, lambda *outcome: done.append(outcome))
+second = runner.Background(work, lambda *outcome: done.append(outcome))
+assert not gc.isenabled()
+wait(lambda: len(done) == 2)
+settle()
+assert [o[0] for o in done] == [200, 200] and gc.isenabled()
+gc.collect()
+assert len(freed) == 20 and set(freed) == {here}, (freed, here)
+
+# One that is waited for, or abandoned, gives it back too.
+one = runner.Background(work, lambda *outcome: None)
+one.thread.join()
+one.forget()
+assert gc.isenabled()
+other = runner.Background(work, lambda *outcome: None)
+other.abandon()
+wait(lambda: not other.thread.is_alive())
+wait(gc.isenabled, 5)
+""",
+        window=True,
+    )

@@ -12,6 +12,7 @@ import traceback
 answers = int(os.environ.pop("ANSWERS"))
 patience = float(os.environ.pop("PATIENCE"))  # s, after which a hanging script says where it is
 log = open(2, "w", closefd=False)  # sys.stderr is FreeCAD's own
+faulthandler.enable(log)  # a crash says where it was; FreeCAD's own handler does not
 environment = dict(os.environ)
 folder, path = os.getcwd(), list(sys.path)
 for line in open(0, "rb", closefd=False):  # sys.stdin is FreeCAD's own

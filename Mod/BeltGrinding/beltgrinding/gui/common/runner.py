@@ -1,5 +1,6 @@
 """Runs a job's simulation in a thread of its own, polled by the window."""
 
+import gc
 import threading
 import time
 import weakref
@@ -15,6 +16,29 @@ MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 # its timer, which only the window's thread may do; and who is told of the end may let go of the object whose
 # method PySide is just calling. Of both FreeCAD dies, at times.
 _going = set()
+COLLECT = 2.0  # s between collections of garbage while works go on
+_collected = [0.0]  # when the last one was
+
+
+def _begin(work):
+    """Holds a work. Python looks for garbage in whatever thread happens to make objects, and frees widgets there,
+    of which Qt then keeps a dead address: while works go on only the window's thread does it."""
+    if not _going:
+        gc.disable()
+    _going.add(work)
+
+
+def _end(work):
+    """Lets go of a work whose end the window has seen."""
+    _going.discard(work)
+    if not _going:
+        gc.enable()
+
+
+def _collect():
+    if time.monotonic() - _collected[0] > COLLECT:
+        gc.collect(1)
+        _collected[0] = time.monotonic()
 
 
 class Background(QtCore.QObject):
@@ -28,11 +52,11 @@ class Background(QtCore.QObject):
         self.outcome = (None, None)
         self.done = done
         self.thread = threading.Thread(target=self._work, args=(work,), daemon=True)
+        _begin(self)
         self.thread.start()
         self.timer = QtCore.QTimer(self)
         self.timer.timeout.connect(self._poll)
         self.timer.start(POLL)
-        _going.add(self)
         if owner is not None:
             myself = weakref.ref(self)  # the owner may outlast it
             owner.destroyed.connect(lambda *_: myself() and myself().abandon())
@@ -49,7 +73,7 @@ class Background(QtCore.QObject):
     def forget(self):
         """Its end was waited for: nothing follows any more."""
         self.timer.stop()
-        _going.discard(self)
+        _end(self)
 
     def _work(self, work):
         try:
@@ -58,9 +82,10 @@ class Background(QtCore.QObject):
             self.outcome = (None, error)
 
     def _poll(self):
+        _collect()
         if not self.thread.is_alive():
             self.timer.stop()
-            QtCore.QTimer.singleShot(0, lambda: _going.discard(self))
+            QtCore.QTimer.singleShot(0, lambda: _end(self))
             self.done(*self.outcome)
 
 

@@ -41,7 +41,8 @@ class SimulationPanel(RunPanel):
         self.figures.setWordWrap(True)
         self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         body.addWidget(self.figures)
-        self.moment = EventMoment(job)
+        self.moment = moment = EventMoment(job)
+        self.form.destroyed.connect(lambda *_: moment.close())  # by a macro: nobody asks the panel
         self.table = EventTable(lambda number: job_data.face_name(self.job, number - 1))
         self.table.chosen = self.show_moment
         self.table.hide()
@@ -56,8 +57,7 @@ class SimulationPanel(RunPanel):
         return translate("BeltGrinding", "Grinding, {}")
 
     def make_runner(self):
-        self.moment.close()
-        self.moment = EventMoment(self.job)
+        self.moment.forget()
         return Runner(self.job, self.progress, self.done, core.Recording(), lay_deviation)
 
     def show(self, simulation):

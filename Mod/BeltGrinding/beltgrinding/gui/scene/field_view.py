@@ -115,7 +115,8 @@ class FieldView:
         hints = coin.SoShapeHints()  # seen from both sides
         hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
         self.node = coin.SoSeparator()
-        for part in (light, hints, *self.drawn.parts):
+        behind = coin.SoPolygonOffset()  # lines on the surface are drawn whole
+        for part in (light, hints, behind, *self.drawn.parts):
             self.node.addChild(part)
         self.set_heights(field.height)
         self.drawn.set_colours(np.full(len(self.points), 0xB0B0B0FF, dtype=np.uint32))

@@ -1,5 +1,6 @@
 """The faces of the part that are not ground, and all its edges, for orientation."""
 
+import MeshPart
 import numpy as np
 import Part
 from pivy import coin
@@ -10,6 +11,7 @@ from ...objects import job_data
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
 DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
+ANGLE = 0.2  # rad, from facet to facet
 KEPT = 8  # tessellations
 _designs = []  # (what names it, shapes of the objects, design), the last one
 _rest = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
@@ -52,13 +54,14 @@ def rest_of_part(job):
     hints.creaseAngle = 0.5
     material = coin.SoMaterial()
     material.diffuseColor = GREY
+    behind = coin.SoPolygonOffset()  # the edges that lie in the faces are drawn whole
     coordinates = coin.SoCoordinate3()
     coordinates.point.setValues(0, len(points), points.tolist())
     indices = np.column_stack([triangles, np.full(len(triangles), -1)]).ravel().tolist()
     faces = coin.SoIndexedFaceSet()
     faces.coordIndex.setValues(0, len(indices), indices)
     root.addChild(pick)
-    for node in (hints, material, coordinates, faces) if len(triangles) else ():
+    for node in (hints, material, behind, coordinates, faces) if len(triangles) else ():
         root.addChild(node)
     root.addChild(_edges(shape))
     return root
@@ -72,9 +75,7 @@ def _others(shape, ground):
     others = [face for i, face in enumerate(shape.Faces, 1) if i not in ground]
     found = np.zeros((0, 3)), np.zeros((0, 3), dtype=int)
     if others:
-        points, triangles = Part.Compound(others).tessellate(_deflection(shape))
-        found = np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(triangles)
-        found = found[0], found[1].reshape(-1, 3).astype(int)
+        found = _meshed(Part.Compound(others), _deflection(shape))
     _rest[:] = [(shape, ground, found)]
     return found
 
@@ -86,8 +87,7 @@ def tessellated(shape, whole=None):
     for kept, fine, found in _tessellated:
         if fine == deflection and kept.isSame(shape):
             return found
-    points, faces = shape.tessellate(deflection)
-    found = np.array([tuple(p) for p in points]).reshape(-1, 3), np.array(faces).reshape(-1, 3)
+    found = _meshed(shape, deflection)
     _tessellated.insert(
         0, (shape, deflection, found)
     )  # the shape stays, so that no other takes its place
@@ -110,6 +110,19 @@ def points_of_part(job):
     u, v = chance.random((2, SPREAD, 1))
     u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)
     return a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]
+
+
+def _meshed(shape, deflection):
+    """(points, triangles) of a shape: round holes are round, whatever the size of the part."""
+    try:
+        mesh = MeshPart.meshFromShape(
+            Shape=shape, LinearDeflection=deflection, AngularDeflection=ANGLE, Relative=False
+        )
+        points, faces = mesh.Topology
+    except Exception:  # of a face that cannot be meshed: what FreeCAD itself would draw
+        points, faces = shape.tessellate(deflection)
+    points = np.array([tuple(p) for p in points], dtype=float).reshape(-1, 3)
+    return points, np.array(faces, dtype=int).reshape(-1, 3)
 
 
 def edges_of_part(job):
@@ -157,7 +170,8 @@ def _lines(shape):
     for edge in shape.Edges:
         if edge.Degenerated:
             continue
-        line = [tuple(point) for point in edge.discretize(Deflection=_deflection(shape))]
+        fine = {"Angular": ANGLE, "Curvature": _deflection(shape), "Minimum": 2}
+        line = [tuple(point) for point in edge.discretize(**fine)]
         points += line
         counts.append(len(line))
     _edge_lines[:] = [(shape, (points, counts))]

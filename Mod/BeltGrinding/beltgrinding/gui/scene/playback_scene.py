@@ -112,7 +112,7 @@ class Scene:
                 switch.whichChild = child
                 if child < 0 and switch == view.SwitchNode:  # shown while it was turned off here
                     view.DisplayMode = view.DisplayMode
-                if hasattr(view.Proxy, "colour"):
+                if hasattr(getattr(view, "Proxy", None), "colour"):
                     view.Proxy.colour()
             except (ReferenceError, RuntimeError):
                 pass  # the object is gone

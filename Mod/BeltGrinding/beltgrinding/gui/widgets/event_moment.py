@@ -100,6 +100,12 @@ class EventMoment:
             cell.tint(())
         self.tinted = []
 
+    def forget(self):
+        """Takes everything out of the 3D views, and the paths and the part anew: they may be others."""
+        self.close()
+        self.paths = None
+        self.sight.part = None
+
     def close(self):
         """Takes everything out of the 3D views."""
         self.sight.clear()

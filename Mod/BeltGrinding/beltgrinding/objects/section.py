@@ -133,8 +133,11 @@ def ground(field):
 
 
 def middle_of_ground(field):
-    """(x, y, z) of the sample that is nearest to the middle of the ground area, mm."""
+    """(x, y, z) of the middle of the ground area, mm; where a plane through it might miss the surface, of the
+    sample nearest to it."""
     chosen = ground(field)
     points, areas = field.points[chosen], field.areas[chosen].astype(float)
     middle = (areas[:, None] * points).sum(axis=0) / max(areas.sum(), 1e-300)
-    return tuple(points[np.argmin(np.linalg.norm(points - middle, axis=1))].tolist())
+    if (np.abs(points - middle).min(axis=0) > field.spacing).any():
+        middle = points[np.argmin(np.linalg.norm(points - middle, axis=1))]
+    return tuple(middle.tolist())

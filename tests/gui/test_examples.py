@@ -25,7 +25,6 @@ def ground(direction):
     menu("Simulate")
     wait(lambda: doc.getObject("Simulation") is not None, 200)
     press("Deviation")
-    tutorial.hide(doc.RobotPath)
     look(direction)
     return doc
 

@@ -36,7 +36,8 @@ def walk():
     hands.wait(lambda: doc.getObject("Simulation") is not None, 200)
     hands.picture("tutorial-simulation")
     hands.press("Deviation")
-    hide(doc.RobotPath)
+    toggle(doc.RobotPath, True)
+    toggle(doc.RobotPath, False)
     hands.picture("tutorial-deviation")
     figures.update(statistics())
     hands.press("OK")
@@ -68,7 +69,7 @@ def open_panel(obj):
     hands.settle()
 
 
-def hide(obj):
+def toggle(obj, shown):
     """The space bar over the tree, in the tab Model; then back to the panel."""
     panel = hands.field("statistics")
     exactly = QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
@@ -84,11 +85,11 @@ def hide(obj):
     item.setSelected(True)
     hands.wait(lambda: obj in Gui.Selection.getSelection(), 10)
     # Without a window manager a stroke may miss the tree: the command is called that it stands for.
-    toggle = "Std_ToggleVisibility"
-    assert Gui.Command.get(toggle).getShortcut() == "Space"
-    Gui.runCommand(toggle)
+    command = "Std_ToggleVisibility"
+    assert Gui.Command.get(command).getShortcut() == "Space"
+    Gui.runCommand(command)
     hands.settle()
-    assert not obj.ViewObject.Visibility
+    assert obj.ViewObject.Visibility == shown
     Gui.Selection.clearSelection()
     hands.bring_up(panel)
 

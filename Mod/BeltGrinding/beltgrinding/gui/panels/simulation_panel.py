@@ -8,6 +8,7 @@ from ...engine import InputError, core
 from ...objects import api, job_data, report_data
 from ...objects.deviation import Deviation
 from ...objects.job_data import child
+from ...objects.robot_path import RobotPath
 from ...objects.simulation import Simulation
 from ...objects.verdict import limits_changed
 from ..common.compat import QtCore, QtGui, translate
@@ -130,9 +131,11 @@ def lay_deviation(job):
     made = job_data.child(job, Deviation) is None
     deviation = api.make_deviation(job)
     deviation.ViewObject.Visibility = True
-    if made:
+    if made:  # what would hide the colours
         for part in {obj for obj, _ in job.DesignFaces}:
             part.ViewObject.Visibility = False
+        for path in job_data.children(job, RobotPath):
+            path.ViewObject.Visibility = False
 
 
 def show_result(simulation):

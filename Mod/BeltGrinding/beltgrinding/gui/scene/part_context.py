@@ -113,16 +113,27 @@ def points_of_part(job):
 
 
 def _meshed(shape, deflection):
-    """(points, triangles) of a shape: round holes are round, whatever the size of the part."""
+    """(points, triangles) of a shape: round holes are round, whatever the size of the part. No two faces share
+    a point: light would run over from one to the other."""
     try:
         mesh = MeshPart.meshFromShape(
-            Shape=shape, LinearDeflection=deflection, AngularDeflection=ANGLE, Relative=False
+            Shape=shape,
+            LinearDeflection=deflection,
+            AngularDeflection=ANGLE,
+            Relative=False,
+            Segments=True,
         )
-        points, faces = mesh.Topology
+        points, faces = (np.array([tuple(one) for one in part]) for part in mesh.Topology)
+        if len(faces):
+            segment = np.zeros(len(faces), dtype=int)
+            for k in range(mesh.countSegments()):
+                segment[mesh.getSegment(k)] = k
+            own, faces = np.unique(segment[:, None] * len(points) + faces, return_inverse=True)
+            points, faces = points[own % len(points)], faces.reshape(-1, 3)
     except Exception:  # of a face that cannot be meshed: what FreeCAD itself would draw
         points, faces = shape.tessellate(deflection)
-    points = np.array([tuple(p) for p in points], dtype=float).reshape(-1, 3)
-    return points, np.array(faces, dtype=int).reshape(-1, 3)
+        points = np.array([tuple(p) for p in points], dtype=float)
+    return points.reshape(-1, 3), np.array(faces, dtype=int).reshape(-1, 3)
 
 
 def edges_of_part(job):

@@ -111,9 +111,9 @@ def spot(found, verdict, words):
     beyond = f"{words.number(max(found['beyond'], 0.0))} mm"
     value = words.number(found["deviation"], 3, True)
     if found["deviation"] > 0:
-        text = words("{mm} mm, {beyond} too high", mm=value, beyond=beyond)
+        text = words("{mm} mm, {beyond} too much left", mm=value, beyond=beyond)
     else:
-        text = words("{mm} mm, {beyond} too deep", mm=value, beyond=beyond)
+        text = words("{mm} mm, cut {beyond} too deep", mm=value, beyond=beyond)
     text += f"; Face{found['face']}, ({verdict_section.place(found['point'], words)}) mm"
     if "cluster" in found:
         text += f"; {words.number(found['cluster']['area_mm2'], 1)} mm²"
@@ -168,8 +168,8 @@ def _by_face(content, words, scale):
         (words("Tolerance"), "number"),
         (words("Area, mm²"), "number"),
         (words("good"), "number"),
-        (words("too high"), "number"),
-        (words("too deep"), "number"),
+        (words("too much left"), "number"),
+        (words("cut too deep"), "number"),
         (words("highest, mm"), "number"),
         (words("lowest, mm"), "number"),
         (words("Verdict"), ""),

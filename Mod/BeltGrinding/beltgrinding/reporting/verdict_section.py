@@ -60,8 +60,8 @@ def _heads(words):
     return [
         (words("Area, mm²"), "number"),
         (words("good"), "number"),
-        (words("too high"), "number"),
-        (words("too deep"), "number"),
+        (words("too much left"), "number"),
+        (words("cut too deep"), "number"),
         (words("highest, mm"), "number"),
         (words("lowest, mm"), "number"),
         (words("Verdict"), ""),
@@ -133,7 +133,7 @@ def clusters(verdict, words):
     rows = [
         (
             str(one["number"]),
-            words("too high") if one["side"] == "above" else words("too deep"),
+            words("too much left") if one["side"] == "above" else words("cut too deep"),
             words.number(one["area_mm2"], 1),
             words.number(one["worst"]["value_mm"], 3, True),
             words.number(max(one["worst"]["beyond_mm"], 0.0), 3),

@@ -85,7 +85,7 @@ class Studio:
                 "colours": colours,
             }
         ]
-        rest = [] if shape is None else _rest(shape, field)
+        rest = [] if shape is None else rest_of(shape, field)
         if rest:
             low, high = shape.extents()
             chord = CHORD * float(np.linalg.norm(np.subtract(high, low)))
@@ -94,7 +94,7 @@ class Studio:
                 {
                     "vertices": mesh.vertices.astype(float),
                     "triangles": mesh.triangles,
-                    "normals": _smooth(mesh),
+                    "normals": smooth_normals(mesh),
                     "colours": np.array([PART_COLOUR], dtype=np.uint32),
                 }
             )
@@ -168,12 +168,12 @@ class Studio:
         return points, np.vstack([normal, self.field.normals[near]])
 
 
-def _rest(shape, field):
+def rest_of(shape, field):
     """The faces of the shape that the field does not cover, from 0."""
     return np.setdiff1d(np.arange(shape.face_count), field.faces).tolist()
 
 
-def _smooth(mesh):
+def smooth_normals(mesh):
     """(n, 3) float32: mean normals at a mesh's vertices, which two faces never share."""
     corners = mesh.vertices[mesh.triangles].astype(float)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

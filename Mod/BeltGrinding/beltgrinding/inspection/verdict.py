@@ -136,6 +136,35 @@ def lower_limits(job, field):
     return limits[core.zone_of_samples(field, _core_zones(zones, rest))] if zones else limits
 
 
+def zone_of_samples(job, field):
+    """(n,) number of the zone of a job that holds each sample; that of all zones: none of them."""
+    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
+    return np.asarray(core.zone_of_samples(field, _core_zones(zones, rest)))
+
+
+def limits(job, field):
+    """(lower (n,), upper (n,)) of every sample by its zone, mm."""
+    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
+    bands = np.array([zone.get("tolerance_mm", rest) for zone in (*zones, {})], dtype=float)
+    return tuple(bands[zone_of_samples(job, field)].T)
+
+
+def thickness_deviation(job, field, shape=None, context=None):
+    """(n,) how far the ground part's thickness is from the design's, mm; NaN where it cannot be measured
+    and outside of the zones that limit it. None where no zone does. ``shape``: the design, if it has been
+    read. Raises Cancelled.
+    """
+    zones = job["inspection"].get("zones", [])
+    limited = [i for i, zone in enumerate(zones) if "thickness_mm" in zone]
+    if not limited:
+        return None
+    samples = np.flatnonzero(np.isin(zone_of_samples(job, field), limited))
+    others = _other_faces(job, field, shape, [], context)
+    found = np.full(field.size, np.nan)
+    found[samples] = core.measure_thickness(field, samples, others, context)[1]
+    return found
+
+
 def _core_zones(zones, rest):
     found = []
     for zone in zones:

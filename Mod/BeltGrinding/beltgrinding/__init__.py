@@ -31,6 +31,13 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     return reporting.report(result, output, pdf, language, title, context)
 
 
+def view(result, output=None, language="en", title=None, context=None):
+    """Writes the 3D view of a result as one HTML file; see ``reporting.view_page.view``."""
+    from .reporting import view_page
+
+    return view_page.view(result, output, language, title, context)
+
+
 def converge(job, context=None):
     """Runs a job (a dict, or the path of a job.json) coarser, as given and finer; returns its
     ``job.Result`` with ``convergence``; see ``convergence.converge``.

@@ -11,12 +11,24 @@ import os
 import signal
 import sys
 
-from . import calibrate, faults, grind, interrupts, inspect, lists, measure, press, program, report
+from . import (
+    calibrate,
+    faults,
+    grind,
+    interrupts,
+    inspect,
+    lists,
+    measure,
+    press,
+    program,
+    report,
+    view,
+)
 from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
-TOPICS = (grind, press, program, calibrate, inspect, measure, report, lists)
+TOPICS = (grind, press, program, calibrate, inspect, measure, report, view, lists)
 
 
 JSON_ERRORS = "--json-errors"

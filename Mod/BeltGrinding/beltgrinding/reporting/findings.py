@@ -36,23 +36,11 @@ def passed(content):
 
 def head(content, words, scale):
     """Title, verdict in one glance, and the figures that matter."""
-    summary, (lower, upper, _) = content.result.summary, scale
+    summary = content.result.summary
     deviation = summary["deviation_mm"]
-    good = passed(content)
-    state, text = {
-        True: ("pass", words("In tolerance")),
-        False: ("fail", words("Not in tolerance")),
-        None: ("open", words("Cannot be told")),
-    }[good]
+    kind, text = state(content, words)
     share, above, below = _shares(content)
-    zones = bool(content.result.job["inspection"].get("zones"))
-    said = [
-        words(
-            "After this grind {share} of the ground area keeps within {band}.",
-            share=words.percent(share),
-            band=words("the limits of its zone") if zones else words.band(lower, upper),
-        )
-    ]
+    said = [in_tolerance(content, words, scale)]
     if above > 0.0:
         said.append(
             words(
@@ -69,7 +57,7 @@ def head(content, words, scale):
                 most=words.number(-deviation["min"]),
             )
         )
-    if good is None:
+    if kind == "open":
         said.append(words("Over some of the area no stock was found, so nothing is known there."))
     tiles = [
         (words.percent(share), words("of the area in tolerance")),
@@ -84,7 +72,7 @@ def head(content, words, scale):
         element("p", words("Belt grinding report"), class_="kind"),
         element("h1", content.title),
         element(
-            "div", element("strong", text), element("p", " ".join(said)), class_=f"verdict {state}"
+            "div", element("strong", text), element("p", " ".join(said)), class_=f"verdict {kind}"
         ),
         [element("p", sentence(note, words.code), class_="note") for note in content.notes],
         element(
@@ -95,6 +83,25 @@ def head(content, words, scale):
             ],
             class_="tiles",
         ),
+    )
+
+
+def state(content, words):
+    """("pass", "fail" or "open", the same in words)."""
+    return {
+        True: ("pass", words("In tolerance")),
+        False: ("fail", words("Not in tolerance")),
+        None: ("open", words("Cannot be told")),
+    }[passed(content)]
+
+
+def in_tolerance(content, words, scale):
+    """A sentence on the share of the area that is good."""
+    zones = bool(content.result.job["inspection"].get("zones"))
+    return words(
+        "After this grind {share} of the ground area keeps within {band}.",
+        share=words.percent(_shares(content)[0]),
+        band=words("the limits of its zone") if zones else words.band(*scale[:2]),
     )
 
 

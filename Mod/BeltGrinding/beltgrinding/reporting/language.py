@@ -63,6 +63,15 @@ class Language:
         """A count, in groups of three digits."""
         return DASH if value is None else f"{value:,}".replace(",", "\N{NARROW NO-BREAK SPACE}")
 
+    def ordinal(self, value):
+        """A place in a row: 3rd, 3."""
+        if self.code == "de":
+            return f"{value}."
+        ending = (
+            "th" if value // 10 % 10 == 1 else {1: "st", 2: "nd", 3: "rd"}.get(value % 10, "th")
+        )
+        return f"{value}{ending}"
+
     def percent(self, share, decimals=1):
         """A share as percent. What is not quite all, or not quite nothing, does not look so."""
         if share is None:

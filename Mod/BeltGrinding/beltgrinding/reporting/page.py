@@ -1,18 +1,21 @@
 """A report's page, put together from its sections."""
 
 from ..base.resources import resources
-from . import charts, facts, findings, reproduction
+from . import charts, facts, findings, reproduction, view
 from .layout import facts as rows, section
 from .markup import Markup, element
 
 
-def document(content, words, scale, spots, drawn):
-    """The whole HTML text."""
+def document(content, words, scale, spots, drawn, shown=None, lacking=None):
+    """The whole HTML text; with the 3D view ``shown`` (a ``view.View``), or a note on what it ``lacks``."""
     title = words("Belt grinding: {part}", part=content.title)
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
+    scripts = [] if shown is None else shown.scripts
+    if shown is not None:
+        style += shown.style
     body = [
         findings.head(content, words, scale),
-        _pictures(content, words, scale, spots, drawn),
+        _pictures(content, words, scale, spots, drawn, shown, lacking),
         findings.tolerance(content, words, scale),
         findings.events(content, words),
         _process(content, words),
@@ -26,17 +29,18 @@ def document(content, words, scale, spots, drawn):
         element(
             "head",
             element("meta", charset="utf-8"),
+            view.policy(scripts),
             element("meta", name="viewport", content="width=device-width, initial-scale=1"),
             element("title", title),
             element("style", Markup(style)),
         ),
-        element("body", element("main", body)),
+        element("body", element("main", body), scripts),
         lang=words.code,
     )
     return "<!DOCTYPE html>\n" + html + "\n"
 
 
-def _pictures(content, words, scale, spots, drawn):
+def _pictures(content, words, scale, spots, drawn, shown, lacking):
     shots = []
     names = {"front": words("Front"), "back": words("Back")}
     for key, name in names.items():
@@ -68,6 +72,8 @@ def _pictures(content, words, scale, spots, drawn):
     return section(
         words("Pictures"),
         element("p", intro, " " + own if content.result.job["inspection"].get("zones") else None),
+        None if lacking is None else element("p", lacking, class_="note"),
+        None if shown is None else shown.markup,
         charts.legend(scale, words),
         element("div", shots, class_="views"),
         element("h3", words("The worst spots, from near")) if close else None,

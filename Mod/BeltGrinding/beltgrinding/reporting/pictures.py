@@ -19,8 +19,8 @@ class Shot(NamedTuple):
     marks: list
 
 
-def draw(field, scale, shape, spots, context=None):
-    """dict: ``front`` and ``back``, a ``Shot`` each; ``close``: list of those of ``spots``."""
+def draw(field, scale, shape, spots, context=None, near=True):
+    """dict: ``front`` and ``back``, a ``Shot`` each; ``close``: list of those of ``spots``, if ``near``."""
     colours = core.deviation_colours(field, *scale)
     studio = picture.Studio(field, colours, shape, context)
     slack = REACH * field.spacing
@@ -28,7 +28,7 @@ def draw(field, scale, shape, spots, context=None):
     for name, view in zip(("front", "back"), studio.both(context)):
         whole[name] = _shot(view, spots, slack)
     close = []
-    for spot in spots:
+    for spot in spots if near else ():
         view = studio.close_up(
             np.array(spot["point"]), np.array(spot["normal"]), spot["extent"], context
         )

@@ -10,7 +10,7 @@ from ..inspection import verdict as verdicts
 from ..job import workpiece
 from ..job.tolerances import colour_scale
 from ..simulation.result import Result
-from . import charts, page, pictures, worst_spots
+from . import charts, page, pictures, view, worst_spots
 from .language import Language
 
 
@@ -47,17 +47,17 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     printer = _printer() if only_pdf or pdf is not None else None
     context = context or core.RunContext()
     content = load(result, title, notes, context)
-    html = render(content, words, context)
+    plain, whole = render(content, words, context, not only_pdf)
     context.throw_if_cancelled()
-    printed = None if printer is None else printer(html)
-    files = {output: printed if only_pdf else html.encode()}
+    printed = None if printer is None else printer(plain)
+    files = {output: printed if only_pdf else whole.encode()}
     if pdf is not None:
         files[Path(pdf)] = printed
-    _write(content.result, files)
+    write(content.result, files)
     return output
 
 
-def _write(result, files):
+def write(result, files):
     """Writes bytes by path. Those in the result's own folder belong to it from now on: another result
     removes them."""
     folder = os.path.realpath(result.folder) if result.folder else None
@@ -108,13 +108,20 @@ def _verdict(result, shape, notes):
         return None
 
 
-def render(content, words, context=None):
-    """The HTML text of a ``Content`` in the words of a ``Language``."""
+def render(content, words, context=None, turning=True):
+    """(without, with) the 3D view: the HTML texts of a ``Content`` in the words of a ``Language``; not
+    ``turning``: twice without.
+    """
     result = content.result
     scale = colour_scale(result.job)
     found = worst_spots.worst(result.field, scale[:2], content.verdict)
     drawn = pictures.draw(result.field, scale, content.shape, found, context)
-    return page.document(content, words, scale, found, drawn)
+    plain = page.document(content, words, scale, found, drawn)
+    if not turning:
+        return plain, plain
+    lacking = view.missing(words)
+    shown = view.view(content, scale, found, words, context) if lacking is None else None
+    return plain, page.document(content, words, scale, found, drawn, shown, lacking)
 
 
 def _printer():

@@ -10,8 +10,8 @@ APART = 0.25  # of the field's extents: what lies nearer belongs to the same spo
 
 
 def worst(field, tolerance, verdict=None):
-    """List of dicts: ``number`` (that of the verdict's cluster, or from 1), ``point``, ``normal`` (mm,
-    work), ``deviation`` and ``beyond`` (mm past the limit), ``face`` (from 1), ``extent`` (mm; 0: not
+    """List of dicts: ``number`` (that of the verdict's cluster, or from 1), ``sample``, ``point``,
+    ``normal`` (mm, work), ``deviation`` and ``beyond`` (mm past the limit), ``face`` (from 1), ``extent`` (mm; 0: not
     known) and, of a verdict's cluster, ``cluster`` (the cluster's dict). At most ``MOST``; none where
     all is in tolerance.
     """
@@ -40,6 +40,7 @@ def worst(field, tolerance, verdict=None):
 
 def _spot(field, k, deviation, beyond, extent=0.0):
     return {
+        "sample": k,
         "point": field.points[k].tolist(),
         "normal": field.normals[k].astype(float).tolist(),
         "deviation": deviation,

@@ -29,7 +29,8 @@ FILES = (  # of a result
 )
 SCAN = "scan.json"
 REPORT = "report.html"
-MADE_LATER = (SCAN, REPORT)  # of a result; a new one removes them
+VIEW = "view.html"
+MADE_LATER = (SCAN, REPORT, VIEW)  # of a result; a new one removes them
 CHUNK = 1 << 20  # bytes
 
 

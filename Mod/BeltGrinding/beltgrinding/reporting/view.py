@@ -1,0 +1,233 @@
+"""The 3D view of a page: its markup, its data and the scripts that draw it. Drawn by three.js (WebGL)."""
+
+import base64
+import hashlib
+import json
+import re
+from typing import NamedTuple
+
+from ..base.messages import sentence
+from ..base.resources import resources
+from ..engine import InputError
+from . import view_data, view_library
+from .markup import Markup, element
+
+SCRIPTS = (  # Resources/report, in one scope
+    "view_data.js",
+    "view_pick.js",
+    "view_camera.js",
+    "view_lines.js",
+    "view_scene.js",
+    "view_legend.js",
+    "view_panel.js",
+    "view.js",
+)
+
+
+class View(NamedTuple):
+    """``markup`` goes where the view stands, ``scripts`` to the page's end, ``style`` into its head."""
+
+    markup: Markup
+    scripts: list
+    style: str
+
+
+def view(content, scale, spots, words, context=None, alone=False):
+    """The ``View`` of a report's ``Content``; ``alone``: it fills the page. Raises InputError without
+    three.js, and Cancelled.
+    """
+    library = view_library.library()
+    data = view_data.data(content, scale, spots, words, context)
+    about = {**data.about, "texts": _texts(words), "alone": alone}
+    folder = resources() / "report"
+    own = "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    own = f'(() => {{\n"use strict";\n{own}\n}})();'
+    # "<" cannot stand in it: no text of a user can end the element.
+    told = json.dumps(about, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    licence = "".join(f" * {line}".rstrip() + "\n" for line in library.licence.splitlines())
+    scripts = [
+        element("script", Markup(told), type="application/json", id="view-about"),
+        element("script", Markup(data.arrays), type="application/octet-stream", id="view-arrays"),
+        element("script", Markup(_safe(f"/*\n{licence} */\n{library.script}"))),
+        element("script", Markup(_safe(own))),
+    ]
+    style = (folder / "view.css").read_text(encoding="utf-8")
+    return View(_markup(data.about, library, words, alone), scripts, style)
+
+
+def missing(words):
+    """A sentence that says what a view would need; None where all is there."""
+    try:
+        view_library.library()
+    except InputError as error:
+        return sentence(error.fact, words.code)
+    return None
+
+
+def policy(scripts=()):
+    """The page's Content-Security-Policy as an element: nothing is loaded, and only these scripts run."""
+    hashes = []
+    for script in scripts:
+        opening, _, rest = script.partition(">")
+        if "type=" in opening:
+            continue
+        digest = hashlib.sha256(rest.rpartition("</script>")[0].encode()).digest()
+        hashes.append(f"'sha256-{base64.b64encode(digest).decode()}'")
+    rules = (
+        "default-src 'none'",
+        "img-src data:",
+        "style-src 'unsafe-inline'",
+        f"script-src {' '.join(hashes) or chr(39) + 'none' + chr(39)}",
+        "base-uri 'none'",
+        "form-action 'none'",
+    )
+    return element("meta", http_equiv="Content-Security-Policy", content="; ".join(rules))
+
+
+def _safe(script):
+    """A script that nothing in it can end: in strings ``<\\/`` is ``</``."""
+    return re.sub(r"<(?=/script|!--)", r"\\x3c", script, flags=re.IGNORECASE)
+
+
+def _texts(words):
+    """What the script says."""
+    return {
+        "in": words("in tolerance"),
+        "above": words("too much left"),
+        "below": words("cut too deep"),
+        "missed": words("no stock"),
+        "untouched": words("never touched by the wheel"),
+        "made": words("{motion} removed most"),
+        "line": words("line {line}"),
+        "motion": words("motion {number}"),
+        "zone": words("zone {name}"),
+        "limits": words("limits {lower} … {upper} mm"),
+        "rest": words("not ground"),
+        "play": words("Play"),
+        "pause": words("Pause"),
+        "seconds": words("{time} of {whole} s"),
+        "design": words("design"),
+        "ground": words("ground, deviation × {times}"),
+        "slow": words("The view cannot be shown: {reason}"),
+    }
+
+
+def _markup(about, library, words, alone):
+    spots = [
+        element(
+            "button",
+            element("b", str(spot["number"])),
+            element("span", spot["text"]),
+            type="button",
+            data_spot=k,
+            class_="above" if spot["above"] else "below",
+        )
+        for k, spot in enumerate(about["spots"])
+    ]
+    parts = [
+        _part(
+            words("Colours"),
+            element("select", id="view-mode", aria_label=words("What the colours show")),
+            element("div", id="view-legend"),
+        ),
+        _part(words("Worst spots"), element("div", spots, class_="spots3d")) if spots else None,
+        _part(words("Section"), _section(words)),
+        _part(words("Wheel on its way"), _wheel(about, words)),
+        element("p", _notes(about, library, words), class_="notes"),
+    ]
+    hint = words("Left button turns, right or Shift shifts, wheel zooms, double click centres")
+    stage = element(
+        "div",
+        element("canvas", tabindex="0", aria_label=words("The ground part, in three dimensions")),
+        element("div", id="view-marks"),
+        element("div", id="view-axes"),
+        element(
+            "div",
+            _button("view-home", words("Front")),
+            _button("view-back", words("Back")),
+            _button("view-whole", words("Full screen")),
+            class_="tools",
+        ),
+        element("p", hint, class_="hint", id="view-hint"),
+        element("div", id="view-tip", hidden=True),
+        class_="stage",
+    )
+    panel = element("div", parts, class_="panel")
+    return element("div", stage, panel, id="view", class_="alone" if alone else None, hidden=True)
+
+
+def _part(title, *children):
+    return element("section", element("h3", title), *children)
+
+
+def _button(name, text):
+    return element("button", text, type="button", id=name)
+
+
+def _section(words):
+    choices = (
+        ("", words("none")),
+        ("x", words("across {axis}", axis="x")),
+        ("y", words("across {axis}", axis="y")),
+        ("z", words("across {axis}", axis="z")),
+        ("view", words("as one looks now")),
+    )
+    options = [element("option", text, value=value) for value, text in choices]
+    times = [element("option", f"× {n}", value=n, selected=n == 20) for n in (1, 5, 20, 100)]
+    return [
+        element(
+            "div",
+            element("select", options, id="view-cut", aria_label=words("Plane of the section")),
+            element("button", words("Other side"), type="button", id="view-flip", hidden=True),
+            class_="row",
+        ),
+        element(
+            "div",
+            element("div",
+                element("input", type="range", id="view-place", min=0, max=1000, value=500,
+                    aria_label=words("Place of the section")),
+                element("output", id="view-where"), class_="row"),
+            element("label", words("Deviation drawn"), " ",
+                element("select", times, id="view-times"), class_="row"),
+            element("p", id="view-lines", class_="keys"),
+            id="view-cutting", hidden=True,
+        ),
+    ]  # fmt: skip
+
+
+def _wheel(about, words):
+    if about["wheel"] is None:
+        return element(
+            "p", words("The programs cannot be read any more; no wheel is shown."), class_="notes"
+        )
+    final = words("Heights and colours are those at the end.")
+    if about["traced"]:
+        final = words(
+            "Grey is what the wheel still has to finish there; heights and colours are those at the end."
+        )
+    return [
+        element(
+            "div",
+            _button("view-play", words("Play")),
+            element("input", type="range", id="view-time", min=0, max=1000, value=0,
+                aria_label=words("Time on the way")),
+            class_="row",
+        ),
+        element("p", id="view-moment", class_="keys"),
+        element("p", final, class_="notes", id="view-final", hidden=True),
+    ]  # fmt: skip
+
+
+def _notes(about, library, words):
+    told = []
+    if about["samples"] < about["of"]:
+        told.append(
+            words(
+                "The view shows {shown} of {all} samples, every {nth} on average; each has its own value.",
+                shown=words.whole(about["samples"]),
+                all=words.whole(about["of"]),
+                nth=words.ordinal(round(about["of"] / about["samples"])),
+            )
+        )
+    told.append(words("Drawn by three.js r{release} (MIT licence).", release=library.release))
+    return " ".join(told)

@@ -1,0 +1,79 @@
+"""A result's 3D view as a page of its own."""
+
+from pathlib import Path
+
+from ..base.resources import resources
+from ..engine import InputError, core
+from ..job.tolerances import colour_scale
+from ..simulation import result_folder
+from ..simulation.result import Result
+from . import charts, findings, pictures, report, view as views, worst_spots
+from .language import Language
+from .markup import Markup, element
+
+
+def view(result, output=None, language="en", title=None, context=None):
+    """Writes the 3D view of a result as one self-contained HTML file.
+
+    ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default view.html in
+    that folder; ``language``: "en" or "de"; ``title``: what the part is called. Returns ``output``. Raises
+    InputError, also without three.js (Debian's libjs-three), and Cancelled.
+    """
+    folder = None if isinstance(result, Result) else Path(result)
+    if output is None and folder is None:
+        raise InputError("reporting.no_view_output", "view: say by output what file to write")
+    output = Path(output) if output is not None else folder / result_folder.VIEW
+    words, context = Language(language), context or core.RunContext()
+    content = report.load(result, title, (), context)
+    scale = colour_scale(content.result.job)
+    spots = worst_spots.worst(content.result.field, scale[:2], content.verdict)
+    shown = views.view(content, scale, spots, words, context, alone=True)
+    drawn = pictures.draw(content.result.field, scale, content.shape, spots, context, near=False)
+    html = _document(content, words, scale, shown, drawn)
+    context.throw_if_cancelled()
+    report.write(content.result, {output: html.encode()})
+    return output
+
+
+def _document(content, words, scale, shown, drawn):
+    title = words("Belt grinding: {part}", part=content.title)
+    state, text = findings.state(content, words)
+    head = element(
+        "header",
+        element("h1", content.title),
+        element("strong", text, class_=f"state {state}"),
+        element("span", findings.in_tolerance(content, words, scale)),
+    )
+    names = (("front", words("Front")), ("back", words("Back")))
+    figures = [
+        element(
+            "figure",
+            charts.marked(drawn[key].view, drawn[key].uri, drawn[key].marks, name),
+            element("figcaption", name),
+        )
+        for key, name in names
+    ]
+    instead = element(
+        "div",
+        element(
+            "p", words("In place of the 3D view, which needs WebGL and JavaScript:"), class_="why"
+        ),
+        charts.legend(scale, words),
+        element("div", figures, class_="views"),
+        id="view-instead",
+    )
+    style = (resources() / "report" / "view_page.css").read_text(encoding="utf-8")
+    html = element(
+        "html",
+        element(
+            "head",
+            element("meta", charset="utf-8"),
+            views.policy(shown.scripts),
+            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            element("title", title),
+            element("style", Markup(shown.style + style)),
+        ),
+        element("body", head, shown.markup, instead, shown.scripts),
+        lang=words.code,
+    )
+    return "<!DOCTYPE html>\n" + html + "\n"

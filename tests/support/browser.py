@@ -120,7 +120,7 @@ class Browser:
 
 
 class Page:
-    """A page that is loaded. ``requests``: all addresses that it asked for; ``faults``: what its console told."""
+    """A page that is loaded. ``requests``: all addresses that it asked for, but for what it holds itself; ``faults``: what its console told."""
 
     def __init__(self, browser, session, target, path, dark, size):
         self.browser, self.session, self.target = browser, session, target
@@ -165,7 +165,8 @@ class Page:
     @property
     def requests(self):
         self.value("1")  # takes in what has come meanwhile
-        return [one["request"]["url"] for one in self._told("Network.requestWillBeSent")]
+        asked = [one["request"]["url"] for one in self._told("Network.requestWillBeSent")]
+        return [address for address in asked if not address.startswith("data:")]
 
     @property
     def faults(self):

@@ -263,9 +263,11 @@ def test_a_report_goes_with_its_result(tmp_path, results, capsys):
     assert main(["report", str(out)]) == 0
     assert main(["report", str(out), "-o", str(out / "second.html")]) == 0
     assert main(["report", str(out), "-o", str(tmp_path / "elsewhere.html")]) == 0
+    assert main(["view", str(out)]) == 0
     Result.read(out)
     (out / "second.html").write_text("mine now")
     results[1].write(out)
+    assert not (out / "view.html").exists()
     assert not (out / "report.html").exists() and (tmp_path / "elsewhere.html").exists()
     assert (out / "second.html").read_text() == "mine now"
 
@@ -286,6 +288,7 @@ OUTPUTS = [
     ["verdict", "OUT", "-o", "FILE.json"],
     ["mesh", "OUT", "-o", "FILE.stl"],
     ["report", "OUT", "-o", "FILE.html"],
+    ["view", "OUT", "-o", "FILE.html"],
     ["program", "PROGRAM", "-o", "FILE.csv"],
     ["contact", "JOB", "--pose", "1", "-o", "FILE.csv"],
 ]

@@ -3,7 +3,7 @@
 import base64
 from html import escape
 
-VOID = {"meta", "link", "br", "img", "col"}  # HTML: elements without an end
+VOID = {"meta", "link", "br", "img", "col", "input"}  # HTML: elements without an end
 
 
 class Markup(str):

@@ -51,13 +51,12 @@ def data(content, scale, spots, words, context=None):
 def _made(content, scale, spots, rest, most, words, context):
     result, field = content.result, content.result.field
     packed = view_mesh.Packed()
-    worst = [spot["sample"] for spot in spots]
+    known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
+    worst = [*(spot["sample"] for spot in spots), int(known.argmin()), int(known.argmax())]
     chosen, triangles = view_mesh.thinned(
         field.points, field.normals, field.faces, field.triangles, most, worst
     )
     points = field.points[chosen]
-    height = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)[chosen]
-    tops = points + height[:, None] * field.normals[chosen]
     corners, normals, faces = rest
     low, high = (f(np.vstack([points, corners]), axis=0) for f in (np.min, np.max))
 
@@ -75,7 +74,7 @@ def _made(content, scale, spots, rest, most, words, context):
         "title": content.title,
         "language": words.code,
         "box": [low.tolist(), high.tolist()],
-        "top": max(float(np.abs(tops - points).max(initial=0.0)), 0.0),
+        "top": float(np.abs(known).max(initial=0.0)),  # mm that the ground surface lies off, at most
         "samples": len(chosen),
         "of": field.size,
         "spacing": field.spacing,

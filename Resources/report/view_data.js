@@ -103,7 +103,6 @@ function resultOf(about, arrays) {
     triangles: corners(arrays.triangles),
     rest: inBox(arrays["rest.points"], about.box, middle),
     restTriangles: corners(arrays["rest.triangles"]),
-    creases: inBox(arrays["rest.creases"], about.box, middle),
     value: (mode, i) => decoded(arrays[mode.values][i], mode.low, mode.high),
   };
 }

@@ -67,9 +67,10 @@ class Scene {
     this.addField();
     this.addRest(about.solid);
     const outline = edgeEnds(result.ground, result.arrays.borders);
-    const edges = new Float32Array(outline.length + result.creases.length);
+    const creases = edgeEnds(result.rest, result.arrays["rest.creases"]);
+    const edges = new Float32Array(outline.length + creases.length);
     edges.set(outline);
-    edges.set(result.creases, outline.length);
+    edges.set(creases, outline.length);
     this.edges.set(edges);
     this.addLight();
     this.wheel = about.wheel ? this.addWheel(about.wheel) : null;

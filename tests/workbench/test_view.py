@@ -371,7 +371,7 @@ def test_a_part_of_many_solids_and_faces(tmp_path):
     job["design"]["faces"] = top
     about, arrays = data_of(beltgrinding.run(job))
     assert about["faces"] == top and about["solid"]
-    creases = points_of(about, arrays["rest.creases"]).reshape(-1, 2, 3)
+    creases = points_of(about, arrays["rest.points"])[arrays["rest.creases"]]
     length = np.linalg.norm(creases[:, 0] - creases[:, 1], axis=1).sum()
     assert length == pytest.approx(4 * (60 + 40) - 200 + 4 * 20 + 200, rel=0.01)
 
@@ -453,3 +453,41 @@ def test_the_view_speaks_german(ground, tmp_path):
     assert words.ordinal(3) == "3." and language.Language().ordinal(3) == "3rd"
     assert [language.Language().ordinal(n) for n in (1, 2, 11, 12, 22, 100)] == [
         "1st", "2nd", "11th", "12th", "22nd", "100th"]  # fmt: skip
+
+
+def bent_sheet(count):
+    """A mesh of 2 x ``count`` x ``count`` facets: 60 x 60 mm, level up to x = 30, then down at 45 degrees."""
+    x, y = np.meshgrid(np.linspace(0, 60, count + 1), np.linspace(0, 60, count + 1), indexing="ij")
+    points = np.stack([x, y, np.minimum(30 - x, 0)], axis=-1).reshape(-1, 3)
+    i, j = (k.ravel() for k in np.meshgrid(*2 * [np.arange(count)], indexing="ij"))
+    a, b, c, d = ((i + p) * (count + 1) + j + q for p, q in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    triangles = np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return core.TriangleMesh(points.astype(np.float32), triangles.astype(np.uint32))
+
+
+def test_a_mesh_part_has_no_holes_and_no_facets_edges(ground, monkeypatch):
+    monkeypatch.setattr(view_data, "MOST_SAMPLES", 4000)
+    shape = core.shape_from_mesh(bent_sheet(20))
+    assert shape.face_count > view_data.MOST_FACES
+    field, _ = core.sample_faces(shape, [], 0.5)
+    core.apply_allowance(field, 0.2)
+    result = copy.copy(ground)
+    result.job = {**ground.job, "design": {**ground.job["design"], "brep": shape.write_brep()}}
+    result.field, result.verdict, result.motions = field, None, None
+    about, arrays = data_of(result)
+    assert about["samples"] <= 4000 < field.size
+    points = points_of(about, arrays["points"])
+    triangles = arrays["triangles"].copy()
+    triangles[:, 1:] = (triangles[:, 1:] + triangles[:, :1]) & 0xFFFFFFFF
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+    assert area == pytest.approx(30 * 60 * (1 + 2**0.5), rel=0.03)
+    # Its rim and the bend, and hardly anything else.
+    ends = points[arrays["borders"]]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    middle = ends.mean(axis=1)
+    rim = (
+        np.minimum.reduce([middle[:, 0], 60 - middle[:, 0], middle[:, 1], 60 - middle[:, 1]]) < 1.5
+    )
+    bend = np.abs(middle[:, 0] - 30) < 1.5
+    assert lengths[~rim & ~bend].sum() < 0.05 * lengths.sum() and lengths[bend & ~rim].sum() > 40

@@ -23,6 +23,8 @@ MOST_TRIANGLES = 150_000  # of the rest of the part
 MOST_BYTES = 5_000_000  # of the packed arrays as text
 CHORD = 4e-4  # chord error of the rest of the part, of its diagonal
 COARSER = 2.5
+MOST_FACES = 500
+ASKED = 20  # faces, whether they bound a solid
 MOST_MOMENTS = 4000  # of the wheel's way
 SHORTEST = 0.02  # s between two of them
 
@@ -53,28 +55,36 @@ def _made(content, scale, spots, rest, most, words, context):
     packed = view_mesh.Packed()
     known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
     worst = [*(spot["sample"] for spot in spots), int(known.argmin()), int(known.argmax())]
+    few = (
+        len(np.unique(field.faces)) <= MOST_FACES
+    )  # else they are a mesh's facets, no faces to tell apart
+    groups = field.faces if few else np.zeros(field.size, dtype=np.int64)
     chosen, triangles = view_mesh.thinned(
-        field.points, field.normals, field.faces, field.triangles, most, worst
+        field.points, field.normals, groups, field.triangles, most, worst
     )
-    points = field.points[chosen]
+    points, directions = field.points[chosen], field.normals[chosen]
     corners, normals, faces = rest
     low, high = (f(np.vstack([points, corners]), axis=0) for f in (np.min, np.max))
 
     packed.add("points", view_mesh.in_box(points, low, high), "u2")
-    packed.add("normals", view_mesh.octahedral(field.normals[chosen]), "u1")
+    packed.add("normals", view_mesh.octahedral(directions), "u1")
     view_mesh.add_triangles(packed, "triangles", triangles)
-    packed.add("borders", view_mesh.borders(triangles), "u4")
+    outline = (
+        view_mesh.borders(triangles) if few else view_mesh.creases(points, directions, triangles)
+    )
+    packed.add("borders", outline, "u4")
     packed.add("rest.points", view_mesh.in_box(corners, low, high), "u2")
     view_mesh.add_triangles(packed, "rest.triangles", faces)
-    creases = view_mesh.creases(corners, normals, faces).reshape(-1, 3)
-    packed.add("rest.creases", view_mesh.in_box(creases, low, high), "u2")
+    packed.add("rest.creases", view_mesh.creases(corners, normals, faces), "u4")
     modes = view_modes.modes(content, scale, packed, chosen, words, context)
     direction, up = picture.front_camera(field)
     about = {
         "title": content.title,
         "language": words.code,
         "box": [low.tolist(), high.tolist()],
-        "top": float(np.abs(known).max(initial=0.0)),  # mm that the ground surface lies off, at most
+        "top": float(
+            np.abs(known).max(initial=0.0)
+        ),  # mm that the ground surface lies off, at most
         "samples": len(chosen),
         "of": field.size,
         "spacing": field.spacing,
@@ -114,7 +124,7 @@ def _solid(shape, field):
     """Whether the ground faces bound a solid, so that what one sees from behind is its inside."""
     if shape is None:
         return False
-    return all(shape.bounds_solid(int(face)) for face in np.unique(field.faces))
+    return all(shape.bounds_solid(int(face)) for face in np.unique(field.faces)[:ASKED])
 
 
 def _spot(spot, words):

@@ -132,23 +132,23 @@ def borders(triangles):
 
 
 def creases(points, normals, triangles):
-    """(k, 2, 3) ends of the edges at which a surface turns, or ends. ``normals`` (n, 3): the surface's at the
-    corners, of which those of two smooth patches are two, at one place.
+    """(k, 2) edges at which a surface turns, or ends. ``normals`` (n, 3): the surface's at the corners, of
+    which those of two smooth patches are two, at one place.
     """
     if not len(triangles):
-        return np.zeros((0, 2, 3))
-    places, same = np.unique(np.round(points, 6), axis=0, return_inverse=True)
+        return np.zeros((0, 2), dtype=np.int64)
+    _, same = np.unique(np.round(points, 6), axis=0, return_inverse=True)
     t = same.reshape(-1)[triangles]
     whole = (t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0])
     ends, keys = _edges(triangles[whole]), _key(_edges(t[whole]))
     along = normals[ends[:, 0]] + normals[ends[:, 1]]
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
     order = np.argsort(keys, kind="stable")
-    keys, along = keys[order], along[order]
+    keys, along, ends = keys[order], along[order], ends[order]
     starts = np.flatnonzero(np.concatenate([[True], np.diff(keys) > 0]))
     counts = np.diff(np.append(starts, len(keys)))
     turned = (along[starts] * along[starts + counts - 1]).sum(axis=1) < SHARP
-    return places[_pairs(keys[starts[(counts == 1) | turned]])]
+    return ends[starts[(counts == 1) | turned]]
 
 
 def _edges(triangles):

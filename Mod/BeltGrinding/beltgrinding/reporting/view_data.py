@@ -55,13 +55,7 @@ def _made(content, scale, spots, rest, most, words, context):
     packed = view_mesh.Packed()
     known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
     worst = [*(spot["sample"] for spot in spots), int(known.argmin()), int(known.argmax())]
-    few = (
-        len(np.unique(field.faces)) <= MOST_FACES
-    )  # else they are a mesh's facets, no faces to tell apart
-    groups = field.faces if few else np.zeros(field.size, dtype=np.int64)
-    chosen, triangles = view_mesh.thinned(
-        field.points, field.normals, groups, field.triangles, most, worst
-    )
+    chosen, triangles, outline = _mesh(field, most, worst)
     points, directions = field.points[chosen], field.normals[chosen]
     corners, normals, faces = rest
     low, high = (f(np.vstack([points, corners]), axis=0) for f in (np.min, np.max))
@@ -69,9 +63,6 @@ def _made(content, scale, spots, rest, most, words, context):
     packed.add("points", view_mesh.in_box(points, low, high), "u2")
     packed.add("normals", view_mesh.octahedral(directions), "u1")
     view_mesh.add_triangles(packed, "triangles", triangles)
-    outline = (
-        view_mesh.borders(triangles) if few else view_mesh.creases(points, directions, triangles)
-    )
     packed.add("borders", outline, "u4")
     packed.add("rest.points", view_mesh.in_box(corners, low, high), "u2")
     view_mesh.add_triangles(packed, "rest.triangles", faces)
@@ -82,9 +73,7 @@ def _made(content, scale, spots, rest, most, words, context):
         "title": content.title,
         "language": words.code,
         "box": [low.tolist(), high.tolist()],
-        "top": float(
-            np.abs(known).max(initial=0.0)
-        ),  # mm that the ground surface lies off, at most
+        "top": float(np.abs(known).max(initial=0.0)),  # mm off the design, at most
         "samples": len(chosen),
         "of": field.size,
         "spacing": field.spacing,
@@ -100,8 +89,26 @@ def _made(content, scale, spots, rest, most, words, context):
     return Data(about, packed.text())
 
 
+def _mesh(field, most, keep):
+    """(chosen (k,), triangles (m, 3), outline (j, 2)) of a field: about ``most`` of its samples, those of
+    ``keep`` among them, and their edges to be drawn.
+    """
+    few = len(np.unique(field.faces)) <= MOST_FACES  # else they are a mesh's facets
+    groups = field.faces if few else np.zeros(field.size, dtype=np.int64)
+    chosen, place = view_mesh.thinned(field.points, field.normals, groups, most, keep)
+    triangles = field.triangles
+    if len(chosen) < field.size:
+        triangles = view_mesh.proper_triangles(place[triangles])
+    if few:
+        return chosen, triangles, view_mesh.borders(triangles)
+    sharp = view_mesh.creases(field.points, field.normals, field.triangles)
+    return chosen, triangles, view_mesh.proper_edges(place[sharp])
+
+
 def _rest(content, context):
-    """(corners (n, 3), normals (n, 3), triangles (m, 3)) of the faces that are not ground; empty where there are none."""
+    """(corners (n, 3), normals (n, 3), triangles (m, 3)) of the faces that are not ground; empty where there
+    are none.
+    """
     shape, field = content.shape, content.result.field
     others = [] if shape is None else picture.rest_of(shape, field)
     if not others:
@@ -115,9 +122,11 @@ def _rest(content, context):
         chord *= COARSER
     corners, triangles = mesh.vertices.astype(float), mesh.triangles.astype(np.int64)
     normals = picture.smooth_normals(mesh).astype(float)
+    if len(triangles) <= MOST_TRIANGLES:
+        return corners, normals, triangles
     same = np.zeros(len(corners), dtype=np.int64)
-    kept, triangles = view_mesh.thinned(corners, normals, same, triangles, MOST_TRIANGLES)
-    return corners[kept], normals[kept], triangles
+    kept, place = view_mesh.thinned(corners, normals, same, MOST_TRIANGLES // 2)
+    return corners[kept], normals[kept], view_mesh.proper_triangles(place[triangles])
 
 
 def _solid(shape, field):

@@ -82,25 +82,26 @@ def add_triangles(packed, name, triangles):
     packed.add(name, np.stack([t[:, 0], t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]], axis=1), "u4")
 
 
-def thinned(points, normals, groups, triangles, most, keep=()):
-    """(chosen (k,), triangles (j, 3) among them): about ``most`` of the samples, each as it is.
+def thinned(points, normals, groups, most, keep=()):
+    """(chosen (k,), place (n,)): about ``most`` of the samples, each as it is, and which of them stands for
+    every one.
 
     Space is cut into cubes; of the samples in a cube that belong to one of ``groups`` (n,) and face the same
-    way, the one nearest to their middle stays, or one of ``keep``. Triangles follow their corners.
+    way, the one nearest to their middle stays, or one of ``keep``.
     """
     count = len(points)
     if count <= most:
-        return np.arange(count), np.asarray(triangles)
+        return np.arange(count), np.arange(count)
     low, size = points.min(axis=0), np.ptp(points, axis=0)
-    side = np.argmax(np.abs(normals), axis=1)
-    facing = 2 * side + (normals[np.arange(count), side] < 0)
-    labels = 6 * np.unique(groups, return_inverse=True)[1] + facing
+    labels = np.unique(groups, return_inverse=True)[1].reshape(-1)
     edge = max(float(np.linalg.norm(size)) / count**0.5, 1e-9)
     while True:
         cells = np.floor((points - low) / edge).astype(np.int64)
         spans = cells.max(axis=0) + 1
         key = ((labels * spans[0] + cells[:, 0]) * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-        found, cluster = np.unique(key, return_inverse=True)
+        _, one, cluster = np.unique(key, return_index=True, return_inverse=True)
+        behind = (normals * normals[one][cluster]).sum(axis=1) < 0.0  # of a thin wall
+        found, cluster = np.unique(2 * cluster + behind, return_inverse=True)
         if len(found) <= most:
             break
         edge *= max(1.02, (len(found) / most) ** 0.5)
@@ -112,11 +113,17 @@ def thinned(points, normals, groups, triangles, most, keep=()):
     first = np.concatenate([[True], np.diff(cluster[order]) > 0])
     chosen = order[first]
     rank = np.argsort(np.argsort(chosen))  # in the samples' own order, which packs well
-    return np.sort(chosen), _proper(rank[cluster][triangles])
+    return np.sort(chosen), rank[cluster]
 
 
-def _proper(triangles):
-    """Those with three corners, each once."""
+def proper_edges(edges):
+    """Those edges (k, 2) that have two ends, each once."""
+    e = np.sort(np.asarray(edges, dtype=np.int64).reshape(-1, 2), axis=1)
+    return _pairs(np.unique(_key(e[e[:, 0] != e[:, 1]])))
+
+
+def proper_triangles(triangles):
+    """Those triangles (m, 3) that have three corners, each once."""
     t = np.asarray(triangles, dtype=np.int64)
     t = t[(t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0])]
     first = np.argmin(t, axis=1)[:, None]

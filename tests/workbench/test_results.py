@@ -288,7 +288,9 @@ OUTPUTS = [
     ["verdict", "OUT", "-o", "FILE.json"],
     ["mesh", "OUT", "-o", "FILE.stl"],
     ["report", "OUT", "-o", "FILE.html"],
+    ["report", "OUT", "--language", "de", "-o", "FILE.html"],
     ["view", "OUT", "-o", "FILE.html"],
+    ["view", "OUT", "--language", "de", "-o", "FILE.html"],
     ["program", "PROGRAM", "-o", "FILE.csv"],
     ["contact", "JOB", "--pose", "1", "-o", "FILE.csv"],
 ]

@@ -18,7 +18,8 @@ BEGINNINGS = (
 )
 MARKS = (
     b"\ncomment belt-ground part",  # mesh, PLY
-    b"<title>Belt grinding:",  # report
+    b"<title>Belt grinding:",  # report, view
+    b"<title>Bandschleifen:",
     b'font-size="14">Section at',  # section, SVG
 )
 PICTURES = (b"\x89PNG", b"<?xml", b"%PDF")  # of calibrate

@@ -226,7 +226,8 @@ class Scene {
     const { design, heights, normals, triangles, rest, restTriangles } = this.result;
     const designed = [];
     const ground = [];
-    const between = (values, i, j, t) => [0, 1, 2].map((k) => values[3 * i + k] + t * (values[3 * j + k] - values[3 * i + k]));
+    const between = (values, i, j, t) =>
+      [0, 1, 2].map((k) => values[3 * i + k] + t * (values[3 * j + k] - values[3 * i + k]));
     crossings(design, triangles, normal, place, (i, j, t) => {
       const point = between(design, i, j, t);
       const height = heights[i] + t * (heights[j] - heights[i]);

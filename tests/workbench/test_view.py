@@ -319,6 +319,7 @@ def test_a_part_that_is_gone_leaves_what_was_ground(tmp_path):
     (tmp_path / "plate.brep").unlink()
     html = beltgrinding.view(tmp_path / "out").read_text()
     assert 'id="view"' in html and (tmp_path / "out" / "view.html").exists()
+    assert re.search(r'class="notes told">[^<]*plate\.brep', html)
 
 
 def test_programs_that_are_gone_leave_the_wheel_out(tmp_path):

@@ -334,6 +334,8 @@ def test_dark_and_narrow(browser, ground):
     page.wait(READY)
     assert page.value("document.documentElement.scrollWidth") <= 420
     assert page.picture()[5, 5].max() < 90
+    page.click("#view-play")  # all of the panel can be reached
+    assert page.value("document.getElementById('view-play').textContent") == "Pause"
     page.close()
 
 

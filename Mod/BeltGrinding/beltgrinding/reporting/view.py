@@ -52,7 +52,9 @@ def view(content, scale, spots, words, context=None, alone=False):
         element("script", Markup(_safe(own))),
     ]
     style = (folder / "view.css").read_text(encoding="utf-8")
-    return View(_markup(data.about, library, words, alone), scripts, style)
+    # A report has them on its top.
+    notes = [sentence(note, words.code) for note in content.notes] if alone else []
+    return View(_markup(data.about, library, words, alone, notes), scripts, style)
 
 
 def missing(words):
@@ -112,7 +114,7 @@ def _texts(words):
     }
 
 
-def _markup(about, library, words, alone):
+def _markup(about, library, words, alone, notes):
     spots = [
         element(
             "button",
@@ -133,6 +135,7 @@ def _markup(about, library, words, alone):
         _part(words("Worst spots"), element("div", spots, class_="spots3d")) if spots else None,
         _part(words("Section"), _section(words)),
         _part(words("Wheel on its way"), _wheel(about, words)),
+        [element("p", note, class_="notes told") for note in notes],
         element("p", _notes(about, library, words), class_="notes"),
     ]
     hint = words("Left button turns, right or Shift shifts, wheel zooms, double click centres")

@@ -6,6 +6,7 @@
 """
 
 import base64
+import fcntl
 import io
 import json
 import os
@@ -40,7 +41,10 @@ class Browser:
         ours, its = os.pipe(), os.pipe()  # commands to it, answers from it
 
         def connect():  # it reads descriptor 3 and writes descriptor 4
-            os.dup2(os.dup(ours[0]), 3), os.dup2(os.dup(its[1]), 4)
+            read, write = (fcntl.fcntl(one, fcntl.F_DUPFD, 5) for one in (ours[0], its[1]))
+            os.dup2(read, 3)
+            os.dup2(write, 4)
+            os.close(read), os.close(write)
 
         self.process = subprocess.Popen(
             [

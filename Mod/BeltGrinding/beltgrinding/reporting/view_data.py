@@ -44,6 +44,8 @@ def data(content, scale, spots, words, context=None):
     """
     most, rest = MOST_SAMPLES, _rest(content, context)
     while True:
+        if context is not None:
+            context.throw_if_cancelled()
         made = _made(content, scale, spots, rest, most, words, context)
         if len(made.arrays) <= MOST_BYTES or most <= 1000:
             return made

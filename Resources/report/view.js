@@ -35,9 +35,7 @@ async function start() {
   all.set(result.ground);
   all.set(result.rest, result.ground.length);
   const fit = (direction, now) => camera.go(camera.fitting(camera.towards(direction), all), now);
-  const front = about.camera.direction;
-  const upright = dot(front, about.camera.up);
-  const back = front.map((value, k) => 2 * upright * about.camera.up[k] - value);
+  const { front, back } = about.camera;
   let untouched = true;
   const resize = () => {
     const box = canvas.parentElement.getBoundingClientRect();

@@ -16,6 +16,7 @@ from beltgrinding.inspection import picture
 from beltgrinding.job.tolerances import colour_scale
 from beltgrinding.reporting import (
     language,
+    pictures,
     report,
     view as views,
     view_data,
@@ -26,6 +27,7 @@ from beltgrinding.reporting import (
 from support.results import unseal
 from test_job import plate_job
 
+SIDES = ([0, 0.6, -0.8], [0, -0.6, -0.8])  # directions of the pictures
 NASTY = "</script><script>alert('1')</script><!-- \"P\" & 'Q' {0} \u2028"
 
 
@@ -61,7 +63,7 @@ def data_of(result, code="en"):
     content = report.load(result)
     scale = colour_scale(result.job)
     spots = worst_spots.worst(result.field, scale[:2], content.verdict)
-    made = view_data.data(content, scale, spots, language.Language(code))
+    made = view_data.data(content, scale, spots, SIDES, language.Language(code))
     json.dumps(made.about, allow_nan=False)
     return made.about, unpacked(made.arrays, made.about["arrays"])
 
@@ -219,9 +221,11 @@ def test_no_result_makes_a_page_that_cannot_be_sent(ground, monkeypatch):
     monkeypatch.setattr(view_data, "MOST_BYTES", 150_000)
     content = report.load(result)
     words = language.Language()
-    made = view_data.data(content, colour_scale(result.job), [], words)
+    made = view_data.data(content, colour_scale(result.job), [], SIDES, words)
     assert len(made.arrays) <= 150_000 and made.about["samples"] < field.size
-    markup = views.view(content, colour_scale(result.job), [], words).markup
+    scale = colour_scale(result.job)
+    drawn = pictures.draw(result.field, scale, content.shape, [], near=False)
+    markup = views.view(content, scale, [], drawn, words).markup
     nth = round(field.size / made.about["samples"])
     assert f"samples, every {words.ordinal(nth)} on average" in markup
 

@@ -120,7 +120,7 @@ def render(content, words, context=None, turning=True):
     if not turning:
         return plain, plain
     lacking = view.missing(words)
-    shown = view.view(content, scale, found, words, context) if lacking is None else None
+    shown = view.view(content, scale, found, drawn, words, context) if lacking is None else None
     return plain, page.document(content, words, scale, found, drawn, shown, lacking)
 
 

@@ -32,12 +32,13 @@ class View(NamedTuple):
     style: str
 
 
-def view(content, scale, spots, words, context=None, alone=False):
-    """The ``View`` of a report's ``Content``; ``alone``: it fills the page. Raises InputError without
+def view(content, scale, spots, drawn, words, context=None, alone=False):
+    """The ``View`` of a report's ``Content``, from the sides of the pictures ``drawn``; ``alone``: it fills the page. Raises InputError without
     three.js, and Cancelled.
     """
     library = view_library.library()
-    data = view_data.data(content, scale, spots, words, context)
+    sides = [drawn[key].view.direction for key in ("front", "back")]
+    data = view_data.data(content, scale, spots, sides, words, context)
     about = {**data.about, "texts": _texts(words), "alone": alone}
     folder = resources() / "report"
     own = "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)

@@ -38,21 +38,22 @@ class Data(NamedTuple):
     arrays: str
 
 
-def data(content, scale, spots, words, context=None):
+def data(content, scale, spots, sides, words, context=None):
     """The ``Data`` of a report's ``Content``. ``scale``: (lower, upper, limit) of the deviation, mm;
-    ``spots``: as ``worst_spots.worst`` gives them. Raises Cancelled.
+    ``spots``: as ``worst_spots.worst`` gives them; ``sides``: the directions in which one looks from the
+    front and from the back, unit vectors. Raises Cancelled.
     """
     most, rest = MOST_SAMPLES, _rest(content, context)
     while True:
         if context is not None:
             context.throw_if_cancelled()
-        made = _made(content, scale, spots, rest, most, words, context)
+        made = _made(content, scale, spots, sides, rest, most, words, context)
         if len(made.arrays) <= MOST_BYTES or most <= 1000:
             return made
         most = int(0.9 * most * MOST_BYTES / len(made.arrays))
 
 
-def _made(content, scale, spots, rest, most, words, context):
+def _made(content, scale, spots, sides, rest, most, words, context):
     result, field = content.result, content.result.field
     packed = view_mesh.Packed()
     known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
@@ -70,7 +71,7 @@ def _made(content, scale, spots, rest, most, words, context):
     view_mesh.add_triangles(packed, "rest.triangles", faces)
     packed.add("rest.creases", view_mesh.creases(corners, normals, faces), "u4")
     modes = view_modes.modes(content, scale, packed, chosen, words, context)
-    direction, up = picture.front_camera(field)
+    front, back = (np.asarray(direction, dtype=float).tolist() for direction in sides)
     about = {
         "title": content.title,
         "language": words.code,
@@ -80,7 +81,7 @@ def _made(content, scale, spots, rest, most, words, context):
         "of": field.size,
         "spacing": field.spacing,
         "solid": _solid(content.shape, field),
-        "camera": {"direction": direction.tolist(), "up": up.tolist()},
+        "camera": {"front": front, "back": back, "up": list(picture.UPRIGHT)},
         "modes": modes,
         "spots": [_spot(spot, words) for spot in spots],
         **_regions(result.job, field, chosen, packed),

@@ -7,7 +7,7 @@ from ..engine import InputError, core
 from ..job.tolerances import colour_scale
 from ..simulation import result_folder
 from ..simulation.result import Result
-from . import charts, findings, pictures, report, view as views, worst_spots
+from . import charts, findings, pictures, report, view as views, view_library, worst_spots
 from .language import Language
 from .markup import Markup, element
 
@@ -27,8 +27,9 @@ def view(result, output=None, language="en", title=None, context=None):
     content = report.load(result, title, (), context)
     scale = colour_scale(content.result.job)
     spots = worst_spots.worst(content.result.field, scale[:2], content.verdict)
-    shown = views.view(content, scale, spots, words, context, alone=True)
+    view_library.library()  # without it nothing need be drawn
     drawn = pictures.draw(content.result.field, scale, content.shape, spots, context, near=False)
+    shown = views.view(content, scale, spots, drawn, words, context, alone=True)
     html = _document(content, words, scale, shown, drawn)
     context.throw_if_cancelled()
     report.write(content.result, {output: html.encode()})

@@ -19,6 +19,26 @@ def test_it_follows_a_pace_that_changes():
     assert told[-1] == pytest.approx((0.5 - 0.0005 * 599) / 0.005, rel=0.01)
 
 
+def test_it_does_not_jump():
+    """Where the pace wavers, as between grinding and rapid moves, the number runs down all the same."""
+    left, told, share = TimeLeft(), [], 0.0
+    for k in range(1, 1200):
+        share += 0.0004 if k % 80 < 40 else 0.0012
+        told.append(left.update(0.1 * k, share))
+    told = [t for t in told if t is not None]
+    steps = [b - a for a, b in zip(told, told[1:])]
+    raw = TimeLeft()
+    raw._smoothed = lambda seconds, estimate: estimate
+    share, jumps = 0.0, []
+    for k in range(1, 1200):
+        share += 0.0004 if k % 80 < 40 else 0.0012
+        jumps.append(raw.update(0.1 * k, share))
+    jumps = [t for t in jumps if t is not None]
+    worst = max(abs(b - a) for a, b in zip(jumps, jumps[1:]))
+    # Beyond the first seconds, when little is known: at most some tenths more than the time that passed.
+    assert max(map(abs, steps[100:])) < 0.8 < worst, (max(map(abs, steps[100:])), worst)
+
+
 def test_a_run_that_stands_still_has_no_time():
     left = TimeLeft()
     left.update(1.0, 0.2)

@@ -1,10 +1,12 @@
 """How long a run will still take, from its progress."""
 
+import math
 from collections import deque
 
 WINDOW = 0.4  # share of the time so far whose pace is taken: the phases of a run differ in theirs
 LEAST_TIME = 1.0  # s; before, a pace means nothing
 LEAST_SHARE = 0.01
+SLOWLY = 0.08  # share of the whole time in which what is told comes by two thirds nearer to a new estimate
 
 
 class TimeLeft:
@@ -12,6 +14,7 @@ class TimeLeft:
 
     def __init__(self):
         self.seen = deque()
+        self.told = None  # (when, s left)
 
     def update(self, seconds, share):
         """``share`` done in [0, 1] after ``seconds``; the seconds left, or None: not to be said."""
@@ -21,7 +24,19 @@ class TimeLeft:
         begin, before = self.seen[0]
         if seconds < LEAST_TIME or share < LEAST_SHARE or share <= before or seconds <= begin:
             return None
-        return (1.0 - share) * (seconds - begin) / (share - before)
+        return self._smoothed(seconds, (1.0 - share) * (seconds - begin) / (share - before))
+
+    def _smoothed(self, seconds, estimate):
+        """The last estimate, which runs down as a clock, drawn to the new one: a number that jumps tells
+        nobody anything."""
+        if self.told is not None:
+            when, left = self.told
+            passed = seconds - when
+            left = max(left - passed, 0.0)
+            weight = 1.0 - math.exp(-passed / max(SLOWLY * (seconds + estimate), LEAST_TIME))
+            estimate = left + weight * (estimate - left)
+        self.told = seconds, estimate
+        return estimate
 
 
 def duration(seconds):

@@ -256,3 +256,54 @@ assert doc.Section.RemovedMean.Value > 0.01 and doc.Section.Problem == ""
 """,
         window=True,
     )
+
+
+def test_the_mouse_over_the_surface_or_a_click_on_it_changes_no_colour(freecad):
+    freecad.run(
+        PREPARE
+        + """
+menu("Simulate")
+wait(lambda: doc.getObject("Deviation") is not None)
+press("Close")
+view.viewTop()
+view.fitAll()
+settle()
+
+def move_to(x, y):
+    \"\"\"The mouse, no button pressed, at pixels from the lower left.\"\"\"
+    widget = view_widget()
+    ratio = widget.devicePixelRatioF()
+    for shift in (-3, -1, 0):
+        at = QtCore.QPointF(round(x / ratio) + shift, widget.height() - 1 - round(y / ratio))
+        place = QtCore.QPointF(widget.mapToGlobal(at.toPoint()))
+        none = QtCore.Qt.NoButton
+        event = QtGui.QMouseEvent(QtCore.QEvent.MouseMove, at, place, none, none, QtCore.Qt.NoModifier)
+        QtGui.QApplication.sendEvent(widget, event)
+        settle()
+        time.sleep(0.15)  # FreeCAD looks a few times a second
+        settle()
+
+def colours():
+    width, height = view.getSize()
+    view.saveImage("hover.png", width, height, "White")
+    image = QtGui.QImage("hover.png")
+    seen = []
+    for x, y in places:
+        a, b = view.getPointOnScreen(FreeCAD.Vector(x, y, top))
+        seen.append(image.pixelColor(int(a), height - 1 - int(b)).getRgb()[:3])
+    return seen
+
+box = job.DesignFaces[0][0].Shape.BoundBox
+top = box.ZMax
+places = [(box.XMin + u * box.XLength, box.YMin + v * box.YLength) for u in (0.1, 0.5, 0.9) for v in (0.1, 0.35, 0.9)]
+before = colours()
+assert len(set(before)) > 1
+at = view.getPointOnScreen(FreeCAD.Vector(*places[0], top))
+move_to(*at)
+assert colours() == before
+click_at(*at)
+assert [one.Name for one in Gui.Selection.getSelection()] == ["Deviation"]
+assert colours() == before
+""",
+        window=True,
+    )

@@ -177,16 +177,25 @@ def bands_of(obj):
     return min(max(obj.Bands, 0), MOST_BANDS)
 
 
-_ready = []  # (field, its Mesh.Mesh) that a worker has made
+_ready = []  # (field, its Mesh.Mesh, limits, statistics) that a worker has made
 
 
-def prepare(field):
-    """Makes the mesh of a core.HeightField, for the next ``show`` of it; in any thread."""
-    _ready[:] = [(field, _mesh(field))]
+def prepare(field, tolerance):
+    """Makes the mesh of a core.HeightField and its statistics for (lower, upper) limits in mm, for the next
+    ``show`` of it; in any thread."""
+    statistics = core.deviation_statistics(field, *tolerance)
+    _ready[:] = [(field, _mesh(field), tuple(tolerance), statistics)]
+
+
+def _statistics(field, tolerance):
+    for one, _, limits, found in _ready:
+        if one is field and limits == tuple(tolerance):
+            return found
+    return core.deviation_statistics(field, *tolerance)
 
 
 def _prepared(field):
-    found = next((mesh for one, mesh in _ready if one is field), None)
+    found = next((mesh for one, mesh, *_ in _ready if one is field), None)
     _ready.clear()
     return found
 
@@ -200,7 +209,7 @@ def _mesh(field):
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
-    statistics = core.deviation_statistics(field, *scale[:2])
+    statistics = _statistics(field, scale[:2])
     sd = statistics.get("sd_p95", 0.0)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)

@@ -37,20 +37,30 @@ def read(obj, name):
     return data
 
 
+class Written:
+    """Bytes, by name of property, written to files of a folder of their own, which goes when nobody holds it;
+    may be made in any thread. Raises InputError."""
+
+    def __init__(self, contents):
+        self.folder = tempfile.TemporaryDirectory(prefix="beltgrinding-")
+        self.paths = {name: _path(self.folder.name, name) for name in contents}
+        for name, data in contents.items():
+            with _written(self.folder.name):
+                write_new(self.paths[name], data)
+        self.sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+
+
 def store(obj, contents):
-    """Puts bytes, by name of property, into the document. Raises InputError; nothing is then changed
-    unless FreeCAD itself fails to copy a file.
+    """Puts bytes, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
+    nothing is then changed unless FreeCAD itself fails to copy a file.
     """
     add_outputs(obj, OUTPUTS)
-    with tempfile.TemporaryDirectory(prefix="beltgrinding-") as folder:
-        for name, data in contents.items():
+    written = contents if isinstance(contents, Written) else Written(contents)
+    with written.folder as folder:
+        for name, path in written.paths.items():
             with _written(folder):
-                write_new(_path(folder, name), data)
-        for name in contents:
-            with _written(folder):
-                setattr(obj, name, str(_path(folder, name)))
-    sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
-    setattr(obj, SUMS, json.dumps({**_sums(obj), **sums}))
+                setattr(obj, name, str(path))
+    setattr(obj, SUMS, json.dumps({**_sums(obj), **written.sums}))
 
 
 def _path(folder, name):

@@ -98,13 +98,14 @@ class Simulation(Proxy):
 
 
 def files_of(result):
-    """{name of property: bytes} of the HDF5 files of a ``job.Result``; may be called in any thread."""
+    """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. Raises
+    InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
     files = {"HeightField": result.field.hdf5(json.dumps(job))}
     if result.recording is not None:
         steps = {name: values.tolist() for name, values in result.steps.items()}
         files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
-    return files
+    return result_files.Written(files)
 
 
 def store(obj, result, fingerprint, files=None):

@@ -113,7 +113,8 @@ class Runner(Background):
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
         if self.then is not None:
-            deviation.prepare(result.field)  # what is shown next
+            # What is shown next.
+            deviation.prepare(result.field, result.job["inspection"]["tolerance_mm"])
         return result, results.files_of(result)
 
     def grind(self, context):

@@ -79,11 +79,18 @@ def toggle(obj, shown):
         if tree.metaObject().className() == "Gui::TreeWidget"
     )
     hands.bring_up(tree)
-    hands.wait(lambda: tree.findItems(obj.Label, exactly, 0), 10)
-    item = tree.findItems(obj.Label, exactly, 0)[0]
-    tree.setCurrentItem(item)
-    item.setSelected(True)
-    hands.wait(lambda: obj in Gui.Selection.getSelection(), 10)
+
+    def chosen():
+        """The tree passes a choice over while it brings itself up to date: then once more, as one would."""
+        found = tree.findItems(obj.Label, exactly, 0)
+        if found and obj not in Gui.Selection.getSelection():
+            tree.clearSelection()
+            tree.setCurrentItem(found[0])
+            found[0].setSelected(True)
+            hands.settle()
+        return obj in Gui.Selection.getSelection()
+
+    hands.wait(chosen, 20)
     # Without a window manager a stroke may miss the tree: the command is called that it stands for.
     command = "Std_ToggleVisibility"
     assert Gui.Command.get(command).getShortcut() == "Space"

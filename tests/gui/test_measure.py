@@ -63,6 +63,11 @@ press("Compare")
 wait(lambda: field("compare").isEnabled())
 settle()
 assert 0.4 < simulation.DifferenceMean.Value < 0.6, simulation.DifferenceMean
+# The view has the scan's field, not the one that it drew before.
+crisp = doc.Deviation.ViewObject.Proxy.crisp
+doc.Deviation.ViewObject.Visibility = False
+doc.Deviation.ViewObject.Visibility = True
+assert crisp.shown() and len(crisp.field.measured) == crisp.field.size
 press("Cancel")
 FreeCAD.closeDocument(doc.Name)
 """

@@ -19,7 +19,7 @@ class CrispColours:
     colours; it is only not drawn where this can."""
 
     def __init__(self, root):
-        self.field = self.shape = self.result = None
+        self.field = self.shape = None
         self.switch, self.mesh_style = coin.SoSwitch(), coin.SoDrawStyle()
         self.mesh_style.style = coin.SoDrawStyle.FILLED
         root.insertChild(self.mesh_style, 0)
@@ -27,8 +27,7 @@ class CrispColours:
 
     def update(self, view):
         """Draws the object of a view provider as it is now."""
-        result = _drawable(view)
-        if result is None or not self._load(view.Object, result):
+        if not _drawable(view) or not self._load(view.Object):
             return self.hide()
         self._colour(view.Object)
         self.switch.whichChild = coin.SO_SWITCH_ALL
@@ -41,20 +40,21 @@ class CrispColours:
 
     def hide(self):
         """Leaves the drawing to FreeCAD."""
-        self.field = self.shape = self.result = None
+        self.field = self.shape = None
         self.switch.whichChild = coin.SO_SWITCH_NONE
         self.switch.removeAllChildren()
         self.mesh_style.setOverride(False)
         self.mesh_style.style = coin.SoDrawStyle.FILLED
 
-    def _load(self, obj, result):
-        """Takes the object's field, if another one is drawn; False where there is none."""
-        if result == self.result:
-            return True
+    def _load(self, obj):
+        """Takes the object's field, if another one is drawn: a result gets a new one when a scan is compared
+        with it. False where there is none."""
         field = field_of(obj.Simulation)
         if field is None or field.size != obj.Mesh.CountPoints:
             return False
-        self.field, self.shape, self.result = field, FieldView(field), result
+        if field is self.field:
+            return True
+        self.field, self.shape = field, FieldView(field)
         self.switch.removeAllChildren()
         drawn = coin.SoSeparator()
         drawn.addChild(unpickable())
@@ -75,12 +75,12 @@ class CrispColours:
 
 
 def _drawable(view):
-    """What names the result that a view provider's object shows; None where FreeCAD had better draw it."""
+    """Whether a view provider's object can be drawn here; where not, FreeCAD draws it."""
     obj = view.Object
     simulation = getattr(obj, "Simulation", None)
     if simulation is None or not field_view.has_own_node():
-        return None
+        return False
     if view.DisplayMode != PLAIN or view.Transparency or not obj.Placement.isIdentity():
-        return None
-    result = json.loads(obj.Shown or "[null]")[0]
-    return result if result == [simulation.Fingerprint, simulation.WallTime] else None
+        return False
+    # Else the mesh is still that of another result.
+    return json.loads(obj.Shown or "[null]")[0] == [simulation.Fingerprint, simulation.WallTime]

@@ -134,6 +134,13 @@ doc.removeObject("Deviation")
 settle()
 assert shown()
 
+# Outwards: flipping is for loose faces, and an inside-out solid's are turned.
+part = job.DesignFaces[0][0].Shape.copy()
+assert set(stock_shell._outwards(part).values()) == {1.0}
+inside_out = Part.Solid(part.Shells[0].reversed())
+assert set(stock_shell._outwards(inside_out).values()) == {-1.0 if inside_out.Volume < 0 else 1.0}
+assert stock_shell._outwards(part.Faces[0]) == {}  # loose
+
 # As thick as the allowance, closed at its borders.
 square = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
 points, faces = stock_shell.thickened(square, np.array([[0, 1, 2], [0, 2, 3]]), 0.5)

@@ -20,16 +20,28 @@ def shell(job, allowance):
         return root
     if not allowance > 0.0:
         return root
-    tessellated(shape)  # all faces as one: their edges meet
-    side = -1.0 if job.FlipNormals else 1.0
+    outwards = _outwards(shape)
+    faces_of_shape = shape.Faces
     for number in numbers:
-        points, faces = tessellated(shape.Faces[number - 1], shape)
+        face = faces_of_shape[number - 1]
+        points, faces = tessellated(face, shape)
         if len(faces):
+            side = outwards.get(face.hashCode(), -1.0 if job.FlipNormals else 1.0)
             points, faces = thickened(points, faces, side * allowance)
             root.addChild(
                 separator(material(COLOUR, SEE_THROUGH), triangles(points, faces, CREASE))
             )
     return root
+
+
+def _outwards(shape):
+    """{hash of a face: 1, or -1 where its solid is inside out} of the faces of a shape's solids; *flip normals*
+    is for the others."""
+    return {
+        face.hashCode(): -1.0 if solid.Volume < 0.0 else 1.0
+        for solid in shape.Solids
+        for face in solid.Faces
+    }
 
 
 def thickened(points, faces, thickness):

@@ -282,6 +282,13 @@ assert abs(machine.BeltSpeed.Value - 12000) < 1e-6 and machine.ExpressionEngine,
 assert field("BeltSpeed").text() == "12 m/s" and field("BeltSpeed").font().italic()
 type_in("BeltSpeed", "14")
 assert not machine.ExpressionEngine and abs(machine.BeltSpeed.Value - 14000) < 1e-6
+type_in("BeltSpeed", "=10 m/s +")  # no expression: marked, and the value stays
+assert field("BeltSpeed").styleSheet() and not machine.ExpressionEngine
+assert abs(machine.BeltSpeed.Value - 14000) < 1e-6
+press("OK")
+assert Gui.Control.activeDialog()
+type_in("BeltSpeed", "14")
+assert not field("BeltSpeed").styleSheet()
 assert not field("BeltSpeed").font().italic()
 press("Cancel")
 

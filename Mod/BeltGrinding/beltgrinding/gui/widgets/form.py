@@ -211,9 +211,13 @@ class Form(QtGui.QGroupBox):
         for shown in (widget, *widget.findChildren(QtGui.QLineEdit)):
             shown.setToolTip(mistake or self.obj.getDocumentationOfProperty(name))
 
-    def _check_typed(self, name, text):
-        self.typed[name] = self._mistake(name, text)
+    def _refuse(self, name, mistake):
+        """Marks what was typed as wrong, until something else is typed."""
+        self.typed[name] = mistake
         self._show_mistake(name)
+
+    def _check_typed(self, name, text):
+        self._refuse(name, self._mistake(name, text))
 
     def check(self):
         """Raises InputError for the first visible field with a mistake."""
@@ -248,6 +252,7 @@ class Form(QtGui.QGroupBox):
         widget = quantity_field(value, quantity_entry.symbol_of(self.obj, name))
         if isinstance(widget, QuantityEntry):
             widget.bind(self.obj, name)
+            widget.complain = lambda text: self._refuse(name, text)
             negative = kind in NOT_NEGATIVE
             widget.refused = lambda v: bool(negative and v < 0.0 or self._out_of_limits(name, v))
         else:

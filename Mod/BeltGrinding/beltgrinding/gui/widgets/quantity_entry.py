@@ -6,7 +6,6 @@ entry's own does not change that.
 
 import math
 
-import FreeCAD
 from FreeCAD import Units
 
 from ...objects import preferences
@@ -73,8 +72,8 @@ class QuantityEntry(QtGui.QLineEdit):
         self.raw = float(value)
         self.bound = None  # (object, property) that may have an expression
         self.refused = lambda value: False  # a value that is not taken
+        self.complain = lambda text: None  # of an expression that is not taken
         self._write()
-        self.textEdited.connect(self._typed)
         self.textChanged.connect(self._typed)
         self.editingFinished.connect(self._finished)
 
@@ -148,7 +147,7 @@ class QuantityEntry(QtGui.QLineEdit):
                 obj.setExpression(name, text[1:])
                 obj.recompute()
             except Exception as error:  # FreeCAD's parser has errors of many kinds
-                FreeCAD.Console.PrintWarning(f"{name}: {error}\n")
+                self.complain(str(error))
                 return
             self.raw = float(getattr(obj, name))
             self.valueChanged.emit(self.raw)

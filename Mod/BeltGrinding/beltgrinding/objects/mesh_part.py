@@ -13,7 +13,7 @@ MOST_FACETS = 20_000  # of a shape that FreeCAD still handles well: each is a fa
 
 def faces_of(mesh):
     """Adds a Part object with the surface of a Mesh object (FreeCAD's Mesh::Feature) to its document and
-    returns it: flat faces, triangles in one plane joined. The mesh is hidden. Raises InputError."""
+    returns it: flat faces, triangles in one plane joined. Raises InputError."""
     count = mesh.Mesh.CountFacets
     if not 0 < count <= MOST_FACETS:
         raise InputError(
@@ -32,7 +32,4 @@ def faces_of(mesh):
     made = mesh.Document.addObject("Part::Feature", "MeshPart")
     made.Label = f"{mesh.Label} (faces)"
     made.Shape = shape.removeSplitter()
-    view = getattr(mesh, "ViewObject", None)
-    if view is not None:
-        view.Visibility = False
     return made

@@ -1,5 +1,6 @@
 """Adds what a job consists of: part, stock, machine, belt, paths. Offered by ``api``."""
 
+import contextlib
 from pathlib import Path
 
 import FreeCAD
@@ -23,26 +24,36 @@ from .simulation import simulated
 
 def make_job(design, faces=(), **properties):
     """Adds a job to the design's document. ``design``: a Part object, or a Mesh object, of whose triangles
-    a Part object with faces is made; ``faces``: names such as
-    "Face3" or numbers from 1, none for all; or ``design`` is a list of (object, names).
+    a Part object with faces is made; ``faces``: names such as "Face3" or numbers from 1, none for all; or
+    ``design`` is a list of (object, names).
     """
     links = design if isinstance(design, (list, tuple)) else [(design, faces)]
-    links = [(mesh_part.faces_of(o) if hasattr(o, "Mesh") else o, subs) for o, subs in links]
-    links = [
-        (obj, tuple(f"Face{s}" if isinstance(s, int) else s for s in subs) or ("",))
-        for obj, subs in links
-    ]
     if not links:
         raise InputError(
             "objects.no_part", "a job needs a part; give an object with a shape, or select faces"
         )
+    meshes = [obj for obj, _ in links if hasattr(obj, "Mesh")]
     job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
-    with removed_on_error(job):
+    with removed_on_error(job), contextlib.ExitStack() as parts:
+
+        def part_of(obj):
+            if obj not in meshes:
+                return obj
+            made = mesh_part.faces_of(obj)
+            parts.enter_context(removed_on_error(made))
+            return made
+
         job.Label = FreeCAD.Qt.translate("BeltGrinding", "Belt grinding")
         job_object.BeltGrindingJob(job)
-        job.DesignFaces = links
+        job.DesignFaces = [
+            (part_of(obj), tuple(f"Face{s}" if isinstance(s, int) else s for s in subs) or ("",))
+            for obj, subs in links
+        ]
         job_data.design(job)
         set_by_name(job, properties)
+    for mesh in meshes:
+        if getattr(mesh, "ViewObject", None) is not None:
+            mesh.ViewObject.Visibility = False
     return job
 
 

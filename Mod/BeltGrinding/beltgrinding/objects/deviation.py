@@ -187,6 +187,11 @@ def prepare(field, tolerance):
     _ready[:] = [(field, _mesh(field), tuple(tolerance), statistics)]
 
 
+def forget_prepared():
+    """Frees what was prepared and is not shown."""
+    _ready.clear()
+
+
 def _statistics(field, tolerance):
     for one, _, limits, found in _ready:
         if one is field and limits == tuple(tolerance):
@@ -195,9 +200,7 @@ def _statistics(field, tolerance):
 
 
 def _prepared(field):
-    found = next((mesh for one, mesh, *_ in _ready if one is field), None)
-    _ready.clear()
-    return found
+    return next((mesh for one, mesh, *_ in _ready if one is field), None)
 
 
 def _mesh(field):

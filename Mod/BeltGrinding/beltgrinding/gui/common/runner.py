@@ -6,7 +6,7 @@ import time
 import weakref
 
 from ...engine import Cancelled, RunContext
-from ...objects import api, deviation, job_inputs, simulation as results
+from ...objects import api, deviation, job_data, job_inputs, simulation as results
 from ...simulation import run as runs
 from .compat import QtCore, translate
 
@@ -18,12 +18,14 @@ MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 _going = set()
 COLLECT = 2.0  # s between collections of garbage while works go on
 _collected = [0.0]  # when the last one was
+_before = [True]  # whether Python collected before the works began
 
 
 def _begin(work):
     """Holds a work. Python looks for garbage in whatever thread happens to make objects, and frees widgets there,
     of which Qt then keeps a dead address: while works go on only the window's thread does it."""
     if not _going:
+        _before[0] = gc.isenabled()
         gc.disable()
     _going.add(work)
 
@@ -31,7 +33,7 @@ def _begin(work):
 def _end(work):
     """Lets go of a work whose end the window has seen."""
     _going.discard(work)
-    if not _going:
+    if not _going and _before[0]:
         gc.enable()
 
 
@@ -97,7 +99,7 @@ class Runner(Background):
     None, error or None): in the end. then(job): what belongs to the undo step of the result.
     """
 
-    def __init__(self, job, progress, done, recording=None, then=lambda job: None):
+    def __init__(self, job, progress, done, recording=None, then=None):
         self.document, self.name = job.Document, job.Name
         self.progress, self.ended = progress, done
         self.folder = job_inputs.scratch_folder()
@@ -105,6 +107,7 @@ class Runner(Background):
         self.fingerprint = job_inputs.fingerprint(job)
         self.start = time.monotonic()
         self.recorded, self.then = recording, then
+        self.shown = then is not None or job_data.child(job, deviation.Deviation) is not None
         super().__init__(self.work, self._finish)
 
     def work(self, context):
@@ -112,8 +115,7 @@ class Runner(Background):
         result = self.grind(context)
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
-        if self.then is not None:
-            # What is shown next.
+        if self.shown:
             deviation.prepare(result.field, result.job["inspection"]["tolerance_mm"])
         return result, results.files_of(result)
 
@@ -158,9 +160,12 @@ class Runner(Background):
         self.document.openTransaction("Simulate")
         try:
             simulation = api.store_result(job, result, self.fingerprint, files)
-            self.then(job)
+            if self.then is not None:
+                self.then(job)
             self.document.commitTransaction()
             return simulation
         except BaseException:
             self.document.abortTransaction()
             raise
+        finally:
+            deviation.forget_prepared()

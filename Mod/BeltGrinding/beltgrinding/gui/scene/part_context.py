@@ -97,9 +97,11 @@ def tessellated(shape, whole=None):
 
 def points_of_part(job):
     """(n, 3) some hundred points spread over a job's part by area, mm; none where it has no part."""
+    if job is None:
+        return np.zeros((0, 3))
     try:
         points, triangles = tessellated(design_of(job)[0])
-    except (AttributeError, InputError):  # without a job
+    except InputError:
         return np.zeros((0, 3))
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)

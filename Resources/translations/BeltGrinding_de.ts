@@ -452,10 +452,6 @@
         <translation>mittlere Standardabweichung der Abweichung</translation>
     </message>
     <message>
-        <source>millimetres per unit of the mesh</source>
-        <translation>Millimeter je Einheit des Netzes</translation>
-    </message>
-    <message>
         <source>mm around each pose in which the corner is rounded; negative: not known</source>
         <translation>mm um jede Pose, in denen die Ecke gerundet wird; negativ: nicht bekannt</translation>
     </message>
@@ -578,10 +574,6 @@
     <message>
         <source>results whose use has been counted</source>
         <translation>Ergebnisse, deren Gebrauch gezählt ist</translation>
-    </message>
-    <message>
-        <source>reverse the normals of loose faces</source>
-        <translation>die Normalen loser Flächen umkehren</translation>
     </message>
     <message>
         <source>samples over which no stock was found</source>
@@ -1102,6 +1094,18 @@
     <message>
         <source>laid as a first proposal, and nobody has looked at it since</source>
         <translation>als erster Vorschlag gelegt, und seitdem hat niemand danach gesehen</translation>
+    </message>
+    <message>
+        <source>loose faces whose normals are reversed</source>
+        <translation>lose Flächen, deren Normalen umgekehrt werden</translation>
+    </message>
+    <message>
+        <source>millimetres per unit of the file; of STEP and IGES files, which tell theirs: so many times larger than they say</source>
+        <translation>Millimeter je Einheit der Datei; bei STEP- und IGES-Dateien, die ihre angeben: so viel mal größer, als sie sagen</translation>
+    </message>
+    <message>
+        <source>reverse the normals of all loose faces, which look outwards as their neighbours and what they enclose tell, or else as the file has them</source>
+        <translation>die Normalen aller losen Flächen umkehren; sie zeigen nach außen, wie Nachbarn und Umschlossenes es sagen, sonst wie in der Datei</translation>
     </message>
 </context>
 <context>
@@ -3307,6 +3311,22 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Save an example...</source>
         <translation>Beispiel speichern ...</translation>
+    </message>
+    <message>
+        <source>Choose loose faces in the list; faces of a solid look out of it already.</source>
+        <translation>Lose Flächen in der Liste wählen; die eines Volumenkörpers zeigen schon nach außen.</translation>
+    </message>
+    <message>
+        <source>Flip side</source>
+        <translation>Seite umkehren</translation>
+    </message>
+    <message>
+        <source>Turns loose faces to be ground from their other side</source>
+        <translation>Lässt lose Flächen von ihrer anderen Seite her schleifen</translation>
+    </message>
+    <message>
+        <source>flipped</source>
+        <translation>umgekehrt</translation>
     </message>
 </context>
 <context>

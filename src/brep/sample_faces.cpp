@@ -157,6 +157,7 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
         border += length[i];
     }
     refuse_if_too_large(area, border, options.spacing, options.max_bytes);
+    const std::vector<char> reversed = shape.reversed(context);
     context.report(0.05);
 
     std::atomic<std::size_t> done{0};
@@ -175,9 +176,8 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                 request.spacing = options.spacing;
                 request.area = job.area;
                 request.parameters = options.parameters && report != nullptr;
-                const bool loose = !shape.bounds_solid(job.face);
-                request.reverse = (request.face.Orientation() == TopAbs_REVERSED) !=
-                                  (loose ? options.flip_normals : impl.inside_out(job.face));
+                request.reverse =
+                    (request.face.Orientation() == TopAbs_REVERSED) != (reversed[job.face] != 0);
                 job.samples = sample_face(request, context);
                 if (job.samples.point.size() > kEnoughSamples &&
                     std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)

@@ -213,13 +213,19 @@ bool Shape::valid() const {
 }
 
 std::vector<Fact> Shape::warnings() const {
+    std::vector<Fact> found = impl_->odd_things(*this);
+    const std::vector<Fact> sides = side_warnings({});
+    found.insert(found.end(), sides.begin(), sides.end());
+    return found;
+}
+
+std::vector<Fact> Shape::Impl::odd_things(const Shape& of) const {
     {
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        if (impl_->warnings) return *impl_->warnings;
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (warnings) return *warnings;
     }
-    const Box box = extents();
+    const Box box = of.extents();
     std::vector<Fact> found;
-    const std::string& name = impl_->name;
     if (!box.isEmpty()) {
         const double size = box.sizes().maxCoeff();
         if (size > kLargestExtent)
@@ -232,25 +238,16 @@ std::vector<Fact> Shape::warnings() const {
                  "{shape} is only {size:.4g} mm large, less than 0.1 mm: check its unit",
                  {{"shape", name}, {"size", size}}});
     }
-    if (!valid())
+    if (!of.valid())
         found.push_back({"brep.not_valid",
                          "{shape} is not a valid shape by OpenCASCADE's check: results near its "
                          "faults may be wrong",
                          {{"shape", name}}});
-    for (TopExp_Explorer s(impl_->shape, TopAbs_SHELL); s.More(); s.Next()) {
-        if (!BRep_Tool::IsClosed(s.Current())) {
-            found.push_back({"brep.open_shell",
-                             "{shape} has an open shell: its normals follow the faces' "
-                             "orientation, flip them if they point into the part",
-                             {{"shape", name}}});
-            break;
-        }
-    }
     std::size_t loose = 0;
-    for (std::size_t i = 0; i < face_count(); ++i) {
-        loose += impl_->solid_of_face[i] < 0;
+    for (std::size_t i = 0; i < of.face_count(); ++i) {
+        loose += solid_of_face[i] < 0;
         try {
-            if (face_area(i) < kZeroArea)
+            if (of.face_area(i) < kZeroArea)
                 found.push_back({"brep.face_without_area",
                                  "face {face} of {shape} has no area and is left out",
                                  {{"face", i + 1}, {"shape", name}}});
@@ -258,13 +255,12 @@ std::vector<Fact> Shape::warnings() const {
             found.push_back(error.fact());
         }
     }
-    if (loose > 0 && loose < face_count())
+    if (loose > 0 && loose < of.face_count())
         found.push_back({"brep.loose_faces",
-                         "{shape}: {count} of its faces belong to no solid; their normals follow "
-                         "their orientation",
+                         "{shape}: {count} of its faces belong to no solid",
                          {{"shape", name}, {"count", loose}}});
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->warnings = std::make_unique<std::vector<Fact>>(found);
+    const std::lock_guard<std::mutex> lock(mutex);
+    warnings = std::make_unique<std::vector<Fact>>(found);
     return found;
 }
 

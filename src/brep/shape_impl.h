@@ -12,10 +12,12 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/shape.h"
 #include "brep/shape_tasks.h"
+#include "face_sides.h"
 
 namespace beltgrinding {
 
@@ -32,6 +34,13 @@ struct Shape::Impl {
     }
     /// True if the face's solid has a negative volume: its normals all point inwards.
     bool inside_out(std::size_t face) const;
+    /// `Shape::warnings` but for those of its sides.
+    std::vector<Fact> odd_things(const Shape& of) const;
+    /// Which side of the loose faces is outside, found when first asked for. Throws Cancelled.
+    const FaceSides& sides(const RunContext& context) const;
+    /// The triangulated copy that sides and common borders are told by, and how near free edges
+    /// must be to be one, mm. Throws InputError, Standard_Failure, Cancelled.
+    std::pair<TopoDS_Shape, double> mesh_for_sides(const RunContext& context) const;
 
     // Set before anybody else has it.
     mutable bool foreign = false;  ///< the reader's process has read it, and tried it
@@ -43,6 +52,8 @@ struct Shape::Impl {
     mutable std::unique_ptr<Box> extents;
     mutable std::optional<bool> valid;
     mutable std::unique_ptr<std::vector<Fact>> warnings;
+    mutable std::mutex sides_mutex;
+    mutable std::unique_ptr<FaceSides> known_sides;
 };
 
 /// Adds the curves on surfaces that are missing: sampling walks the trimming curves in the
@@ -79,8 +90,9 @@ TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, const MeshingParameter
 TopoDS_Shape mesh_in_reader(const TopoDS_Shape& shape, const MeshingParameters& parameters,
                             const std::string& name, bool foreign, const RunContext& context);
 
-/// The triangles that the faces of `shape` carry.
-TriangleMesh triangles_of(const TopoDS_Shape& shape);
+/// The triangles that the faces of `shape` carry; those with `turned` set (by face; empty: none)
+/// are turned over.
+TriangleMesh triangles_of(const TopoDS_Shape& shape, const std::vector<char>& turned = {});
 
 /// `Shape::extents`, by triangles made here or by the reader.
 Box tight_extents(const TopoDS_Shape& shape, const std::string& name, bool by_reader);

@@ -1,11 +1,16 @@
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_Failure.hxx>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <gp_Trsf.hxx>
 #include <locale>
 #include <mutex>
 #include <sstream>
@@ -38,12 +43,29 @@ class QuietMessenger {
     Message_SequenceOfPrinters printers_;
 };
 
+void require_scale(double scale) {
+    if (!(scale > 0) || !std::isfinite(scale))
+        throw InputError("brep.scale", "a shape's scale must be above 0, not {scale:g}",
+                         {{"scale", scale}});
+}
+
+/// As the reader takes it, to the last bit; nothing for 1.
+std::string scale_suffix(double scale) {
+    if (scale == 1.0) return "";
+    std::array<char, 40> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), scale, std::chars_format::hex);
+    std::string suffix(1, ' ');
+    suffix.append(digits.begin(), end.ptr);
+    return suffix;
+}
+
 /// What the reader's process makes of a file, or of a text in `input`.
 std::string answer_to(const std::string& format, const std::string& path, const std::string& input,
-                      const RunContext& context, const Fact& outer) {
+                      double scale, const RunContext& context, const Fact& outer) {
     try {
+        require_scale(scale);
         try {
-            return ask_reader({format, path, input}, context);
+            return ask_reader({format + scale_suffix(scale), path, input}, context);
         } catch (const ReaderFault& fault) {
             refuse_file(fault, format, "OpenCASCADE");
         }
@@ -93,7 +115,14 @@ TopoDS_Shape read_brep_text(const std::string& text) {
     return shape;
 }
 
-Shape Shape::read(const std::string& path, const RunContext& context) {
+TopoDS_Shape scaled_shape(const TopoDS_Shape& shape, double scale) {
+    if (scale == 1.0 || shape.IsNull()) return shape;
+    gp_Trsf move;
+    move.SetScaleFactor(scale);
+    return BRepBuilderAPI_Transform(shape, move, true).Shape();
+}
+
+Shape Shape::read(const std::string& path, const RunContext& context, double scale) {
     if (!is_readable_file(path))
         throw InputError("cad.no_such_file", "{file}: there is no such file", {{"file", path}});
     const std::string suffix = lower_suffix(path);
@@ -109,22 +138,23 @@ Shape Shape::read(const std::string& path, const RunContext& context) {
                          {{"file", path}, {"suffix", suffix}});
     }
     const Fact outer{"cad.file", "{file}: ", {{"file", path}}};
-    return shape_of(answer_to(format, path, "", context, outer),
+    return shape_of(answer_to(format, path, "", scale, context, outer),
                     std::filesystem::path(path).filename().string(), outer);
 }
 
-Shape Shape::read_brep(const std::string& text, const std::string& name,
-                       const RunContext& context) {
+Shape Shape::read_brep(const std::string& text, const std::string& name, const RunContext& context,
+                       double scale) {
     const Fact outer{"cad.shape", "{shape}: ", {{"shape", name}}};
-    return shape_of(answer_to("BREP", "", text, context, outer), name, outer);
+    return shape_of(answer_to("BREP", "", text, scale, context, outer), name, outer);
 }
 
-Shape Shape::from_brep(const std::string& text, const std::string& name) {
+Shape Shape::from_brep(const std::string& text, const std::string& name, double scale) {
+    require_scale(scale);
     TopoDS_Shape shape;
     try {
         const std::lock_guard<std::mutex> lock(printers_mutex());
         const QuietMessenger quiet;
-        shape = read_brep_text(text);
+        shape = scaled_shape(read_brep_text(text), scale);
     } catch (const Standard_Failure& failure) {
         throw InputError("cad.brep_text", "{shape}: not the text of a BREP shape: {reason}",
                          {{"shape", name}, {"reason", failure.GetMessageString()}});

@@ -11,7 +11,9 @@
 #include <Poly_Triangulation.hxx>
 #include <ShapeUpgrade_UnifySameDomain.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
@@ -36,7 +38,7 @@ constexpr double kSoundSine = 1e-6;          // a triangle flatter than this has
 constexpr std::size_t kMergeLimit = 20'000;  // faces; merging coplanar ones slows beyond
 constexpr double kCoplanarAngle = 1e-5;      // rad, between facets that are merged
 
-void append_face(const TopoDS_Face& face, TriangleMesh& mesh) {
+void append_face(const TopoDS_Face& face, bool turned, TriangleMesh& mesh) {
     TopLoc_Location location;
     const Handle(Poly_Triangulation) part = BRep_Tool::Triangulation(face, location);
     if (part.IsNull()) return;
@@ -47,7 +49,7 @@ void append_face(const TopoDS_Face& face, TriangleMesh& mesh) {
         mesh.vertices.emplace_back(static_cast<float>(p.X()), static_cast<float>(p.Y()),
                                    static_cast<float>(p.Z()));
     }
-    const bool flip = (face.Orientation() == TopAbs_REVERSED) != move.IsNegative();
+    const bool flip = ((face.Orientation() == TopAbs_REVERSED) != move.IsNegative()) != turned;
     for (int i = 1; i <= part->NbTriangles(); ++i) {
         int a = 0, b = 0, c = 0;
         part->Triangle(i).Get(a, b, c);
@@ -128,10 +130,15 @@ TopoDS_Shape triangulated_copy(const TopoDS_Shape& shape, const MeshingParameter
     return copy;
 }
 
-TriangleMesh triangles_of(const TopoDS_Shape& shape) {
+TriangleMesh triangles_of(const TopoDS_Shape& shape, const std::vector<char>& turned) {
     TriangleMesh mesh;
-    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next())
-        append_face(TopoDS::Face(e.Current()), mesh);
+    TopTools_IndexedMapOfShape faces;
+    if (!turned.empty()) TopExp::MapShapes(shape, TopAbs_FACE, faces);
+    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) {
+        const int index = turned.empty() ? 0 : faces.FindIndex(e.Current());
+        append_face(TopoDS::Face(e.Current()),
+                    index > 0 && turned[static_cast<std::size_t>(index - 1)] != 0, mesh);
+    }
     return mesh;
 }
 
@@ -172,10 +179,19 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
         }
         whole = some;
     }
+    const std::vector<char> reversed = shape.reversed(context);
+    TopTools_IndexedMapOfShape used;
+    TopExp::MapShapes(whole, TopAbs_FACE, used);
+    std::vector<char> turned;
+    for (int i = 1; i <= used.Extent(); ++i) {
+        const auto face = static_cast<std::size_t>(impl.faces.FindIndex(used(i)) - 1);
+        turned.push_back(!shape.bounds_solid(face) && reversed[face] != 0 ? 1 : 0);
+    }
     TriangleMesh mesh;
     try {
         mesh = triangles_of(mesh_in_reader(whole, {deflection, kAngularDeflection, false},
-                                           impl.name, impl.foreign, context));
+                                           impl.name, impl.foreign, context),
+                            turned);
     } catch (const Standard_Failure& failure) {
         refuse(failure);
     }

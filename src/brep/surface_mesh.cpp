@@ -139,7 +139,7 @@ SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
     require_length(options.spacing, "brep.mesh_spacing",
                    "the mesh's spacing must be above 0 mm, not {value:f}");
     const Shape::Impl& impl = shape.impl();
-    std::vector<char> fine(shape.face_count(), 0), reverse(shape.face_count(), 0);
+    std::vector<char> fine(shape.face_count(), 0), reverse = shape.reversed(context);
     for (const std::size_t f : options.fine_faces) {
         if (f >= fine.size())
             throw InputError("brep.no_such_face",
@@ -147,8 +147,6 @@ SurfaceMesh surface_mesh(const Shape& shape, const SurfaceMeshOptions& options,
                              {{"shape", impl.name}, {"face", f + 1}, {"count", fine.size()}});
         fine[f] = 1;
     }
-    for (std::size_t f = 0; f < reverse.size(); ++f)
-        reverse[f] = shape.bounds_solid(f) ? impl.inside_out(f) : options.flip_normals;
     SurfaceMesh out;
     try {
         // A contour that the chords make cross another spoils the face; finer chords mostly do not.

@@ -73,22 +73,25 @@ void bind_geometry(py::module_& m) {
     py::class_<Shape>(m, "Shape", "A boundary representation; faces are numbered from 0.")
         .def_static(
             "read",
-            [](const std::filesystem::path& path, const RunContext* context) {
+            [](const std::filesystem::path& path, const RunContext* context, double scale) {
                 const py::gil_scoped_release release;
-                return Shape::read(path, context != nullptr ? *context : RunContext());
+                return Shape::read(path, context != nullptr ? *context : RunContext(), scale);
             },
-            py::arg("path"), py::arg("context") = nullptr,
+            py::arg("path"), py::arg("context") = nullptr, py::arg("scale") = 1.0,
             "Reads STEP, IGES or BREP, in a process of its own: a damaged file is an InputError.")
         .def_static(
             "read_brep",
-            [](const std::string& text, const std::string& name, const RunContext* context) {
+            [](const std::string& text, const std::string& name, const RunContext* context,
+               double scale) {
                 const py::gil_scoped_release release;
-                return Shape::read_brep(text, name, context != nullptr ? *context : RunContext());
+                return Shape::read_brep(text, name, context != nullptr ? *context : RunContext(),
+                                        scale);
             },
             py::arg("text"), py::arg("name") = "shape", py::arg("context") = nullptr,
+            py::arg("scale") = 1.0,
             "The same for the text of a BREP file that came from elsewhere.")
         .def_static("from_brep", &Shape::from_brep, py::arg("text"), py::arg("name") = "shape",
-                    py::call_guard<py::gil_scoped_release>(),
+                    py::arg("scale") = 1.0, py::call_guard<py::gil_scoped_release>(),
                     "Reads what FreeCAD's exportBrepToString makes, in this process.")
         .def("write_brep", &Shape::write_brep)
         .def_property_readonly("face_count", &Shape::face_count)
@@ -101,6 +104,17 @@ void bind_geometry(py::module_& m) {
                  const Box box = shape.extents();
                  return std::pair<Vec3, Vec3>(box.min(), box.max());
              })
+        .def(
+            "reversed",
+            [](const Shape& shape, const RunContext* context) {
+                const py::gil_scoped_release release;
+                const auto found = shape.reversed(context != nullptr ? *context : RunContext());
+                return std::vector<bool>(found.begin(), found.end());
+            },
+            py::arg("context") = nullptr,
+            "For each face, True if its outside is against its orientation.")
+        .def("flipped", &Shape::flipped, py::arg("all"), py::arg("faces"),
+             "The same shape with its loose faces, and then those of `faces` (from 0), flipped.")
         .def(
             "warnings", [](const Shape& shape) { return to_list(shape.warnings()); },
             "What is odd about it, a `Fact` each.");
@@ -124,12 +138,10 @@ void bind_geometry(py::module_& m) {
         "Triangles of faces (from 0; all if empty) to a chord error of deflection mm.");
     m.def(
         "sample_faces",
-        [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing,
-           bool flip_normals, double depth, std::size_t max_bytes, const RunContext* context,
-           bool parameters) {
+        [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing, double depth,
+           std::size_t max_bytes, const RunContext* context, bool parameters) {
             SamplingOptions options;
             options.spacing = spacing;
-            options.flip_normals = flip_normals;
             options.depth = depth;
             options.max_bytes = max_bytes;
             options.parameters = parameters;
@@ -152,9 +164,8 @@ void bind_geometry(py::module_& m) {
             }
             return py::make_tuple(std::move(field), found);
         },
-        py::arg("shape"), py::arg("faces"), py::arg("spacing"), py::arg("flip_normals") = false,
-        py::arg("depth") = 1.0, py::arg("max_bytes") = 0, py::arg("context") = nullptr,
-        py::arg("parameters") = false,
+        py::arg("shape"), py::arg("faces"), py::arg("spacing"), py::arg("depth") = 1.0,
+        py::arg("max_bytes") = 0, py::arg("context") = nullptr, py::arg("parameters") = false,
         "Samples faces (from 0; all if empty). Returns (HeightField, dict(face_area, warnings)); "
         "with parameters also parameters (n, 2): u, v of every sample, and period of every face.");
 }

@@ -94,13 +94,12 @@ void bind_ground_mesh(py::module_& m) {
     m.def(
         "ground_mesh",
         [](const Shape& shape, const HeightField& field, bool ground, double deflection,
-           std::optional<double> spacing, bool flip_normals, const RunContext* context) {
+           std::optional<double> spacing, const RunContext* context) {
             const py::gil_scoped_release release;
             const RunContext run = context != nullptr ? *context : RunContext();
             SurfaceMeshOptions options;
             options.deflection = deflection;
             options.spacing = spacing.value_or(field.spacing);
-            options.flip_normals = flip_normals;
             std::vector<char> chosen(shape.face_count(), 0);
             for (const std::uint32_t f : field.face) {
                 if (f >= chosen.size())
@@ -114,8 +113,7 @@ void bind_ground_mesh(py::module_& m) {
             return ground_mesh(surface, field, ground, run.part(0.6, 1.0));
         },
         py::arg("shape"), py::arg("field"), py::arg("ground") = true, py::arg("deflection") = 0.05,
-        py::arg("spacing") = py::none(), py::arg("flip_normals") = false,
-        py::arg("context") = nullptr,
+        py::arg("spacing") = py::none(), py::arg("context") = nullptr,
         "The mesh of the whole shape, its sampled faces displaced by the field's heights.");
 }
 

@@ -19,6 +19,7 @@ std::optional<std::string> do_shape_task(std::string_view, const std::string&, c
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
 #include <TopoDS_Shape.hxx>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <new>
@@ -59,7 +60,8 @@ TopoDS_Shape read_brep(const std::string& path, const std::string& input) {
     return shape;
 }
 
-std::string read(const std::string& format, const std::string& path, const std::string& input) {
+std::string read(const std::string& format, double scale, const std::string& path,
+                 const std::string& input) {
     TopoDS_Shape shape;
     if (format == "STEP") {
         shape = read_exchange<STEPControl_Reader>(format, path);
@@ -75,7 +77,7 @@ std::string read(const std::string& format, const std::string& path, const std::
                          "the {format} file gives no shape (null shape): it holds no solid, "
                          "shell or face that can be read; export the part again",
                          {{"format", format}});
-    return shape_answer(shape);
+    return shape_answer(scaled_shape(shape, scale));
 }
 
 std::string failure_reason(const Standard_Failure& failure) {
@@ -87,9 +89,17 @@ std::string failure_reason(const Standard_Failure& failure) {
 
 std::optional<std::string> do_shape_task(std::string_view task, const std::string& path,
                                          const std::string& input) {
-    const bool reads = task == "STEP" || task == "IGES" || task == "BREP";
+    const std::string format(task.substr(0, task.find(' ')));
+    const bool reads = format == "STEP" || format == "IGES" || format == "BREP";
     try {
-        if (reads) return read(std::string(task), path, input);
+        if (reads) {
+            // "STEP 1.9p+4": 25 times as large as the file says.
+            double scale = 1.0;
+            if (format.size() < task.size())
+                std::from_chars(task.data() + format.size() + 1, task.data() + task.size(), scale,
+                                std::chars_format::hex);
+            return read(format, scale, path, input);
+        }
         if (task == "TRIANGULATE") return triangulation_answer(input);
         if (task == "FACES") return faces_answer(input);
         return std::nullopt;

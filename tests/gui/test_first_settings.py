@@ -180,3 +180,70 @@ assert len(job.Group) == 5
 """,
         window=True,
     )
+
+
+def test_loose_faces_are_flipped_in_the_panel(freecad):
+    freecad.run(
+        """
+from pivy import coin
+from support.hands import *
+from beltgrinding.gui.scene import stock_shell
+from beltgrinding.gui.scene.part_context import design_of
+from beltgrinding.objects import sides
+start()
+Gui.activateWorkbench("BeltGrindingWorkbench")
+doc = FreeCAD.newDocument("loose")
+doc.UndoMode = 1
+faces = [face.copy() for face in Part.makeBox(60, 40, 20).Faces]
+faces[5].reverse()  # the top, into the part
+part = doc.addObject("Part::Feature", "Skin")
+part.Shape = Part.Compound(faces)
+doc.recompute()
+Gui.Selection.addSelection(part, "Face6")
+menu("New job")
+job = doc.BeltGrindingJob
+
+def turned():
+    return sides.shape_with_sides(job, design_of(job)[0]).reversed()
+
+def told():
+    return [label.text() for label in visible(QtGui.QLabel) if "⚠" in label.text()]
+
+def stock_above():
+    doc.recompute()
+    settle()
+    box = coin.SoGetBoundingBoxAction(coin.SbViewportRegion(100, 100))
+    node = stock_shell.shell(job, 0.3)
+    node.ref()
+    box.apply(node)
+    found = box.getBoundingBox()  # a temporary would be gone
+    low, high = found.getMin().getValue()[2], found.getMax().getValue()[2]
+    return high > 20.1 and low > 19.9
+
+assert any("are turned against the file" in text for text in told()), told()
+assert turned()[5] and stock_above()
+press("Flip side")  # nothing is chosen in the list; the face is selected in the view
+assert job.FlipFaces == [(part, ("Face6",))], job.FlipFaces
+assert field("faces").item(0).text() == "Skin: Face6 (flipped)"
+assert any("are flipped as wanted" in text for text in told()), told()
+assert not turned()[5] and not stock_above()
+field("faces").item(0).setSelected(True)
+press("Flip side")
+assert job.FlipFaces == [] and field("faces").item(0).text() == "Skin: Face6"
+assert turned()[5] and stock_above()
+press("Cancel")
+assert doc.getObject("BeltGrindingJob") is None
+
+solid = doc.addObject("Part::Feature", "Solid")
+solid.Shape = Part.makeBox(10, 10, 10)
+doc.recompute()
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(solid, "Face6")
+menu("New job")
+press("Flip side")
+assert any("look out of it already" in l.text() for l in visible(QtGui.QLabel))
+assert doc.ActiveObject is not None
+press("Cancel")
+""",
+        window=True,
+    )

@@ -78,8 +78,9 @@ MISTAKES = {
         changed(design={"faces": [9]}),
         "job.no_such_face",
         {"key": "design.faces", "face": 9},
-        "design.faces: Es gibt keine Fläche 9; die Form hat 1. Hinweis: design hat eine offene Schale: Ihre "
-        "Normalen folgen der Orientierung der Flächen; umkehren, falls sie in das Teil zeigen",
+        "design.faces: Es gibt keine Fläche 9; die Form hat 1. Hinweis: design: Nachbarn und Umschlossenes "
+        "sagen nicht, welche Seite der losen Flächen 1 außen ist; sie ist, wie die Datei sie angibt. Ansehen, und "
+        "umkehren, falls sie in das Teil zeigen",
     ),
     "missing file": (
         changed(design={"brep": None, "file": "none.step"}),
@@ -224,15 +225,15 @@ def test_the_language_is_that_of_the_locale(variables, language, monkeypatch):
 def test_the_warnings_of_a_run_are_told_in_german_and_kept_as_facts(tmp_path, capsys):
     path = given(plate_job(), tmp_path)
     status, told = run(capsys, "--language", "de", "run", path, "-o", tmp_path / "out")
-    assert status == 0 and "Warnung: design hat eine offene Schale: Ihre Normalen" in told
+    assert status == 0 and "Warnung: design: Nachbarn und Umschlossenes sagen nicht" in told
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     told = [line for line in told.splitlines() if line.startswith("Warnung: ")]
     assert told == [f"Warnung: {text}" for text in warnings(summary, "de")]
     assert summary["warnings"] == warnings(summary, "en")
-    assert summary["warnings"][0].startswith("design has an open shell")
-    assert summary["warning_facts"][0]["code"] == "brep.open_shell"
+    assert summary["warnings"][0].startswith("design: neighbours and what they enclose do not")
+    assert summary["warning_facts"][0]["code"] == "brep.side_in_doubt"
     report(tmp_path / "out", language="de")
     html = (tmp_path / "out" / "report.html").read_text()
-    assert "design hat eine offene Schale" in html and "open shell" not in html
+    assert "Nachbarn und Umschlossenes" in html and "what they enclose" not in html
     del summary["warning_facts"]  # of a version before 0.2
     assert warnings(summary, "de") == summary["warnings"]

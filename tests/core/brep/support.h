@@ -19,8 +19,7 @@ inline HeightField sample(const Shape& shape, double spacing,
                           const std::vector<std::size_t>& faces = {}, bool flip = false) {
     SamplingOptions options;
     options.spacing = spacing;
-    options.flip_normals = flip;
-    return sample_faces(shape, faces, options);
+    return sample_faces(flip ? shape.flipped(true, {}) : shape, faces, options);
 }
 
 inline double total_area(const HeightField& field) {

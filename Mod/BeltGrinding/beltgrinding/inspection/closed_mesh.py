@@ -28,7 +28,6 @@ def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
         result.field,
         ground,
         deflection_mm,
-        flip_normals=design["flip_normals"],
         context=context,
     )
 

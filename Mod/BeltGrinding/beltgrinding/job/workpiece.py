@@ -15,20 +15,35 @@ class OwnBrep(str):
 
 
 def read_design(design, context=None):
-    """The design's core.Shape; a mesh becomes a faceted B-rep. Raises InputError, Cancelled."""
+    """The design's core.Shape, its loose faces flipped as the job says; a mesh becomes a faceted B-rep.
+    Raises InputError, Cancelled."""
     if "file" in design and Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
         mesh = core.read_mesh(design["file"], design["unit_mm"], context=context)
-        return core.shape_from_mesh(mesh, context)
-    return read_shape(design, "design", context)
+        shape = core.shape_from_mesh(mesh, context)
+    else:
+        shape = read_shape(design, "design", context)
+    return flipped(shape, design)
+
+
+def flipped(shape, design):
+    """A core.Shape with the loose faces flipped that a job's design names. Raises InputError."""
+    faces = design.get("flip_faces", [])
+    if not (faces or design.get("flip_normals")):
+        return shape
+    try:
+        return shape.flipped(design.get("flip_normals", False), [face - 1 for face in faces])
+    except InputError as error:
+        raise at_key(error, "design.flip_faces") from None
 
 
 def read_shape(data, name, context=None):
     """core.Shape of what a job gives as "brep" or as "file". Raises InputError, Cancelled."""
+    scale = data.get("unit_mm", 1.0)
     if "brep" not in data:
-        return core.Shape.read(data["file"], context)
+        return core.Shape.read(data["file"], context, scale)
     if isinstance(data["brep"], OwnBrep):
-        return core.Shape.from_brep(data["brep"], name)
-    return core.Shape.read_brep(data["brep"], name, context)
+        return core.Shape.from_brep(data["brep"], name, scale)
+    return core.Shape.read_brep(data["brep"], name, context, scale)
 
 
 def make_field(job, shape, warnings, context):
@@ -47,7 +62,6 @@ def make_field(job, shape, warnings, context):
         shape,
         [face - 1 for face in faces],
         job["sampling"]["spacing_mm"],
-        job["design"]["flip_normals"],
         job["sampling"]["depth_mm"],
         context=context,
     )

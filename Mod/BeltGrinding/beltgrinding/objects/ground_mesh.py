@@ -89,11 +89,11 @@ def make(obj):
         )
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.to_data(job, folder)
-        shape, flip = workpiece.read_design(data["design"]), data["design"]["flip_normals"]
+        shape = workpiece.read_design(data["design"])
     scale, deflection = colour_scale({"inspection": job_data.inspection(job)}), obj.Deflection.Value
 
     def work(_):
-        mesh = core.ground_mesh(shape, field, True, deflection, flip_normals=flip)
+        mesh = core.ground_mesh(shape, field, True, deflection)
         made = Mesh.Mesh()
         made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")
         return mesh, closed_mesh.summary(mesh), made, mesh.colours(*scale).tolist()

@@ -135,11 +135,31 @@ def face_numbers(job, obj, subs):
     """Numbers from 1, as ``design`` has them, of faces of one of the job's objects; none of another
     object. Raises InputError.
     """
+    return _numbers_in(job.DesignFaces, job.Label, obj, subs)
+
+
+def flipped_faces(job, links=None):
+    """Numbers from 1 of the faces that the job flips, as ``shape_of(links)`` has them (default: as
+    ``design``). Raises InputError.
+    """
+    links, numbers = job.DesignFaces if links is None else links, set()
+    for obj, subs in _by_object(job.FlipFaces):
+        numbers.update(_numbers_in(links, job.Label, obj, subs))
+    return sorted(numbers)
+
+
+def flips(job, links=None):
+    """The key design.flip_faces of a job; nothing where there are none."""
+    numbers = flipped_faces(job, links)
+    return {"flip_faces": numbers} if numbers else {}
+
+
+def _numbers_in(links, label, obj, subs):
     offset = 0
-    for one, _ in _by_object(job.DesignFaces):
+    for one, _ in _by_object(links):
         count = len(one.Shape.Faces)
         if one == obj:
-            return [number + offset for number in _face_numbers(job.Label, obj, subs, count)]
+            return [number + offset for number in _face_numbers(label, obj, subs, count)]
         offset += count
     return []
 

@@ -13,7 +13,7 @@ from ..job.workpiece import OwnBrep
 from . import bodies
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
-from .job_data import KEYS, child, children, design, required
+from .job_data import KEYS, child, children, design, flips, required
 from .properties import to_job
 from .robot_path import RobotPath
 from .stock import Stock
@@ -23,6 +23,7 @@ def without_geometry(job):
     """The job's settings, without shapes, meshes and poses."""
     data = {"schema": 1}
     to_job(job, KEYS, data)
+    data["design"].update(flips(job))
     data.update(required(job, BeltMachine, "belt machine").Proxy.to_job(child(job, BeltMachine)))
     return data
 

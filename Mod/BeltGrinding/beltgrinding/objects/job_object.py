@@ -25,6 +25,9 @@ class BeltGrindingJob(Proxy):
             obj.addProperty(
                 "App::PropertyLinkSubListGlobal", "DesignFaces", "Design", "the faces to be ground"
             )
+        if "FlipFaces" not in obj.PropertiesList:
+            text = "loose faces whose normals are reversed"
+            obj.addProperty("App::PropertyLinkSubListGlobal", "FlipFaces", "Design", text)
         add_keys(obj, KEYS)
 
     def onDocumentRestored(self, obj):
@@ -34,6 +37,13 @@ class BeltGrindingJob(Proxy):
         own = [member for member in obj.Group if member.getParentGroup() in (None, obj)]
         if len(own) < len(obj.Group):
             obj.Group = own
+
+    def onChanged(self, obj, name):
+        """Passes lie on the outside of the faces; the job depends on its paths, not they on it."""
+        if name in ("FlipFaces", "FlipNormals") and "Restore" not in obj.State:
+            for path in obj.Group:
+                if "PassCount" in path.PropertiesList:  # a RasterPath, whose module knows this one
+                    path.touch()
 
     def execute(self, obj):
         """Marks the result out of date or up to date, and recolours it; never simulates. Raises

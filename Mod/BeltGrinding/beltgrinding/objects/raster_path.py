@@ -113,6 +113,8 @@ def _inputs(obj):
     data["belt_machine"].pop("belt", None)  # its wear moves no pass
     shape, numbers = job_data.shape_of(obj.Faces, obj.Label)
     data["design"]["faces"] = numbers
+    if type_of(group) == job_object.BeltGrindingJob.TYPE:
+        data["design"].update(job_data.flips(group, obj.Faces))
     data["programs"] = [{"poses": []}]
     settings = {}
     to_job(obj, KEYS, settings)

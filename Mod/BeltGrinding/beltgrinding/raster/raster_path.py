@@ -123,9 +123,8 @@ def surfaces(job, shape, faces, spacing, settings, warnings, context):
     """What passes are laid on: each face by itself for u and v, all together for a direction. List
     of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
     """
-    flip = job["design"]["flip_normals"]
     field, report = core.sample_faces(
-        shape, faces, spacing, flip, 1.0, 0, context, settings["along"] != "direction"
+        shape, faces, spacing, 1.0, 0, context, settings["along"] != "direction"
     )
     warnings += report["warnings"]
     points, normals, triangles = field.points, field.normals.astype(float), field.triangles

@@ -78,7 +78,7 @@ def datum(result, faces=None, context=None):
     points, normals = [], []
     fixed = [face for face in chosen if face not in ground]
     if fixed:
-        field, _ = core.sample_faces(shape, fixed, spacing, design["flip_normals"])
+        field, _ = core.sample_faces(shape, fixed, spacing)
         points.append(np.array(field.points))
         normals.append(np.array(field.normals, dtype=float))
     predicted = [face for face in chosen if face in ground]

@@ -26,14 +26,16 @@ class Shape {
     /// allows of time (BELTGRINDING_CAD_TIME_LIMIT_S, 900 s if unset), of memory
     /// (BELTGRINDING_CAD_MEMORY_LIMIT_MB, half of what this process may use), or of what the reader
     /// hands over (BELTGRINDING_CAD_ANSWER_LIMIT_MB, half of that); Cancelled within 0.1 s.
-    static Shape read(const std::string& path, const RunContext& context = {});
+    /// `scale`: the shape is made so many times larger than the file says.
+    static Shape read(const std::string& path, const RunContext& context = {}, double scale = 1);
     /// The same for the text of a BREP file that came from elsewhere. `name` stands for the shape
     /// in messages.
     static Shape read_brep(const std::string& text, const std::string& name = "shape",
-                           const RunContext& context = {});
+                           const RunContext& context = {}, double scale = 1);
     /// Reads the text that `BRepTools::Write` and FreeCAD's `exportBrepToString` make, in this
     /// process: of a shape that is sound, for a damaged one can end it.
-    static Shape from_brep(const std::string& text, const std::string& name = "shape");
+    static Shape from_brep(const std::string& text, const std::string& name = "shape",
+                           double scale = 1);
     /// The text that `from_brep` reads, without triangulation.
     std::string write_brep() const;
     /// Number of faces.
@@ -48,8 +50,16 @@ class Shape {
     Box extents() const;
     /// By OpenCASCADE's check. Its mesher may not end on the faults of a shape that is not.
     bool valid() const;
-    /// Things the user should know: not valid, open shell, extents beyond 10 m or below 0.1 mm
-    /// (a unit mistake), zero-area faces. Each is one sentence that names the face.
+    /// For each face, whether its outside is against its orientation. A solid's faces look out of
+    /// it; loose ones as their neighbours and what they enclose tell, as given where nothing tells.
+    /// Throws Cancelled.
+    std::vector<char> reversed(const RunContext& context = {}) const;
+    /// The same shape with its loose faces (`all`), and then those of `faces` (from 0), flipped.
+    /// Throws InputError for a face that is not there or bounds a solid.
+    Shape flipped(bool all, const std::vector<std::size_t>& faces) const;
+    /// Things the user should know: not valid, extents beyond 10 m or below 0.1 mm (a unit
+    /// mistake), zero-area faces, loose faces that are turned, in doubt, or contrary. Each is one
+    /// sentence that names the face.
     std::vector<Fact> warnings() const;
 
     /// For this room: OpenCASCADE's data.
@@ -58,7 +68,10 @@ class Shape {
     explicit Shape(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
   private:
+    std::vector<Fact> side_warnings(const RunContext& context) const;
+
     std::shared_ptr<const Impl> impl_;
+    std::shared_ptr<const std::vector<char>> flipped_;  ///< by face; null: none
 };
 
 /// The program that reads foreign files and triangulates, in a process of its own for each call:
@@ -70,7 +83,6 @@ void set_cad_reader(const std::string& program);
 /// How faces are sampled.
 struct SamplingOptions {
     double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions
-    bool flip_normals = false;  ///< for loose faces: reverse their normals
     double depth = 1.0;         ///< mm, HeightField::depth
     std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of what may be used
     bool parameters = false;    ///< fill SamplingReport::parameters

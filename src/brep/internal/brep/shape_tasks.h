@@ -13,6 +13,10 @@ namespace beltgrinding {
 /// The shape that `BRepTools::Write` wrote; null if the text is no BREP.
 TopoDS_Shape read_brep_text(const std::string& text);
 
+/// `shape` made `scale` times larger, faces in the same order; itself for 1. Throws
+/// Standard_Failure.
+TopoDS_Shape scaled_shape(const TopoDS_Shape& shape, double scale);
+
 /// In the reader: heals a shape that was read (`add_missing_curves`), asks of it in this process
 /// all that the host will want to know, since OpenCASCADE's check, its integrals and its mesher
 /// fail on damaged shapes as its readers do, and packs both. Throws InputError if it has no faces,

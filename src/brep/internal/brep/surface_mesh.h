@@ -12,7 +12,6 @@ struct SurfaceMeshOptions {
     double deflection = 0.05;             ///< mm, chord error of the faces that are not fine
     double spacing = 0.5;                 ///< mm, of the vertices on fine faces and their borders
     std::vector<std::size_t> fine_faces;  ///< from 0
-    bool flip_normals = false;            ///< as in SamplingOptions: for loose faces
 };
 
 /// Triangulates `shape` by OpenCASCADE to the deflection, one triangulation for all faces so that

@@ -3,7 +3,7 @@
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
-from ...objects import first_settings, job_data
+from ...objects import first_settings, job_data, sides
 from ...objects.belt_machine import BeltMachine
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
@@ -177,11 +177,15 @@ class JobPanel(Panel):
         for name, text, action in (
             ("addFaces", translate("BeltGrinding", "Add selected"), self.add_selected),
             ("removeFaces", translate("BeltGrinding", "Remove"), self.remove),
+            ("flipFaces", translate("BeltGrinding", "Flip side"), self.flip),
         ):
             button = QtGui.QPushButton(text)
             button.setObjectName(name)
             button.clicked.connect(action)
             row.addWidget(button)
+        button.setToolTip(
+            translate("BeltGrinding", "Turns loose faces to be ground from their other side")
+        )
         layout.addLayout(row)
         self.fill()
         return box
@@ -194,7 +198,8 @@ class JobPanel(Panel):
         self.list.clear()
         for obj, sub in self.pairs():
             everything = translate("BeltGrinding", "all faces")
-            self.list.addItem(f"{obj.Label}: {sub or everything}")
+            flipped = translate("BeltGrinding", "flipped") if (obj, sub) in self.flips() else ""
+            self.list.addItem(f"{obj.Label}: {sub or everything}" + (flipped and f" ({flipped})"))
 
     def add_selected(self):
         """Adds the faces that are selected in the 3D view."""
@@ -211,6 +216,38 @@ class JobPanel(Panel):
     def remove(self):
         rows = {index.row() for index in self.list.selectedIndexes()}
         self.set_pairs([pair for i, pair in enumerate(self.pairs()) if i not in rows])
+
+    def flips(self):
+        """[(object, face name or '' for all)] of the faces that are flipped."""
+        return [(obj, sub) for obj, subs in self.obj.FlipFaces for sub in (subs or ("",))]
+
+    def flip(self):
+        """Flips the loose ones of the faces that are chosen in the list, or else in the 3D view."""
+        pairs, rows = self.pairs(), sorted(index.row() for index in self.list.selectedIndexes())
+        chosen = [pairs[row] for row in rows] or [
+            (one.Object, sub)
+            for one in Gui.Selection.getSelectionEx(self.document.Name)
+            for sub in one.SubElementNames
+            if (one.Object, sub) in pairs or (one.Object, "") in pairs
+        ]
+        found = []
+        for obj, sub in chosen:
+            loose = [f"Face{i}" for i in sides.loose_faces(obj.Shape)]
+            found += [(obj, face) for face in loose if sub in (face, "")]
+        if not found:
+            self.tell(
+                translate(
+                    "BeltGrinding",
+                    "Choose loose faces in the list; faces of a solid look out of it already.",
+                ),
+                True,
+            )
+            return
+        flips = [pair for pair in self.flips() if pair not in found]
+        flips += [pair for pair in found if pair not in self.flips()]
+        self.obj.FlipFaces = [(obj, (sub,)) for obj, sub in flips]
+        self.fill()
+        self.estimate()
 
     def set_pairs(self, pairs):
         self.obj.DesignFaces = [(obj, (sub,)) for obj, sub in pairs]
@@ -276,6 +313,7 @@ class JobPanel(Panel):
                     "So many samples take some {:.1f} GB, and minutes; {:.2g} mm would be {:,.0f}.",
                 ).format(count * SAMPLE_BYTES / 1e9, (area / MANY * 2) ** 0.5, MANY / 2)
             )
+        lines += [f"⚠ {error_text(note)}" for note in sides.notes(self.obj)]
         if self.first is not None:
             lines += [f"⚠ {error_text(note)}" for note in self.first["notes"]]
             if "feed_mm_s" in self.first and self._numbers() != self.chosen:

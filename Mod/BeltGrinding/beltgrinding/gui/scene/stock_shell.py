@@ -4,6 +4,7 @@ import numpy as np
 from pivy import coin
 
 from ...engine import InputError
+from ...objects import sides
 from .part_context import design_of, tessellated
 from .shapes3d import material, separator, triangles, unpickable
 
@@ -22,11 +23,18 @@ def shell(job, allowance):
         return root
     outwards = _outwards(shape)
     faces_of_shape = shape.Faces
+    loose = [n for n in numbers if faces_of_shape[n - 1].hashCode() not in outwards]
+    try:
+        reversed_faces = sides.shape_with_sides(job, shape).reversed() if loose else ()
+    except InputError:  # the job's own check tells
+        return root
     for number in numbers:
         face = faces_of_shape[number - 1]
         points, faces = tessellated(face, shape)
         if len(faces):
-            side = outwards.get(face.hashCode(), -1.0 if job.FlipNormals else 1.0)
+            side = outwards.get(face.hashCode())
+            if side is None:
+                side = -1.0 if reversed_faces[number - 1] else 1.0
             points, faces = thickened(points, faces, side * allowance)
             root.addChild(
                 separator(material(COLOUR, SEE_THROUGH), triangles(points, faces, CREASE))
@@ -35,8 +43,7 @@ def shell(job, allowance):
 
 
 def _outwards(shape):
-    """{hash of a face: 1, or -1 where its solid is inside out} of the faces of a shape's solids; *flip normals*
-    is for the others."""
+    """{hash of a face: 1, or -1 where its solid is inside out} of the faces of a shape's solids."""
     return {
         face.hashCode(): -1.0 if solid.Volume < 0.0 else 1.0
         for solid in shape.Solids

@@ -64,7 +64,7 @@ class JobView(View):
     )
 
     def updateData(self, obj, name):
-        if name in ("DesignFaces", "FlipNormals", "Group"):
+        if name in ("DesignFaces", "FlipFaces", "FlipNormals", "Group"):
             show_stock(obj)
 
     def panel(self, obj):

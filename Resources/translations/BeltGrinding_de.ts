@@ -232,10 +232,6 @@
         <translation>direction: die Richtung der Bahnen, in den Koordinaten des Solls</translation>
     </message>
     <message>
-        <source>distance between neighbouring samples, mm</source>
-        <translation>Abstand benachbarter Abtastpunkte, mm</translation>
-    </message>
-    <message>
         <source>distance of neighbouring passes on the surface, at most, mm; 0: step_over_share of the contact&apos;s width</source>
         <translation>Abstand benachbarter Bahnen auf der Oberfläche, höchstens, mm; 0: step_over_share der Kontaktbreite</translation>
     </message>
@@ -1106,6 +1102,14 @@
     <message>
         <source>reverse the normals of all loose faces, which look outwards as their neighbours and what they enclose tell, or else as the file has them</source>
         <translation>die Normalen aller losen Flächen umkehren; sie zeigen nach außen, wie Nachbarn und Umschlossenes es sagen, sonst wie in der Datei</translation>
+    </message>
+    <message>
+        <source>distance between neighbouring samples</source>
+        <translation>Abstand benachbarter Stützpunkte</translation>
+    </message>
+    <message>
+        <source>distance between neighbouring samples, mm; 0: chosen by the faces, the wheel&apos;s contact and the tolerance</source>
+        <translation>Abstand benachbarter Stützpunkte, mm; 0: gewählt nach Flächen, Kontakt der Scheibe und Toleranz</translation>
     </message>
 </context>
 <context>
@@ -3327,6 +3331,14 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>flipped</source>
         <translation>umgekehrt</translation>
+    </message>
+    <message>
+        <source>chosen by faces, wheel and tolerance</source>
+        <translation>gewählt nach Flächen, Scheibe und Toleranz</translation>
+    </message>
+    <message>
+        <source>spacing chosen</source>
+        <translation>Abstand gewählt</translation>
     </message>
 </context>
 <context>

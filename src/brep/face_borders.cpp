@@ -133,8 +133,8 @@ void match_free_edges(const std::vector<const Use*>& free, double tolerance,
                 continue;
             const bool first = edges[i].length <= edges[j].length;
             const Use &a = *edges[i].use, &b = *edges[j].use;
-            const auto [same, against] = first ? along(a.line, b.line, tolerance)
-                                               : along(b.line, a.line, tolerance);
+            const auto [same, against] =
+                first ? along(a.line, b.line, tolerance) : along(b.line, a.line, tolerance);
             if (!(std::max(same, against) > kLeastLength * tolerance)) continue;
             borders.push_back({std::min(a.face, b.face), std::max(a.face, b.face),
                                std::max(same, against), against > same, true});
@@ -157,9 +157,8 @@ std::vector<FaceBorder> common_borders(const TopoDS_Shape& meshed, double tolera
                                    uses[i].forward != uses[j].forward, uses.size() == 2});
     }
     match_free_edges(free, tolerance, borders);
-    std::stable_sort(
-        borders.begin(), borders.end(),
-        [](const FaceBorder& a, const FaceBorder& b) { return a.length > b.length; });
+    std::stable_sort(borders.begin(), borders.end(),
+                     [](const FaceBorder& a, const FaceBorder& b) { return a.length > b.length; });
     return borders;
 }
 

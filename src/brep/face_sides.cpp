@@ -202,7 +202,8 @@ FaceSides face_sides(const TopoDS_Shape& meshed, const std::vector<char>& loose,
         if (!neighbours.join(border.a, border.b, border.alike)) sides.contrary.push_back(border);
     }
     std::vector<double> own(count, 0.0);  // length of a face's borders with loose ones, mm
-    for (const FaceBorder& border : borders) own[border.a] += border.length, own[border.b] += border.length;
+    for (const FaceBorder& border : borders)
+        own[border.a] += border.length, own[border.b] += border.length;
     std::erase_if(sides.contrary, [&](const FaceBorder& border) {
         return border.length < kContrary * std::min(own[border.a], own[border.b]);
     });

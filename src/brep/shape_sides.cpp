@@ -114,9 +114,7 @@ std::vector<Fact> Shape::side_warnings(const RunContext& context) const {
     const auto tell = [&](const char* code, const char* text,
                           const std::vector<std::size_t>& faces) {
         if (!faces.empty())
-            found.push_back({code,
-                             text,
-                             {{"shape", impl_->name}, {"faces", face_list(faces)}}});
+            found.push_back({code, text, {{"shape", impl_->name}, {"faces", face_list(faces)}}});
     };
     tell("brep.turned",
          "{shape}: the loose faces {faces} are turned against the file, as their neighbours and "

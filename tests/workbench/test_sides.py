@@ -32,9 +32,12 @@ def job_of(part):
 def brep(freecad, tmp_path):
     """The text of the loose block."""
     path = tmp_path / "loose.brep"
-    freecad.run(LOOSE + f"""
+    freecad.run(
+        LOOSE
+        + f"""
 loose_block(FreeCAD.newDocument("loose")).Shape.exportBrep({str(path)!r})
-""")
+"""
+    )
     return path
 
 
@@ -65,7 +68,9 @@ def test_a_unit_is_applied_to_every_kind_of_file(brep):
 
 
 def test_in_a_document_they_are_flipped_per_face(freecad):
-    freecad.run(LOOSE + """
+    freecad.run(
+        LOOSE
+        + """
 doc = FreeCAD.newDocument("sides")
 part = loose_block(doc)
 job = job_of(part)
@@ -86,4 +91,5 @@ job.FlipFaces = []
 assert side() and doc.RasterPath.Inputs == digest
 job.FlipNormals = True
 assert not side()
-""")
+"""
+    )

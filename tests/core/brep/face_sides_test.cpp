@@ -1,3 +1,4 @@
+#include <gtest/gtest.h>
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -7,7 +8,6 @@
 #include <BRep_Builder.hxx>
 #include <TopoDS_Compound.hxx>
 #include <gp_Pln.hxx>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -182,8 +182,8 @@ TEST(ScaledShape, IsSoManyTimesLarger) {
         ASSERT_EQ(shape.face_count(), 6u);
         EXPECT_NEAR(shape.extents().sizes().x(), 30 * 25.4, 1e-3);
         for (std::size_t face = 0; face < 6; ++face)
-            EXPECT_NEAR(shape.face_area(face),
-                        25.4 * 25.4 * make_shape(box, "box").face_area(face), 1e-6);
+            EXPECT_NEAR(shape.face_area(face), 25.4 * 25.4 * make_shape(box, "box").face_area(face),
+                        1e-6);
     }
     for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
         EXPECT_THROW(Shape::from_brep(text, "box", scale), InputError);

@@ -42,8 +42,10 @@ def _report(result, arguments):
     summary = result.summary
     arguments.messages.print_warnings(summary["warnings"])
     deviation = summary["deviation_mm"]
+    chosen = ", chosen" if summary["spacing_chosen"] else ""
     print_text(
-        f"{summary['samples']} samples, {summary['steps']} steps, "
+        f"{summary['samples']} samples ({summary['spacing_mm']:.3g} mm apart{chosen}), "
+        f"{summary['steps']} steps, "
         f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
         f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "
         f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "

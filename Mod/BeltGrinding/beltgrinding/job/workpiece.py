@@ -5,6 +5,7 @@ from pathlib import Path
 from ..base import frames
 from ..base.files import at_key
 from ..engine import InputError, core
+from . import spacing
 
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 
@@ -46,8 +47,8 @@ def read_shape(data, name, context=None):
     return core.Shape.read_brep(data["brep"], name, context, scale)
 
 
-def make_field(job, shape, warnings, context):
-    """The height field of the job's faces, without stock."""
+def check_faces(job, shape):
+    """The job's list of faces, from 1. Raises InputError for one that the shape lacks."""
     faces = job["design"]["faces"]
     for face in faces:
         if face > shape.face_count:
@@ -58,6 +59,14 @@ def make_field(job, shape, warnings, context):
                 face=face,
                 count=shape.face_count,
             )
+    return faces
+
+
+def make_field(job, shape, warnings, context):
+    """The height field of the job's faces, without stock."""
+    faces = check_faces(job, shape)
+    if job["sampling"]["spacing_mm"] == 0:
+        job, _ = spacing.settled(job, shape, warnings, context)
     field, report = core.sample_faces(
         shape,
         [face - 1 for face in faces],

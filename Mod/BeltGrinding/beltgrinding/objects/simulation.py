@@ -22,6 +22,7 @@ OUTPUTS = (
     Output("ProcessTime", "Float", "Result", "what the robot takes, s"),
     Output("WallTime", "Float", "Result", "what the simulation took, s"),
     Output("Samples", "Integer", "Result", "of the height field"),
+    Output("SampleSpacing", "Length", "Result", "distance between neighbouring samples"),
     Output("Steps", "Integer", "Result", "of the simulation"),
     Output("MissedRays", "Integer", "Result", "samples over which no stock was found"),
     Output(
@@ -130,6 +131,7 @@ def _store(obj, result, files):
     # The wall time tells results apart: rounded, it comes back from a file as it was.
     obj.ProcessTime, obj.WallTime = s["process_time_s"], round(sum(s["wall_time_s"].values()), 6)
     obj.Samples, obj.Steps = s["samples"], s["steps"]
+    obj.SampleSpacing = result.field.spacing
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
     obj.Events = [describe(event, result.job) for event in result.events]
     obj.Warnings = s["warnings"]

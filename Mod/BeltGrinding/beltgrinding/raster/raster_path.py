@@ -11,7 +11,7 @@ import numpy as np
 from ..base import schemas
 from ..base.files import in_file
 from ..engine import InputError, core
-from ..job import engine_input, load as jobs
+from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
 from . import passes
@@ -25,6 +25,7 @@ WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
 PARALLEL = 0.05  # sine of an angle below which two directions count as one
 TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
+MOST_POSES = 300_000
 UNCOVERED = 0.01  # of the area; more is warned of
 
 
@@ -66,6 +67,7 @@ def raster(job, settings, context=None):
     chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)
     faces = _checked_faces(chosen, shape)
     area = sum(shape.face_area(face) for face in faces)
+    _check_size(job, shape, faces, settings, warnings, context)
     spacing = settings["sampling_mm"] or _sampling(area, settings)
     sheets = surfaces(job, shape, faces, spacing, settings, warnings, context)
     step_over, width = settings["step_over_mm"], None
@@ -90,6 +92,25 @@ def raster(job, settings, context=None):
         step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
     )
     return result
+
+
+def _check_size(job, shape, faces, settings, warnings, context):
+    """Tells of faces in another unit, probably, before anything is computed on them."""
+    seen = sampling.size(job, shape, faces, context)
+    warnings += sampling.unit_doubts(seen)
+    if not (settings["step_over_mm"] or seen["plane"]):
+        return  # told later: a rigid tool has no contact
+    step_over = settings["step_over_mm"] or settings["step_over_share"] * seen["plane"]
+    if seen["area"] / (step_over * settings["max_distance_mm"]) > MOST_POSES:
+        raise InputError(
+            "raster.too_large",
+            "the faces are {size:.4g} mm large: passes {step_over:.3g} mm apart have more than {poses} poses. "
+            "Check the unit (design.unit_mm), choose fewer faces, or enlarge step-over and distance of the "
+            "poses",
+            size=seen["size"],
+            step_over=step_over,
+            poses=MOST_POSES,
+        )
 
 
 def _checked_faces(numbers, shape):

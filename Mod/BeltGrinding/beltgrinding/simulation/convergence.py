@@ -15,6 +15,8 @@ import numpy as np
 
 from ..base.messages import fact_data
 from ..engine import InputError, core
+from ..job import spacing
+from ..job.workpiece import check_faces, read_design
 from . import run as runs
 from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
 
@@ -45,6 +47,10 @@ def converge(job, context=None):
     Takes about ten times as long as the job. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
+    if job["sampling"]["spacing_mm"] == 0:
+        shape = read_design(job["design"], context.part(0.0, 0.0))
+        check_faces(job, shape)
+        job, _ = spacing.settled(job, shape, [], context.part(0.0, 0.0))
     whole, so_far, levels, result, notes = sum(COST.values()) + 2.0, 0.0, {}, None, []
     for level in ("given", "coarse", "fine"):
         end = so_far + COST[level]

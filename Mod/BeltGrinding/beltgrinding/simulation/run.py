@@ -9,11 +9,11 @@ from ..cell import collision, events as event_lists, motions, reach
 from ..cell.tool_path import tool_path
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
-from ..job import inputs, law as laws
+from ..job import inputs, law as laws, spacing
 from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
-from ..job.workpiece import apply_stock, make_field, read_design
+from ..job.workpiece import apply_stock, check_faces, make_field, read_design
 from . import idle
 from .result import Result
 
@@ -94,6 +94,8 @@ def _run(job, context, warnings, recording, phases):
     shape = read_design(job["design"], context)
     warnings += shape.warnings()
     phases.end("read")
+    check_faces(job, shape)
+    job, chosen = spacing.settled(job, shape, warnings, context.part(0.0, 0.0))
     field = make_field(job, shape, warnings, context.part(0.0, 0.2))
     phases.end("sample")
     apply_stock(field, job["stock"], warnings, context.part(0.2, 0.27))
@@ -133,6 +135,8 @@ def _run(job, context, warnings, recording, phases):
     summary = summarise(job, field, events)
     phases.end("inspect")
     summary.update(
+        spacing_mm=job["sampling"]["spacing_mm"],
+        spacing_chosen=chosen,
         steps=len(steps["time"]),
         process_time_s=process_time,
         wall_time_s=phases.seconds,

@@ -106,7 +106,9 @@ class JobPanel(Panel):
 
     def _sampling_text(self):
         lower, upper = (f"{v.Value:+g}" for v in (self.obj.ToleranceLower, self.obj.ToleranceUpper))
-        return f"{lower} … {upper} mm; {self.obj.Spacing.UserString}"
+        spacing = self.obj.Spacing
+        chosen = translate("BeltGrinding", "spacing chosen")
+        return f"{lower} … {upper} mm; {spacing.UserString if spacing.Value > 0 else chosen}"
 
     def _law_text(self):
         return f"K = {self.obj.LawCoefficient:.3g} mm²/N" if self.obj.Law != "geometric" else ""
@@ -301,8 +303,13 @@ class JobPanel(Panel):
         seen = any(obj.ViewObject.Visibility for obj, _ in self.obj.DesignFaces)
         self.tint.show([shape.Faces[number - 1] for number in numbers] if seen else [])
         area = sum(shape.Faces[number - 1].Area for number in numbers)
-        count = area / self.obj.Spacing.Value**2
-        self.count.setText(translate("BeltGrinding", "about {:,.0f} samples").format(count))
+        if self.obj.Spacing.Value > 0:
+            count = area / self.obj.Spacing.Value**2
+            text = translate("BeltGrinding", "about {:,.0f} samples").format(count)
+        else:
+            count = 0
+            text = translate("BeltGrinding", "chosen by faces, wheel and tolerance")
+        self.count.setText(text)
         lines = [
             translate("BeltGrinding", "Faces: {}. Area: {:,.0f} mm².").format(len(numbers), area)
         ]
@@ -336,8 +343,8 @@ class JobPanel(Panel):
         self.tell("\n".join(lines), count > MANY)
 
     def check(self):
-        if self.obj.Spacing.Value <= 0:
-            raise InputError("gui.spacing", "The sample spacing must be positive.")
+        if self.obj.Spacing.Value < 0:
+            raise InputError("gui.spacing", "The sample spacing must not be negative.")
         check_tolerance(self.obj)
         job_data.design(self.obj)
 

@@ -1,0 +1,274 @@
+"""How far apart the samples of a job must lie: by its faces, its wheel and its tolerance.
+
+Rules of thumb, each from what would be missed otherwise: a contact that lies on too few samples, a face
+that has too few, a curved face whose samples' chords are far from it.
+"""
+
+import math
+
+import numpy as np
+
+from ..engine import InputError, core
+from . import engine_input
+
+LOOK, GLANCE = 4000, 400  # samples of a first look at the faces, and of one at their size
+MOST = 400_000  # samples, of a spacing that is chosen
+COARSEST = 0.5  # mm, of a spacing that is chosen
+FINEST = 0.01
+ACROSS_CONTACT, ACROSS_FACE = 12, 4  # spacings, of a spacing that is chosen
+LEAST_ACROSS_CONTACT, LEAST_ACROSS_FACE = 6, 3  # fewer are warned of
+CHORD = 0.1  # of the tolerance's band: between the surface and the chord from sample to sample
+LEAST_CHORD = 0.5  # more is warned of
+SHARE = 0.98  # of the area: what is more curved, or narrower, is a fillet or a sliver
+TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or larger
+CELLS, MOST_CELLS = 6, 80  # of the contact's grid, across and along the contact
+ROUNDS = 3  # of finer grids, until it has them
+FLAT = 1e4  # mm; a larger radius of curvature is a plane
+WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
+
+
+def settled(job, shape, told, context=None):
+    """(the job with a spacing: the one that it gives, or else the chosen one; whether it was chosen). What is
+    too coarse is added to the list ``told``, as Facts. Raises InputError, Cancelled."""
+    faces = [face - 1 for face in job["design"]["faces"]] or range(shape.face_count)
+    seen = look(job, shape, faces, context)
+    given = job["sampling"]["spacing_mm"]
+    spacing = given or chosen(job, seen)
+    told += warnings(job, seen, spacing)
+    return {**job, "sampling": {**job["sampling"], "spacing_mm": spacing}}, given == 0
+
+
+def look(job, shape, faces, context=None):
+    """What the rules need to know of the faces (from 0) of a core.Shape: dict(area mm2, size mm (largest
+    extent), radius mm (of curvature; inf: plane), width mm (of the narrowest face that counts), narrow: that
+    face from 1, length, breadth mm: the contact's extents on a place as curved as a quarter of the area,
+    plane mm: the larger one on a plane; None for a rigid tool).
+    """
+    area = _area(shape, faces)
+    spacing = math.sqrt(area / LOOK)
+    field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
+    bend, weights = curvatures(field)
+    most = _quantile(np.abs(bend).max(axis=1), weights)
+    widths = _widths(field)
+    order = sorted(widths, key=lambda face: -widths[face][0])
+    counted = np.searchsorted(np.cumsum([widths[face][1] for face in order]), SHARE * area)
+    narrow = order[min(counted, len(order) - 1)]
+    convex = _quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)
+    length, breadth = _contact(job, convex) or (None, None)
+    plane = _contact(job, 0.0)
+    return {
+        "area": area,
+        "size": float(np.ptp(field.points, axis=0).max()),
+        "radius": 1.0 / most if most * FLAT > 1.0 else math.inf,
+        "width": widths[narrow][0],
+        "narrow": narrow + 1,
+        "length": length,
+        "breadth": breadth,
+        "plane": max(plane) if plane else None,
+    }
+
+
+def size(job, shape, faces, context=None):
+    """The size, area and plane of ``look``, which cost less."""
+    area = _area(shape, faces)
+    field, _ = core.sample_faces(shape, list(faces), math.sqrt(area / GLANCE), context=context)
+    plane = _contact(job, 0.0)
+    return {
+        "area": area,
+        "size": float(np.ptp(field.points, axis=0).max()),
+        "plane": max(plane) if plane else None,
+    }
+
+
+def _area(shape, faces):
+    area = sum(shape.face_area(face) for face in faces)
+    if not area > 0:
+        raise InputError("job.no_area", "none of the chosen faces has an area")
+    return area
+
+
+def unit_doubts(seen):
+    """Facts of faces, by ``look`` or ``size``, that are too small for their unit to be right."""
+    if seen["plane"] is None or seen["size"] >= WITHIN * seen["plane"]:
+        return []
+    return [
+        core.Fact(
+            "job.within_contact",
+            "the faces are only {size:.3g} mm large, the contact of the wheel on a plane {contact:.3g} mm: "
+            "check the unit (design.unit_mm)",
+            size=seen["size"],
+            contact=seen["plane"],
+        )
+    ]
+
+
+def chosen(job, seen):
+    """The spacing in mm that the rules give; ``seen``: by ``look``. Raises InputError for faces that are
+    too large for the contact to be seen."""
+    lower, upper = job["inspection"]["tolerance_mm"]
+    wanted = [COARSEST, seen["width"] / ACROSS_FACE]
+    if seen["length"] is not None:
+        wanted.append(min(seen["length"], seen["breadth"]) / ACROSS_CONTACT)
+    if upper > lower:
+        wanted.append(math.sqrt(8.0 * seen["radius"] * CHORD * (upper - lower)))
+    least = max(math.sqrt(seen["area"] / MOST), FINEST)
+    across = min(seen["length"] or math.inf, seen["breadth"] or math.inf)
+    if least > across:
+        raise InputError(
+            "job.too_large_for_contact",
+            "{key}: the faces are {size:.4g} mm large, the contact of the wheel {contact:.3g} mm: it takes "
+            "more than {most} samples to see it there. Check the unit (design.unit_mm), choose fewer faces, "
+            "or give a spacing",
+            key="sampling.spacing_mm",
+            size=seen["size"],
+            contact=across,
+            most=MOST,
+        )
+    return float(f"{max(min(wanted), least):.2g}")
+
+
+def warnings(job, seen, spacing):
+    """Facts of what is too coarse, or of another unit probably, at a spacing in mm."""
+    found = unit_doubts(seen)
+    lower, upper = job["inspection"]["tolerance_mm"]
+    if seen["length"] is not None:
+        across = min(seen["length"], seen["breadth"])
+        if spacing * LEAST_ACROSS_CONTACT > across:
+            found.append(
+                core.Fact(
+                    "job.few_samples_in_contact",
+                    "the samples are {spacing:.3g} mm apart, the contact is {contact:.3g} mm across: what is "
+                    "removed may be wrong by far; take {wanted:.2g} mm or less for sampling.spacing_mm",
+                    spacing=spacing,
+                    contact=across,
+                    wanted=across / ACROSS_CONTACT,
+                )
+            )
+        cell = max(job["belt_machine"]["contact_spacing_mm"], 1.5 * spacing)
+        if cell * LEAST_ACROSS_CONTACT / 2.0 > across:
+            found.append(
+                core.Fact(
+                    "job.few_cells_in_contact",
+                    "the cells of the contact's grid are {cell:.3g} mm wide, the contact is {contact:.3g} mm "
+                    "across; take {wanted:.2g} mm or less for belt_machine.contact_spacing_mm",
+                    cell=cell,
+                    contact=across,
+                    wanted=across / LEAST_ACROSS_CONTACT,
+                )
+            )
+    if spacing * LEAST_ACROSS_FACE > seen["width"]:
+        found.append(
+            core.Fact(
+                "job.few_samples_on_face",
+                "the samples are {spacing:.3g} mm apart, Face{face} is {width:.3g} mm wide; take {wanted:.2g} "
+                "mm or less for sampling.spacing_mm",
+                spacing=spacing,
+                face=seen["narrow"],
+                width=seen["width"],
+                wanted=seen["width"] / ACROSS_FACE,
+            )
+        )
+    chord = spacing**2 / (8.0 * seen["radius"])
+    if chord > LEAST_CHORD * (upper - lower) > 0:
+        found.append(
+            core.Fact(
+                "job.coarse_chords",
+                "the samples are {spacing:.3g} mm apart on a radius of {radius:.3g} mm: between them the "
+                "surface bulges by {chord:.2g} mm; take {wanted:.2g} mm or less for sampling.spacing_mm",
+                spacing=spacing,
+                radius=seen["radius"],
+                chord=chord,
+                wanted=math.sqrt(8.0 * seen["radius"] * CHORD * (upper - lower)),
+            )
+        )
+    return found
+
+
+def curvatures(field):
+    """(principal curvatures (m, 2) in 1/mm, positive where the surface is convex; areas (m,) in mm2) of the
+    triangles of a core.HeightField, by how the normals change along their edges."""
+    corners = field.triangles
+    p, n = field.points[corners], field.normals.astype(float)[corners]
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    cross = np.cross(u, v)
+    size, length = np.linalg.norm(cross, axis=1), np.linalg.norm(u, axis=1)
+    sound = size > 1e-3 * np.maximum(length, np.linalg.norm(v, axis=1)) ** 2  # no slivers
+    u, v, n, cross, size, length = (a[sound] for a in (u, v, n, cross, size, length))
+    first = u / length[:, None]
+    second = np.cross(cross / size[:, None], first)
+    axes = np.stack([first, second], axis=1)  # (m, 2, 3)
+    edges = np.stack([u, v], axis=2)
+    turns = np.stack([n[:, 1] - n[:, 0], n[:, 2] - n[:, 0]], axis=2)
+    shape = (axes @ turns) @ np.linalg.inv(axes @ edges)
+    shape = 0.5 * (shape + shape.transpose(0, 2, 1))
+    return np.linalg.eigvalsh(shape), 0.5 * size
+
+
+def _widths(field):
+    """{face from 0: (mm, mm2)}: twice the area over the border's length, as of a strip; and the area."""
+    corners = field.triangles
+    p = field.points[corners]
+    areas = 0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    _, first, count = np.unique(
+        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    border = edges[first[count == 1]]
+    lengths = np.linalg.norm(np.diff(field.points[border], axis=1)[:, 0], axis=1)
+    faces = np.asarray(field.faces)
+    size = int(faces.max()) + 1
+    area = np.bincount(faces[corners[:, 0]], areas, size)
+    length = np.bincount(faces[border[:, 0]], lengths, size)
+    closed = np.sqrt(area)  # of a face without a border
+    return {
+        int(face): (
+            2.0 * area[face] / length[face] if length[face] > 0 else closed[face],
+            area[face],
+        )
+        for face in np.unique(faces[corners[:, 0]])
+    }
+
+
+def _contact(job, curvature):
+    """(length along the belt's travel, breadth along the wheel's axis) in mm of the contact on a cylinder of
+    ``curvature``, the lesser of those along and across its axis; None for a rigid tool or where it cannot
+    be found."""
+    wheel, compliance, _, options = engine_input.engine_arguments(job)
+    if compliance["model"] == "geometric":
+        return None
+    found = []
+    curved = curvature * FLAT > 1.0
+    for angle in (0.0, 90.0) if curved else (0.0,):
+        workpiece = {"shape": "plane"}
+        if curved:
+            workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
+        try:
+            found.append(_extents(wheel, workpiece, compliance, options))
+        except InputError:
+            continue  # the wheel does not fit, or the force is out of reach: the run tells
+    if not found:
+        return None
+    return tuple(min(values) for values in zip(*found))
+
+
+def _extents(wheel, workpiece, compliance, options):
+    cell = options["contact_spacing"]
+    for _ in range(ROUNDS):
+        one = core.single_contact(wheel, workpiece, compliance, options["force"], None, cell, 1e-3)
+        touched = one["pressure"] > 0.01 * one["pressure"].max()
+        length = cell * np.count_nonzero(touched.any(axis=0))
+        breadth = cell * np.count_nonzero(touched.any(axis=1))
+        finer = max(min(length, breadth) / CELLS / 1.5, max(length, breadth) / MOST_CELLS)
+        if min(length, breadth) >= CELLS * cell or finer >= cell:
+            break
+        cell = finer
+    return float(length), float(breadth)
+
+
+def _quantile(values, weights, share=SHARE):
+    """The value that the share of the weight does not exceed."""
+    if not len(values):
+        return 0.0
+    order = np.argsort(values)
+    summed = np.cumsum(weights[order])
+    return float(values[order][min(np.searchsorted(summed, share * summed[-1]), len(values) - 1)])

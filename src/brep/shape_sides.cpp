@@ -80,6 +80,26 @@ std::vector<char> Shape::reversed(const RunContext& context) const {
     return result;
 }
 
+std::vector<std::vector<std::size_t>> Shape::neighbours(const RunContext& context) const {
+    std::vector<std::vector<std::size_t>> result(face_count());
+    try {
+        const auto [meshed, tolerance] = impl_->mesh_for_sides(context);
+        for (const FaceBorder& border : common_borders(meshed, tolerance)) {
+            if (border.a == border.b) continue;
+            result[border.a].push_back(border.b);
+            result[border.b].push_back(border.a);
+        }
+    } catch (const Standard_Failure& failure) {
+        throw InputError("brep.not_triangulated", "the shape cannot be triangulated: {reason}",
+                         {{"reason", failure.GetMessageString()}});
+    }
+    for (auto& faces : result) {
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    }
+    return result;
+}
+
 Shape Shape::flipped(bool all, const std::vector<std::size_t>& faces) const {
     auto flips = std::make_shared<std::vector<char>>(face_count(), all ? 1 : 0);
     for (const std::size_t face : faces) {

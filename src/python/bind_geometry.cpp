@@ -113,6 +113,14 @@ void bind_geometry(py::module_& m) {
             },
             py::arg("context") = nullptr,
             "For each face, True if its outside is against its orientation.")
+        .def(
+            "neighbours",
+            [](const Shape& shape, const RunContext* context) {
+                const py::gil_scoped_release release;
+                return shape.neighbours(context != nullptr ? *context : RunContext());
+            },
+            py::arg("context") = nullptr,
+            "For each face, a list of those that it has a border in common with.")
         .def("flipped", &Shape::flipped, py::arg("all"), py::arg("faces"),
              "The same shape with its loose faces, and then those of `faces` (from 0), flipped.")
         .def(

@@ -13,6 +13,7 @@ import sys
 
 from . import (
     calibrate,
+    faces,
     faults,
     grind,
     interrupts,
@@ -28,7 +29,7 @@ from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
-TOPICS = (grind, press, program, calibrate, inspect, measure, report, view, lists)
+TOPICS = (grind, press, program, faces, calibrate, inspect, measure, report, view, lists)
 
 
 JSON_ERRORS = "--json-errors"

@@ -57,6 +57,9 @@ class Shape {
     /// The same shape with its loose faces (`all`), and then those of `faces` (from 0), flipped.
     /// Throws InputError for a face that is not there or bounds a solid.
     Shape flipped(bool all, const std::vector<std::size_t>& faces) const;
+    /// For each face, those that it has a border in common with, ascending: an edge, or free edges
+    /// that lie on each other. Throws InputError where the shape cannot be triangulated, Cancelled.
+    std::vector<std::vector<std::size_t>> neighbours(const RunContext& context = {}) const;
     /// Things the user should know: not valid, extents beyond 10 m or below 0.1 mm (a unit
     /// mistake), zero-area faces, loose faces that are turned, in doubt, or contrary. Each is one
     /// sentence that names the face.

@@ -292,7 +292,7 @@ settle()
 def marked(name):
     return bool(field(name).styleSheet())
 for name, bad, good in (
-    ("Spacing", "0 mm", "0.5 mm"),
+    ("Spacing", "-1 mm", "0.5 mm"),
     ("LawCoefficient", "-1", "0.07"),
     ("LawCoefficient", "", "0.07"),
 ):
@@ -408,7 +408,7 @@ part.Shape = Part.makeBox(60, 40, 20)
 doc.recompute()
 Gui.Selection.addSelection(doc.Name, "Block", "Face6")
 menu("New job")
-type_in("Spacing", "0 mm")
+type_in("Spacing", "-1 mm")
 press("OK")
 assert field("note").isVisible()
 type_in("Spacing", "1 mm")

@@ -269,8 +269,9 @@ refuse(lambda: beltgrinding.simulate(job), "Stock", "mesh")
 doc.Stock.File = "absent.stl"
 refuse(lambda: beltgrinding.simulate(job), "absent.stl")
 doc.Stock.Kind = "allowance"
-job.Spacing = 0
-refuse(lambda: beltgrinding.simulate(job), "spacing")
+job.Depth = 0
+refuse(lambda: beltgrinding.simulate(job), "depth")
+job.Depth = 1
 job.Spacing = "0.1 um"
 refuse(lambda: beltgrinding.simulate(job), "spacing")
 job.Spacing = 1

@@ -51,10 +51,10 @@ MISTAKES = {
         "{job}: sampling: unbekannter Schlüssel 'spacing'; gemeint ist vielleicht 'spacing_mm'",
     ),
     "below the minimum": (
-        changed(sampling={"spacing_mm": -0.5}),
+        changed(belt_machine={"contact_spacing_mm": -0.5}),
         "base.not_above_minimum",
-        {"key": "sampling.spacing_mm"},
-        "{job}: sampling.spacing_mm: -0.5 liegt nicht über 0",
+        {"key": "belt_machine.contact_spacing_mm"},
+        "{job}: belt_machine.contact_spacing_mm: -0.5 liegt nicht über 0",
     ),
     "not one of": (
         changed(stock={"kind": "air"}),

@@ -18,12 +18,14 @@ from support.freecad import SHARED
 def bush(freecad, tmp_path):
     """A BREP of a bush, 20 mm across and 30 mm long, with a bore of 8 mm, on a plate of 40 x 40 x 5 mm."""
     path = tmp_path / "bush.brep"
-    freecad.run(f"""
+    freecad.run(
+        f"""
 import FreeCAD, Part
 plate = Part.makeBox(40, 40, 5, FreeCAD.Vector(-20, -20, -5))
 body = plate.fuse(Part.makeCylinder(10, 30)).cut(Part.makeCylinder(4, 60, FreeCAD.Vector(0, 0, -10)))
 body.exportBrep({str(path)!r})
-""")
+"""
+    )
     return path
 
 
@@ -87,8 +89,10 @@ def test_every_face_of_real_parts_has_a_row():
     for name in ("cad/pump_cover.brep", "cad/hammer_claw.brep", "cad_nasty/nut_tiny_faces.brep"):
         shape = core.Shape.read(str(SHARED / "data" / name))
         found = faces.faces_of(shape)
-        assert len(found) == shape.face_count == len(faces.text(found).splitlines()[1:]) - (
-            0 if found[0].solid else 1
+        assert (
+            len(found)
+            == shape.face_count
+            == len(faces.text(found).splitlines()[1:]) - (0 if found[0].solid else 1)
         )
         assert all(one.neighbours for one in found)
         png, missing = faces.draw(shape)

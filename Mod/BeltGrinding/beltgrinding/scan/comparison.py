@@ -15,7 +15,7 @@ import numpy as np
 from ..base.files import json_bytes
 from ..engine import InputError, core
 from ..job import workpiece
-from . import file as scan_file, start as scan_start
+from . import file as scan_file, start as scan_start, trust
 
 FREEDOMS = ("tx", "ty", "tz", "rx", "ry", "rz")  # of the work frame; rotations about the centroid
 SHARE = 0.9  # of the pairs of points, the nearest: the rest is trimmed
@@ -99,7 +99,8 @@ def datum(result, faces=None, context=None):
 
 def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
     """Where the scan lies: dict(work_from_scan (4, 4), rms_mm, used_share, iterations, converged,
-    sd (6,) mm and rad, undetermined, warnings).
+    sd (6,) mm and rad, undetermined, warnings; placements, apart_mm, apart_deg: of those that starts
+    around it lead to and that fit as well; trusted: nothing speaks against it).
 
     scan: ``scan_file.Scan``; datum: as ``datum`` gives it, or a dict of points, normals, spacing.
     start: work_from_scan (4, 4); "principal": by the principal axes of both, all their directions
@@ -175,9 +176,17 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
                 motions=free,
             )
         )
+    around = trust.look_around(
+        found,
+        lambda matrix, points, rounds: register(matrix, reach, points, rounds),
+        datum,
+        [bool(motions) or name in fixed for name in FREEDOMS],  # what slides has been told
+    )
+    warnings += around["warnings"]
+    sd = [max(value, around["sd"].get(k, 0.0)) for k, value in enumerate(found["sd"])]
     scale = np.array([1, 1, 1, radius, radius, radius])
-    if not motions and np.max(np.array(found["sd"]) * scale) > PLAIN_SD:
-        worst = int(np.argmax(np.array(found["sd"]) * scale))
+    if not motions and not around["warnings"] and np.max(np.array(sd) * scale) > PLAIN_SD:
+        worst = int(np.argmax(np.array(sd) * scale))
         warnings.append(
             core.Fact(
                 "scan.hardly_determined",
@@ -201,7 +210,11 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
         "used_share": found["used_share"],
         "iterations": found["iterations"],
         "converged": found["converged"],
-        "sd": dict(zip(FREEDOMS, (float(value) for value in found["sd"]))),
+        "sd": dict(zip(FREEDOMS, (float(value) for value in sd))),
+        "placements": around["placements"],
+        "apart_mm": around["apart_mm"],
+        "apart_deg": around["apart_deg"],
+        "trusted": bool(found["converged"]) and not motions and not around["warnings"],
         "undetermined": motions,
         "warnings": warnings,
     }
@@ -313,15 +326,30 @@ def compare(
             start, figures["pairs_rms_mm"] = scan_start.by_pairs(pairs, unit_mm)
         found = align(scan, surface, start, fixed, max_distance_mm, share)
         matrix = found["work_from_scan"]
-        figures["datum_faces"] = surface["faces"]
+        figures["datum_faces"] = face_runs(surface["faces"])
         figures["datum_predicted"] = surface["predicted"]
     measured = measure(result.field, scan, matrix, search_mm)
     tolerance = result.job["inspection"]["tolerance_mm"]
     figures.update(statistics(result.field, measured, tolerance))
     figures["alignment"] = None if found is None else _plain(found)
     figures["warnings"] = [] if found is None else found["warnings"]
+    if found is not None:
+        poor = trust.poor_fit(found["rms_mm"], tolerance)
+        figures["warnings"] = poor + figures["warnings"]
+        figures["alignment"]["trusted"] = found["trusted"] and not poor
     result.field.set_measured(measured)
     return figures
+
+
+def face_runs(numbers):
+    """[1, [3, 7]] of [1, 3, 4, 5, 6, 7]: a facetted part has thousands."""
+    runs = []
+    for number in sorted(numbers):
+        if runs and runs[-1][1] == number - 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return [first if first == last else [first, last] for first, last in runs]
 
 
 def write(result, figures):

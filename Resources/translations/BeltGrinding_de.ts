@@ -1111,6 +1111,18 @@
         <source>distance between neighbouring samples, mm; 0: chosen by the faces, the wheel&apos;s contact and the tolerance</source>
         <translation>Abstand benachbarter Stützpunkte, mm; 0: gewählt nach Flächen, Kontakt der Scheibe und Toleranz</translation>
     </message>
+    <message>
+        <source>along which the belt travels, in the program&apos;s base, where Roll is fixed</source>
+        <translation>wohin das Band läuft, in der Basis des Programms, wenn Roll auf fixed steht</translation>
+    </message>
+    <message>
+        <source>how poses that are tool axes only (APT, G-code, CAM paths) are turned about them: held along a pass, along the pass, or the belt along RollDirection</source>
+        <translation>wie Posen, die nur Werkzeugachsen sind (APT, G-Code, CAM-Bahnen), um sie gedreht werden: über eine Bahn gehalten, längs der Bahn, oder das Band längs RollDirection</translation>
+    </message>
+    <message>
+        <source>the roll that the poses have</source>
+        <translation>die Drehung, die die Posen haben</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3339,6 +3351,26 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>spacing chosen</source>
         <translation>Abstand gewählt</translation>
+    </message>
+    <message>
+        <source>Belt&apos;s travel</source>
+        <translation>Laufrichtung des Bandes</translation>
+    </message>
+    <message>
+        <source>Direction of travel</source>
+        <translation>Richtung</translation>
+    </message>
+    <message>
+        <source>along the pass</source>
+        <translation>längs der Bahn</translation>
+    </message>
+    <message>
+        <source>held along a pass</source>
+        <translation>über eine Bahn gehalten</translation>
+    </message>
+    <message>
+        <source>in a fixed direction</source>
+        <translation>in fester Richtung</translation>
     </message>
 </context>
 <context>

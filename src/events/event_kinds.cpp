@@ -56,9 +56,11 @@ constexpr std::array kKinds = {
     EventKind{"depth_exceeded", kError, "mm", kSmaller,
               "the motion grinds deeper below the design than the height segments reach",
               "correct the pose; if it is meant, raise sampling.depth_mm"},
-    EventKind{"orientation_jump", kWarning, "deg", kLarger,
-              "two neighbouring poses of a feed motion are turned far against each other",
-              "put poses between them, or check the angles of the pose"},
+    EventKind{
+        "orientation_jump", kWarning, "deg", kLarger,
+        "two neighbouring poses of a feed motion are turned far against each other",
+        "put poses between them, check the angles of the pose, or choose another roll where the "
+        "program gives tool axes only"},
     EventKind{"collision", kError, "mm", kSmaller, "two bodies of the cell run into each other",
               "retract further, approach from another side, or move the body"},
     EventKind{"near_miss", kWarning, "mm", kSmaller,

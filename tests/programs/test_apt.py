@@ -61,7 +61,8 @@ def test_a_real_file():
 
 
 def test_axis_and_direction_give_the_orientation(tmp_path):
-    program = cl(tmp_path, "GOTO/0,0,0,0,0,1\nGOTO/0,10,5,0,0,1\nGOTO/0,10,9\n")
+    cl(tmp_path, "GOTO/0,0,0,0,0,1\nGOTO/0,10,5,0,0,1\nGOTO/0,10,9\n")
+    program = read_program(tmp_path / "p.apt")
     pose = program.motions[1].pose
     np.testing.assert_allclose(pose[:3, 2], [0, 0, -1], atol=1e-12)
     np.testing.assert_allclose(pose[:3, 0], [0, 1, 0], atol=1e-12)

@@ -130,3 +130,48 @@ refuse(part, "Block", "no path")
 refuse(path_of(("G1", {"X": 1})), "two at least")
 """,
     )
+
+
+def test_a_path_s_roll_is_chosen_and_kept_with_the_document(freecad):
+    freecad.run(
+        PREPARE
+        + """
+from beltgrinding.objects import set_up
+corner = path_of(("G0", {"X": 10, "Y": 10, "Z": 30}), ("G1", {"Z": 20, "F": 10}),
+                 ("G1", {"X": 50}), ("G1", {"Y": 30}))
+robot = beltgrinding.follow_path(job, corner)
+x = lambda: [np.round(f[:3, 0], 6).tolist() for f in contacts(robot)]
+assert x() == [[1, 0, 0]] * 4, x()
+robot.Roll = "fixed"
+robot.RollDirection = FreeCAD.Vector(0, 2, 0)
+doc.recompute()
+assert x() == [[0, 1, 0]] * 4, x()
+robot.Roll = "along"
+doc.recompute()
+assert len(robot.Poses) > 4 and x()[-1] == [0, 1, 0], x()
+
+open("p.apt", "w").write("UNITS/MM\\nGOTO/10,10,20,0,0,1\\nGOTO/50,10,20\\nGOTO/50,30,20\\nFINI\\n")
+made = set_up.import_program(job, "p.apt")
+held = [p.Rotation.Q for p in made.Poses]
+made.Roll = "fixed"
+doc.recompute()
+made.RollDirection = FreeCAD.Vector(0, 1, 0)
+doc.recompute()
+assert [p.Rotation.Q for p in made.Poses] != held and made.isValid()
+doc.saveAs("roll.FCStd")
+name = made.Name
+FreeCAD.closeDocument(doc.Name)
+again = FreeCAD.openDocument("roll.FCStd").getObject(name)
+assert again.Roll == "fixed" and again.RollOfPoses.startswith("fixed")
+again.Roll = "hold"
+again.Document.recompute()
+assert np.allclose([p.Rotation.Q for p in again.Poses], held)
+
+open("p.csv", "w").write("x_mm,y_mm,z_mm,qw,qx,qy,qz\\n0,0,0,1,0,0,0\\n9,0,0,1,0,0,0\\n")
+whole = set_up.import_program(again.Document, "p.csv")
+before = list(whole.Poses)
+whole.Roll = "along"
+again.Document.recompute()
+assert not whole.isValid() and list(whole.Poses) == before
+"""
+    )

@@ -21,6 +21,12 @@ def add(commands):
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
     _add_frames(program)
+    program.add_argument(
+        "--roll",
+        metavar="hold|along|X,Y,Z",
+        help="how poses that are tool axes only (APT, G-code) are turned about them: held along a pass "
+        "(default), along the pass, or the belt along a direction in the program's base",
+    )
     outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
@@ -79,6 +85,26 @@ def _frame(what, given):
     return from_abc(values[:3], values[3:])
 
 
+def _roll(arguments):
+    """``--roll`` as ``read_program`` takes it."""
+    from ..engine import InputError
+
+    given = arguments.roll
+    if given is None or given in ("hold", "along"):
+        return {"roll": given}
+    try:
+        values = [float(value) for value in given.split(",")]
+        if len(values) != 3 or not all(map(math.isfinite, values)):
+            raise ValueError
+    except ValueError:
+        raise InputError(
+            "cli.roll",
+            "--roll {given}: write hold, along, or a direction X,Y,Z, as in --roll=0,1,0",
+            given=given,
+        ) from None
+    return {"roll": "fixed", "roll_direction": values}
+
+
 def _frame_words(job):
     """What a job tells of the frames of its programs."""
     from ..presets import robot as robots
@@ -119,6 +145,10 @@ def _program(arguments):
             "program {action}: --base and --tool are convert's",
             action=action,
         )
+    if action == "write" and arguments.roll:
+        raise InputError(
+            "cli.roll_of_written", "program write: --roll changes nothing in the original"
+        )
     outputs.check(arguments, [arguments.output], files)
     notes = []
     try:
@@ -126,7 +156,7 @@ def _program(arguments):
             changed = patch(*files, arguments.output)
             print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
             return
-        program = read_program(files[0])
+        program = read_program(files[0], **_roll(arguments))
         if action == "convert":
             notes = write_program(arguments.output, None, program, **_frames(arguments))
         elif arguments.output:

@@ -63,12 +63,18 @@ def program_arrays(program, where, warnings, pose_of=None):
     ``pose_of``: of joint angles, as in ``Program.path_arrays``.
     """
     problems = []
+    if "poses" in program and ("roll" in program or "roll_direction" in program):
+        raise InputError(
+            "job.roll_of_poses",
+            "{program}: roll is for a file of tool axes; the poses given here are whole",
+            program=where,
+        )
     if "poses" in program:
         arrays = listed_poses(program["poses"], where)
     else:
         from ..programs.registry import read_program
 
-        read = read_program(program["file"])
+        read = read_program(program["file"], program.get("roll"), program.get("roll_direction"))
         problems = read.problems
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)
     warnings += problems

@@ -12,6 +12,7 @@ from ..base.stopping import stoppable
 from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
+from ..programs.readers.roll import RULES, lay
 from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
@@ -47,6 +48,7 @@ LISTS = (
         "mm around each pose in which the corner is rounded; negative: not known",
     ),
 )
+WITH_FREE_ROLL = ("APT", "G-code", "FreeCAD path")  # languages of tool axes only
 FRAMES = (
     (
         "ProgramBase",
@@ -79,6 +81,17 @@ class RobotPath(Proxy):
             "the CAM path or robot trajectory of FreeCAD that the poses follow, in place of a file"
         )
         add("LinkGlobal", "SourceObject", "Program", text)
+        text = (
+            "how poses that are tool axes only (APT, G-code, CAM paths) are turned about them: held along "
+            "a pass, along the pass, or the belt along RollDirection"
+        )
+        if add("Enumeration", "Roll", "Program", text):
+            obj.Roll = list(RULES)
+        text = "along which the belt travels, in the program's base, where Roll is fixed"
+        if add("Vector", "RollDirection", "Program", text):
+            obj.RollDirection = FreeCAD.Vector(1, 0, 0)
+        if add("String", "RollOfPoses", "Program", "the roll that the poses have"):
+            obj.setEditorMode("RollOfPoses", 2)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
         for name, text in FRAMES:
@@ -137,6 +150,9 @@ class RobotPath(Proxy):
     def execute(self, obj):
         if obj.SourceObject is not None:
             follow(obj)
+        elif obj.Source and obj.RollOfPoses != (roll := roll_text(obj)):
+            if obj.RollOfPoses or roll != "hold":  # one of before there was a choice holds it
+                load_program(obj, obj.Source)
         arrays = self.arrays(obj)
         if len(arrays["frames"]) < 2:
             obj.Path = Path.Path()
@@ -185,14 +201,26 @@ def set_arrays(obj, arrays):
     obj.Zones = np.asarray(zones, dtype=float).tolist()
 
 
-def read_arrays(path):
+def _roll(obj):
+    """The roll as ``readers.roll.lay`` takes it; held, it is not asked for: most programs have none."""
+    direction = list(obj.RollDirection) if obj.Roll == "fixed" else None
+    return None if obj.Roll == "hold" else obj.Roll, direction
+
+
+def roll_text(obj):
+    """The roll that is asked for, as ``RollOfPoses`` keeps it."""
+    rule, direction = _roll(obj)
+    return f"{rule or 'hold'}{'' if direction is None else f' {direction}'}"
+
+
+def read_arrays(path, roll=None, direction=None):
     """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
-    and Cancelled where a person cancels it.
+    and Cancelled where a person cancels it. ``roll``, ``direction``: as ``readers.roll.lay`` takes them.
     """
 
     def work(context):
         with stoppable(context):
-            program = read_program(path)
+            program = read_program(path, roll, direction)
             return program, program.path_arrays(DEFAULT_FEED)
 
     text = FreeCAD.Qt.translate("BeltGrinding", "Reading {}").format(os.path.basename(path))
@@ -220,6 +248,7 @@ def follow(obj):
     """
     source = obj.SourceObject
     program = freecad_path.program_of(source)
+    lay(program, *_roll(obj))
     arrays = program.path_arrays(DEFAULT_FEED)
     count = len(arrays["frames"])
     if count < 2:
@@ -240,8 +269,9 @@ def follow(obj):
 
 def load_program(obj, path, **values):
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
-    program, arrays = read_arrays(path)
+    program, arrays = read_arrays(path, *_roll(obj))
     set_arrays(obj, arrays)
+    obj.RollOfPoses = roll_text(obj)
     obj.SourceObject = None
     obj.Source = os.path.abspath(path)
     obj.Language = program.language

@@ -117,6 +117,9 @@ class Motion:
     # it passes through, the target is no corner; None: not known (the job's default zone)
     zone_mm: Optional[float] = None
     joints_deg: Optional[tuple] = None  # of a joint target: six angles as the controller shows them
+    free_roll: bool = (
+        False  # the program gives the tool's axis only: a rule turns the pose about it
+    )
 
 
 @dataclass

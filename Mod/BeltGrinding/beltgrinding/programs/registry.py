@@ -9,6 +9,7 @@ from pathlib import Path
 from ..base.regular_files import open_regular, shown
 from ..engine import InputError
 from .program import MAX_FILE, ProgramError
+from .readers.roll import lay
 
 
 def _krl(path):
@@ -113,8 +114,11 @@ def _no_collection():
             gc.enable()
 
 
-def read_program(path):
-    """The Program in the file ``path``, its language told by the suffix. Raises ProgramError."""
+def read_program(path, roll=None, roll_direction=None):
+    """The Program in the file ``path``, its language told by the suffix. Raises ProgramError.
+
+    ``roll``, ``roll_direction``: how poses with a free roll are turned (``readers.roll.lay``).
+    """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
@@ -132,6 +136,7 @@ def read_program(path):
         raise ProgramError.of(error) from None
     with _no_collection():
         program = reader(path)
+        lay(program, roll, roll_direction)
     if not program.motions and not program.problems:
         program.problem(
             program.file,

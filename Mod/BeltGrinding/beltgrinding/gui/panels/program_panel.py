@@ -41,6 +41,14 @@ class ProgramPanel(Panel):
             form.add("Source", translate("BeltGrinding", "File"), programs_filter())
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
+        rolls = {
+            "hold": translate("BeltGrinding", "held along a pass"),
+            "along": translate("BeltGrinding", "along the pass"),
+            "fixed": translate("BeltGrinding", "in a fixed direction"),
+        }
+        form.add("Roll", translate("BeltGrinding", "Belt's travel"), rolls)
+        form.add("RollDirection", translate("BeltGrinding", "Direction of travel"))
+        self.overrides = form
         self.body.addWidget(form)
         again = QtGui.QPushButton(translate("BeltGrinding", "Read the file again"))
         again.setObjectName("reload")
@@ -56,24 +64,27 @@ class ProgramPanel(Panel):
         self.table.chosen = self.walk.go
         self.body.addWidget(self.walk)
         self.body.addWidget(self.table, 1)
-        self.source = obj.Source
+        self.source, self.roll = obj.Source, robot_path.roll_text(obj)
         form.changed = self.changed
         self.finish()
         self.show()
         _open.append(self)
 
     def changed(self):
-        if self.obj.Source != self.source:
+        if self.obj.Source != self.source or robot_path.roll_text(self.obj) != self.roll:
             self.reload()
         else:
             self.describe()
 
     def reload(self):
-        """Reads the file; on an error the poses stay as they were."""
+        """Reads the file, or follows the path, again; on an error the poses stay as they were."""
         try:
-            robot_path.load_program(self.obj, self.obj.Source)
-            self.source = self.obj.Source
-            self.obj.Label = Path(self.obj.Source).stem
+            if self.obj.SourceObject is not None:
+                robot_path.follow(self.obj)
+            else:
+                robot_path.load_program(self.obj, self.obj.Source)
+                self.obj.Label = Path(self.obj.Source).stem
+            self.source, self.roll = self.obj.Source, robot_path.roll_text(self.obj)
         except Cancelled:
             self.obj.Source = self.source
             return
@@ -86,6 +97,12 @@ class ProgramPanel(Panel):
     def show(self):
         """Poses, source and problems as they are now."""
         obj = self.obj
+        rows = set(self.overrides.rows)
+        if obj.Language not in robot_path.WITH_FREE_ROLL:
+            rows -= {"Roll", "RollDirection"}
+        elif obj.Roll != "fixed":
+            rows -= {"RollDirection"}
+        self.overrides.show_rows(rows)
         self.table.show_path(obj)
         self.walk.choose(0)
         if obj.Poses:

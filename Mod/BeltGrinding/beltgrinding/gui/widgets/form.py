@@ -127,6 +127,8 @@ class Form(QtGui.QGroupBox):
             widget = self._file(name, choices or "")
         elif kind == "App::PropertyPlacement":
             widget = FrameField(getattr(self.obj, name), lambda value: self._set(name, value))
+        elif kind == "App::PropertyVector":
+            widget = DirectionField(getattr(self.obj, name), lambda value: self._set(name, value))
         else:
             widget = self._number(name, choices == SIGNED)
         widget.setToolTip(self.obj.getDocumentationOfProperty(name))
@@ -342,3 +344,31 @@ class FrameField(QtGui.QWidget):
     def _changed(self):
         x, y, z, a, b, c = (float(field.property("rawValue")) for field in self.fields)
         self.notify(Placement(Vector(x, y, z), Rotation(a, b, c)))
+
+
+class DirectionField(QtGui.QWidget):
+    """x, y, z of a direction side by side, plain numbers; ``changed(vector)`` where all are numbers and it
+    is not zero."""
+
+    def __init__(self, vector, changed):
+        super().__init__()
+        row = QtGui.QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
+        self.fields = []
+        for name, value in zip("XYZ", vector):
+            field = QtGui.QLineEdit(f"{value:g}")
+            field.setObjectName(name)
+            field.setToolTip(name)
+            field.setMinimumWidth(MINIMUM_WIDTH // 3)
+            field.editingFinished.connect(self._changed)
+            row.addWidget(field)
+            self.fields.append(field)
+        self.notify = changed
+
+    def _changed(self):
+        values = [number(field.text()) for field in self.fields]
+        for field, value in zip(self.fields, values):
+            field.setStyleSheet(WRONG if value is None or not any(values) else "")
+        if None not in values and any(values):
+            self.notify(Vector(*values))

@@ -7,7 +7,7 @@ from ..readers.gcode import COMMENT, INCH
 from .text import SMALL, decimal, decimals, moved, plan
 
 ROUNDING_MM = 6e-5
-TURN_IS_FREE = True  # x follows the motion's direction
+TURN_IS_FREE = True  # x follows from the whole pass
 FEED = re.compile(r"(?<![A-Z])F\s*=?\s*((?:\d+\.?\d*|\.\d+))(?![\w.])")
 PLACE = r"(?<![A-Z]){axis}\s*=?\s*([-+]?(?:\d+\.?\d*|\.\d+))(?![\w.])"
 FEED_DIGITS = 4

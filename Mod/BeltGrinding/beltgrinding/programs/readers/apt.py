@@ -1,8 +1,7 @@
 """Reads APT cutter location files: APT-CL and NX CLS (after ISO 4343).
 
 GOTO/x,y,z,i,j,k gives the tool's tip and the axis from the part to the spindle; the pose's z points
-into the work (-axis). The rotation about it is free: x is chosen along the motion's direction,
-projected across the axis (``tool_axis``). RAPID makes the next motion a rapid one. CIRCLE and
+into the work (-axis). The rotation about it is free (``roll``). RAPID makes the next motion a rapid one. CIRCLE and
 MOVARC with the GOTO or INDIRV after them become arcs. What depends on the post-processor (cycles,
 GOHOME, feeds per revolution) is a Problem. A FEDRAT without unit is one per minute.
 """

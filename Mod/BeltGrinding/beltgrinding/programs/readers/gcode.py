@@ -2,9 +2,8 @@
 
 Under G43.4 or TRAORI X, Y, Z are the tool's tip in the part and the rotary words give the axis from
 the part to the spindle: Rz(C) Rx(A) [0,0,1], or Rz(C) Ry(B) [0,0,1]; under G43.5 I, J, K are the
-axis itself, and so are A3, B3, C3 under TRAORI. The pose's z points into the work (-axis); the rotation about it is free: x is chosen
-along the motion's direction, projected across the axis (``tool_axis``). Without rotary words the
-axis is Z, and no TCP control is needed. What needs the machine's kinematics or the control's memory
+axis itself, and so are A3, B3, C3 under TRAORI. The pose's z points into the work (-axis); the
+rotation about it is free (``roll``). Without rotary words the axis is Z, and no TCP control is needed. What needs the machine's kinematics or the control's memory
 is a Problem, and the motions that depend on it are left out.
 A file that does not say G20 or G21, G90 or G91, is taken in mm and as absolute.
 """

@@ -1,21 +1,21 @@
 """Poses of programs that give a tool's position and axis only, as milling programs do.
 
 The axis points from the part to the spindle; the simulator's tool z points into the work, so
-z = -axis. The rotation about it is free: x is the direction of the motion that leads to the pose,
-projected across the axis; where there is none, x stays as near as possible to the one before.
+z = -axis. The rotation about it is free (``Motion.free_roll``): ``roll.lay`` turns the poses when all are
+read; until then x stays as near as possible to the one before.
 """
 
 import math
 
 import numpy as np
 
-from ..program import Motion  # noqa: F401
+from ..program import Motion
 
 LEAST_STEP = 1e-9  # relative; below, a motion has no direction across the axis
 
 
 class Tracer:
-    """Appends motions to a Program, each oriented by its axis and direction."""
+    """Appends motions to a Program, each oriented by its axis; its roll is free."""
 
     def __init__(self, program):
         self.program = program
@@ -31,10 +31,7 @@ class Tracer:
     def move(self, kind, position, axis, line, speed=None, base="", tool="", aux=False):
         """One motion to ``position`` in mm with the unit ``axis``; ``speed`` in mm/s."""
         z = (-axis[0], -axis[1], -axis[2])
-        x = None
-        if self.position is not None:
-            x = _across([a - b for a, b in zip(position, self.position)], z)
-        x = x or _across(self.x, z) or _across((0.0, 1.0, 0.0), z) or _across((0.0, 0.0, 1.0), z)
+        x = _across(self.x, z) or _across((0.0, 1.0, 0.0), z) or _across((0.0, 0.0, 1.0), z)
         pose = np.empty((4, 4))
         pose[:] = (
             (x[0], z[1] * x[2] - z[2] * x[1], z[0], position[0]),
@@ -43,7 +40,7 @@ class Tracer:
             (0.0, 0.0, 0.0, 1.0),
         )
         motion = Motion(kind, pose, line, self.program.file, speed, tool=tool, base=base, aux=aux)
-        motion.zone_mm = self.zone
+        motion.zone_mm, motion.free_roll = self.zone, True
         self.program.motions.append(motion)
         self.position, self.x = tuple(position), x
 

@@ -1,0 +1,40 @@
+"""The panel of a robot program, in a window."""
+
+PREPARE = """
+from pathlib import Path
+from support.hands import *
+from beltgrinding.objects import set_up
+from beltgrinding.gui.panels.panel import edit
+job = prepare()
+doc = job.Document
+"""
+
+
+def test_the_belt_s_travel_is_chosen_where_a_program_leaves_it(freecad):
+    freecad.run(
+        PREPARE
+        + """
+Path("p.apt").write_text("UNITS/MM\\nGOTO/10,10,20,0,0,1\\nGOTO/50,10,20\\nGOTO/50,30,20\\nFINI\\n")
+path = set_up.import_program(job, "p.apt")
+doc.recompute()
+edit(path)
+assert field("Roll").isVisible() and not field("RollDirection").isVisible()
+field("Roll").setCurrentIndex(2)
+assert path.Roll == "fixed" and field("RollDirection").isVisible()
+assert path.RollOfPoses == "fixed [1.0, 0.0, 0.0]", path.RollOfPoses
+x, y, z = field("RollDirection").fields
+x.setText("0"); x.editingFinished.emit()
+assert path.RollDirection.x == 1 and x.styleSheet(), "no direction"
+y.setText("-2"); y.editingFinished.emit()
+assert path.RollDirection.y == -2 and not x.styleSheet()
+assert path.RollOfPoses == "fixed [0.0, -2.0, 0.0]", path.RollOfPoses
+field("Roll").setCurrentIndex(1)
+assert len(path.Poses) > 3 and not field("RollDirection").isVisible()
+press("OK")
+
+edit(doc.RobotPath)  # its poses are whole
+assert not field("Roll").isVisible()
+press("OK")
+""",
+        window=True,
+    )

@@ -18,7 +18,7 @@ Path("p.apt").write_text("UNITS/MM\\nGOTO/10,10,20,0,0,1\\nGOTO/50,10,20\\nGOTO/
 path = set_up.import_program(job, "p.apt")
 doc.recompute()
 edit(path)
-assert field("Roll").isVisible() and not field("RollDirection").isVisible()
+assert field("Roll").isVisible() and not visible(QtGui.QWidget, "RollDirection")
 field("Roll").setCurrentIndex(2)
 assert path.Roll == "fixed" and field("RollDirection").isVisible()
 assert path.RollOfPoses == "fixed [1.0, 0.0, 0.0]", path.RollOfPoses
@@ -29,11 +29,11 @@ y.setText("-2"); y.editingFinished.emit()
 assert path.RollDirection.y == -2 and not x.styleSheet()
 assert path.RollOfPoses == "fixed [0.0, -2.0, 0.0]", path.RollOfPoses
 field("Roll").setCurrentIndex(1)
-assert len(path.Poses) > 3 and not field("RollDirection").isVisible()
+assert len(path.Poses) > 3 and not visible(QtGui.QWidget, "RollDirection")
 press("OK")
 
 edit(doc.RobotPath)  # its poses are whole
-assert not field("Roll").isVisible()
+assert not visible(QtGui.QWidget, "Roll")
 press("OK")
 """,
         window=True,

@@ -61,6 +61,11 @@ constexpr std::array kKinds = {
         "two neighbouring poses of a feed motion are turned far against each other",
         "put poses between them, check the angles of the pose, or choose another roll where the "
         "program gives tool axes only"},
+    EventKind{"program_gap", kWarning, "", kLarger,
+              "motions of the program before this pose are left out, since they are not known: the "
+              "way to it is taken as a positioning move, and nothing is ground on it",
+              "the program's warnings say what is not known, and in which line; give it, or split "
+              "the program there"},
     EventKind{"collision", kError, "mm", kSmaller, "two bodies of the cell run into each other",
               "retract further, approach from another side, or move the body"},
     EventKind{"near_miss", kWarning, "mm", kSmaller,

@@ -247,6 +247,15 @@ void bind_simulation(py::module_& m) {
             "(n,): N, negative: the job's")
         .def("duration", py::overload_cast<>(&ToolPath::duration, py::const_), "s")
         .def(
+            "times",
+            [](const ToolPath& path) {
+                std::vector<double> times;
+                for (std::size_t i = 0; i < path.poses().size(); ++i)
+                    times.push_back((times.empty() ? 0.0 : times.back()) + path.duration(i));
+                return own(std::move(times));
+            },
+            "(n,) s since the program's begin at which the poses are reached.")
+        .def(
             "frame_at",
             [](const ToolPath& path, double time) {
                 const ToolPath::Moment moment = path.at(time);

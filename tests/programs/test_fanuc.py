@@ -222,7 +222,7 @@ def test_loops_jumps_and_conditions(tmp_path):
 
 def test_increments_calls_and_frame_changes(tmp_path):
     program = tp(tmp_path, ["L P[1] 9mm/sec FINE", "L P[2] 9mm/sec FINE INC", "CALL SUB(1)"])
-    assert xs(program) == [10, 30]
+    assert xs(program) == [10, 30, None]
     assert [(p.line, "SUB" in p.message) for p in program.problems] == [(FIRST + 2, True)]
     program = tp(tmp_path, ["CALL SUB", "L P[2] 9mm/sec FINE INC"])
     assert xs(program) == [None] and len(program.problems) == 2
@@ -231,7 +231,8 @@ def test_increments_calls_and_frame_changes(tmp_path):
         ["UFRAME_NUM=1", "L P[1] 9mm/sec FINE", "UFRAME_NUM=2", "L P[7] 9mm/sec FINE"],
         POSITIONS + position(7, 70, 0, uf=2),
     )
-    assert xs(program) == [10, None, 70]
+    assert xs(program) == [10, 70] and not program.problems
+    assert [frame[0, 3] for frame in program.path_arrays(9.0)["frames"]] == [10]
     assert "UFRAME 2" in program.problems[0].message and program.problems[0].line == FIRST + 3
     program = tp(
         tmp_path,

@@ -92,10 +92,11 @@ def test_angles_and_frames(tmp_path):
     )
     program = job(tmp_path, "MOVL C00000 V=5.0", "MOVL C00001 V=5.0", points=points)
     np.testing.assert_allclose(program.motions[0].pose, frames.from_abc((1, 2, 3), (30, 20, 10)))
-    assert [m.base for m in program.motions] == ["BASE", "", "ROBOT"]
-    assert [m.tool for m in program.motions] == ["TOOL 3", "", "TOOL 3"]
+    assert [m.base for m in program.motions] == ["BASE", "ROBOT"]
+    assert [m.tool for m in program.motions] == ["TOOL 3", "TOOL 3"]
+    assert len(program.path_arrays(9.0)["frames"]) == 1
     (problem,) = program.problems
-    assert "from BASE, TOOL 3 to ROBOT, TOOL 3" in problem.message
+    assert "ROBOT" in problem.message and "read in BASE" in problem.message
     program = job(tmp_path, points=points.replace("NPOS 2", "NPOS 3"))
     assert program.problems[0].line == 4 and "announces 3 C, 2" in program.problems[0].message
 
@@ -166,7 +167,7 @@ def test_jumps_blocks_and_calls(tmp_path):
     program = job(tmp_path, "SFTON P001 UF#(1)", one, "SFTOF", two)
     assert xs(program) == [None, 20]
     program = job(tmp_path, "CALL JOB:X IF IN#(1)=ON", one, "CALL JOB:X", "RET", two)
-    assert xs(program) == [10]
+    assert xs(program) == [None, 10, None]
     assert [p.line for p in program.problems] == [FIRST + 1] and "X" in str(program.problems[0])
     program = job(tmp_path, one, "+MOVJ EC00001 VJ=5.0", "FROBNICATE 3")
     assert [p.line for p in program.problems] == [FIRST + 2, FIRST + 3] and xs(program) == [10]

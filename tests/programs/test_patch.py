@@ -282,7 +282,7 @@ def test_krl_what_may_run_or_not_keeps_its_speed(tmp_path):
         "$VEL.CP=0.1"
     ]
     source = "DEF p()\n$VEL.CP=0.1\nother()\nLIN {X 0,Y 0,Z 0,A 0,B 0,C 0}\nLIN {X 1}\nEND\n"
-    refused(tmp_path, "p.src", source, [{"index": 0, "speed_mm_s": 50}], "cannot be put back")
+    refused(tmp_path, "p.src", source, [{"index": 1, "speed_mm_s": 50}], "cannot be put back")
 
 
 def test_krl_an_unknown_speed_is_made_known(tmp_path):

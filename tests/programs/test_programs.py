@@ -50,8 +50,8 @@ def test_flagship_program_against_its_truth():
 REAL = {
     # A loop over points that are not in the excerpt's .dat; it is named after another program.
     "kuka_frame_array_loop.src": (779, 0, [9] * 779),
-    # Begins in the middle of an IF; calls two routines of other files.
-    "kuka_inline_forms_excerpt.src": (4, 4, [4, 26, 48]),
+    # Begins in the middle of an IF; calls two routines of other files, each a gap.
+    "kuka_inline_forms_excerpt.src": (6, 4, [4, 26, 48]),
     # The second motion is by joints, which are no pose without the robot.
     "kuka_robodk_Prog1.src": (2, 1, []),
 }

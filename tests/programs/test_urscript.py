@@ -147,7 +147,7 @@ def test_arcs_times_and_tools(tmp_path):
         "movel(p[0.09,0,0,0,0,0], t=2)\nmovep(p[0,0,0,0,0,0], 1.2, 0.3, 0.01)\n"
         "movec(p[0,0.01,0,0,0,0], p[-0.01,0,0,0,0,0], mode=1)\n",
     )
-    assert [m.kind for m in program.motions] == ["LIN", "CIRC", "CIRC", "LIN", "LIN", "PTP"]
+    assert [m.kind for m in program.motions] == ["LIN", "CIRC", "CIRC", "LIN", "LIN", "GAP"]
     assert [m.aux for m in program.motions[:4]] == [False, True, False, False]
     assert [m.speed_mm_s for m in program.motions[1:5]] == pytest.approx([200, 200, 50, 300])
     assert program.motions[0].tool == "p[0, 0, 0.1, 0, 0, 0]"

@@ -102,3 +102,27 @@ def test_the_schema_and_the_manual_have_every_kind():
             kind["meaning"],
             kind["advice"],
         )
+
+
+def test_motions_that_are_left_out_are_not_ground_and_an_event_tells(tmp_path):
+    def program(*rows):
+        path = tmp_path / "p.src"
+        ends = "A 0,B 0,C 180"
+        lines = [row if "(" in row else f"LIN {{X {row},Z 0.2,{ends}}}" for row in rows]
+        path.write_text("\n".join(["DEF p()", "$VEL.CP=0.03", *lines, "END", ""]))
+        job = plate_job()
+        job["programs"] = [{"file": str(path)}]
+        return beltgrinding.run(job)
+
+    whole = program("10,Y 10", "30,Y 10", "30,Y 30", "50,Y 30")
+    cut = program("10,Y 10", "30,Y 10", "elsewhere()", "30,Y 30", "50,Y 30")
+    assert not [e for e in whole.events if e["kind"] == "program_gap"]
+    (gap,) = [e for e in cut.events if e["kind"] == "program_gap"]
+    assert (gap["pose"], gap["line"], gap["severity"]) == (2, 6, "warning")
+    assert gap["point"] == pytest.approx([30, 30, 0.2]) and "line 5 to line 6" in gap["message"]
+    volume = [one.summary["removed_volume_mm3"] for one in (whole, cut)]
+    assert volume[1] == pytest.approx(volume[0] * 2 / 3, rel=0.02)  # two of three ways of 20 mm
+    assert len([m for m in cut.events if m["kind"] == "program_gap"]) == 1
+    cut.write(tmp_path / "out")
+    rows = json.loads((tmp_path / "out" / "events.json").read_text())
+    assert any(row["kind"] == "program_gap" and row["facts"] for row in rows)

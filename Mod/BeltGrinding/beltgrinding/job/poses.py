@@ -25,15 +25,18 @@ def list_poses(arrays):
         arrays["rapid"].tolist(),
         arrays["lines"].tolist(),
         arrays["zones"].tolist(),
+        arrays.get("gaps", np.zeros(len(arrays["lines"]), dtype=int)).tolist(),
     )
     poses = []
-    for (x, y, z), (qw, qx, qy, qz), feed, force, rapid, line, zone in rows:
+    for (x, y, z), (qw, qx, qy, qz), feed, force, rapid, line, zone, gap in rows:
         pose = {"x_mm": x, "y_mm": y, "z_mm": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz}
         pose.update(feed_mm_s=feed, rapid=rapid, line=line)
         if force >= 0:
             pose["force_N"] = force
         if zone >= 0:
             pose["zone_mm"] = zone
+        if gap:
+            pose["gap_line"] = gap
         poses.append(pose)
     return poses
 
@@ -55,11 +58,12 @@ def listed_poses(poses, where):
         "rapid": np.array([p.get("rapid", False) for p in poses], dtype=bool),
         "lines": np.array([p.get("line", 0) for p in poses], dtype=int),
         "zones": np.array([p.get("zone_mm", -1.0) for p in poses], dtype=float),
+        "gaps": np.array([p.get("gap_line", 0) for p in poses], dtype=int),
     }
 
 
 def program_arrays(program, where, warnings, pose_of=None):
-    """dict(frames, feeds, forces, rapid, lines, zones) of a job's program, overrides applied.
+    """dict(frames, feeds, forces, rapid, lines, zones, gaps) of a job's program, overrides applied.
     ``pose_of``: of joint angles, as in ``Program.path_arrays``.
     """
     problems = []

@@ -86,7 +86,7 @@ def to_data(job, folder, meshes=None):
     for program, path in zip(data["programs"], paths):
         program.update(_overrides(path))
         program["name"] = path.Label
-        program["poses"] = list_poses(path.Proxy.arrays(path))
+        program["poses"] = list_poses({**path.Proxy.arrays(path), "gaps": path.Proxy.gaps(path)})
         program["unresolved"] = len(path.Problems)
         if len(program["poses"]) < 2:
             raise InputError(

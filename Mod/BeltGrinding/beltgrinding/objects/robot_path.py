@@ -47,6 +47,7 @@ LISTS = (
         "FloatList",
         "mm around each pose in which the corner is rounded; negative: not known",
     ),
+    ("Gaps", "IntegerList", "line from which on motions are left out before each pose; 0: none"),
 )
 WITH_FREE_ROLL = ("APT", "G-code", "FreeCAD path")  # languages of tool axes only
 FRAMES = (
@@ -129,6 +130,11 @@ class RobotPath(Proxy):
             )
         return self._arrays
 
+    def gaps(self, obj):
+        """(n,) int: the line from which on motions are left out before each pose, 0: none."""
+        count = len(obj.Poses)
+        return np.array(obj.Gaps if len(obj.Gaps) == count else [0] * count, dtype=int)
+
     def digest(self, obj):
         """Hash of the poses and what belongs to them."""
         hashed = hashlib.sha256()
@@ -199,6 +205,7 @@ def set_arrays(obj, arrays):
     obj.Lines = np.asarray(arrays["lines"], dtype=int).tolist()
     zones = arrays.get("zones", np.full(len(matrices), -1.0))
     obj.Zones = np.asarray(zones, dtype=float).tolist()
+    obj.Gaps = np.asarray(arrays.get("gaps", np.zeros(len(matrices))), dtype=int).tolist()
 
 
 def _roll(obj):

@@ -104,7 +104,7 @@ def shortened(fact, most):
 class Motion:
     """One programmed target. ``pose``: 4 x 4 base_from_tcp in mm, None for a joint target."""
 
-    kind: str  # PTP, LIN, CIRC, SPL
+    kind: str  # PTP, LIN, CIRC, SPL; GAP: a mark where motions are left out
     pose: Optional[np.ndarray]
     line: int
     file: str
@@ -130,6 +130,19 @@ class Program:
     file: str
     motions: List[Motion] = field(default_factory=list)
     problems: List[Problem] = field(default_factory=list)
+    # The frames that motions name, as far as the program tells them: 4 x 4 in mm, bases in the robot's
+    # own base and tools in its flange; where the robot holds the part (``held``: the words of such
+    # bases) bases in the flange and tools in the robot's base.
+    base_frames: dict = field(default_factory=dict)
+    tool_frames: dict = field(default_factory=dict)
+    held: set = field(default_factory=set)
+    told: set = field(default_factory=set)  # problems that path_arrays has found
+
+    def gap(self, line, file, again=True):
+        """Marks that motions are left out here: the path beyond must not be joined over it. ``again``:
+        also where one is marked already."""
+        if again or not self.motions or self.motions[-1].kind != "GAP":
+            self.motions.append(Motion("GAP", None, line, file))
 
     def problem(self, file, line, told, text=None, /, **arguments):
         """Adds a Problem; the arguments are those of its class."""
@@ -138,23 +151,32 @@ class Program:
     def path_arrays(self, default_speed_mm_s, pose_of=None):
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
         forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int, zones (n,) in mm (0: exact
-        stop, -1: not known). Arcs become chords of ``CHORD_ERROR``, rounded where they meet; after a
-        joint target the robot arrives by a rapid motion. Between points of a spline there is no
+        stop, -1: not known), gaps (n,) int: the line from which on motions are left out before this
+        pose, 0: none. All poses are in one frame (``one_frame``); what cannot be brought into it is
+        left out and becomes a problem. Arcs become chords of ``CHORD_ERROR``, rounded where they meet; after a
+        joint target, and after a gap, the robot arrives by a rapid motion. Between points of a spline there is no
         stop.
         With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees, joint targets are
         poses too, and there is joints (n, 6) in degrees, NaN where none are given.
         """
-        motions = self.motions
+        from . import one_frame
+
+        motions, problems = one_frame.motions(self)
+        for file, line, fact in problems:
+            if (file, line, fact) not in self.told:
+                self.told.add((file, line, fact))
+                self.problem(file, line, fact)
         if pose_of is not None:
             motions = [
                 m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg))
                 for m in motions
             ]
-        rows, previous, aux, lost = [], None, None, False
+        rows, previous, aux, lost, gap = [], None, None, False, 0
         for motion, following in zip(motions, [*motions[1:], None]):
             check()
             if motion.pose is None:
-                lost = True  # where the joint target is, only the robot's geometry tells
+                gap = gap or (motion.line if motion.kind == "GAP" else 0)
+                aux, lost = None, True  # where the joint target is, only the robot's geometry tells
                 if rows:  # nor in which direction a corner before it would be rounded
                     rows[-1][-1] = 0.0
                 continue
@@ -168,7 +190,10 @@ class Program:
             speed = motion.speed_mm_s or default_speed_mm_s
             force = -1.0 if motion.force_N is None else motion.force_N
             joints = motion.joints_deg or (math.nan,) * 6
-            rows += [[pose, speed, force, rapid, motion.line, joints, math.inf] for pose in poses]
+            rows += [
+                [pose, speed, force, rapid, motion.line, joints, 0, math.inf] for pose in poses
+            ]
+            rows[-len(poses)][-2] = gap
             if len(rows) > MAX_POSES:
                 raise ProgramError.at(
                     motion.file,
@@ -179,8 +204,8 @@ class Program:
                     limit=MAX_POSES,
                 )
             rows[-1][-1] = _zone(motion, following)
-            previous, aux, lost = motion.pose, None, False
-        columns = list(zip(*rows)) if rows else [[] for _ in range(7)]
+            previous, aux, lost, gap = motion.pose, None, False, 0
+        columns = list(zip(*rows)) if rows else [[] for _ in range(8)]
         frames = np.array(columns[0], dtype=float).reshape(-1, 4, 4)
         arrays = {
             "frames": frames,
@@ -188,7 +213,8 @@ class Program:
             "forces": np.array(columns[2], dtype=float),
             "rapid": np.array(columns[3], dtype=bool),
             "lines": np.array(columns[4], dtype=int),
-            "zones": _finite(np.array(columns[6], dtype=float), frames),
+            "gaps": np.array(columns[6], dtype=int),
+            "zones": _finite(np.array(columns[7], dtype=float), frames),
         }
         if pose_of is not None:
             arrays["joints"] = np.array(columns[5], dtype=float).reshape(-1, 6)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..base.cells import cell
 from ..base.frames import to_quaternions
+from . import one_frame
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
 SHOWN = 20  # problems in a summary
@@ -35,9 +36,15 @@ def poses_csv(program):
 
 def summary(program):
     """Language, motions by kind, frames, extents (mm) and problems, as a dict."""
-    kinds = {}
+    kinds, gaps = {}, 0
     for motion in program.motions:
-        kinds[motion.kind] = kinds.get(motion.kind, 0) + 1
+        if motion.kind == "GAP":
+            gaps += 1
+        else:
+            kinds[motion.kind] = kinds.get(motion.kind, 0) + 1
+    moved, _ = one_frame.motions(program)
+    known = sum(motion.pose is not None for motion in moved)
+    base, tool = one_frame.reference(program)
     places = [m.pose[:3, 3] for m in program.motions if m.pose is not None]
     extents = None
     if places:
@@ -46,11 +53,13 @@ def summary(program):
     return {
         "language": program.language,
         "file": program.file,
-        "motions": len(program.motions),
+        "motions": len(program.motions) - gaps,
+        "gaps": gaps,
         "poses": len(places),
         "kinds": kinds,
         "bases": sorted({m.base for m in program.motions if m.base}),
         "tools": sorted({m.tool for m in program.motions if m.tool}),
+        "read_in": {"base": base, "tool": tool, "poses": known},
         "extents_mm": extents,
         "problems": len(program.problems),
         "first_problems": [str(problem) for problem in program.problems[:SHOWN]],

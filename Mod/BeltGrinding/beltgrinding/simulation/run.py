@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from ..base.messages import fact_data
-from ..cell import collision, events as event_lists, motions, reach
+from ..cell import collision, events as event_lists, gaps, motions, reach
 from ..cell.tool_path import tool_path
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
@@ -84,7 +84,8 @@ def _run(job, context, warnings, recording, phases):
     phases.end("hash")
     wheel, compliance, law, options = engine_arguments(job)
     core.check_wheel(wheel)
-    paths = [tool_path(job, i, warnings) for i in range(len(job["programs"]))]
+    left_out = []
+    paths = [tool_path(job, i, warnings, gaps=left_out) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
     warnings += idle.warnings(job, paths)
     ways = motions.of_paths(paths)
@@ -116,6 +117,7 @@ def _run(job, context, warnings, recording, phases):
                 "job.in_program", "{program}: ", program=program_name(job, i)
             ) from None
         lists = [one[i]["events"] for one in (reached, met) if one]
+        lists.append(gaps.events(path, left_out[i]))
         found.append((i, process_time, sum(lists, result["events"])))
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)

@@ -40,13 +40,12 @@ class TaughtPath:
         self.program = Program(language, self.file)
         self.run = []  # points of an arc taught one a statement
         self.joined = False  # the first of them is the arc before's last
-        self.frame = None  # (base, tool) of the motion before, None: none yet
 
     def problem(self, line, told, text=None, /, **arguments):
         self.program.problem(self.file, line, told, text, **arguments)
 
     def add(self, motion):
-        """Appends a motion; a gap where its frame or tool is another than before."""
+        """Appends a motion."""
         self.close_arc()
         self._append(motion)
 
@@ -62,7 +61,8 @@ class TaughtPath:
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
-        self.add(Motion("PTP", None, line, self.file))
+        self.close_arc()
+        self.program.gap(line, self.file, again=False)
 
     def close_arc(self):
         """Ends an arc: its first point is reached on a line, the others along circles through
@@ -94,23 +94,6 @@ class TaughtPath:
                 "programs.too_long",
                 "the program is too long or does not end; split it, or shorten its loops",
             )
-        if motion.pose is not None:
-            frame = (motion.base, motion.tool)
-            if self.frame is not None and frame != self.frame:
-                before, after = (
-                    ", ".join(n for n in f if n) or Fact("programs.taught.none", "none")
-                    for f in (self.frame, frame)
-                )
-                self.problem(
-                    motion.line,
-                    "programs.taught.frame_changes",
-                    "the frame changes from {before} to {after}: poses are in their own "
-                    "frame, where it lies only the controller knows",
-                    before=before,
-                    after=after,
-                )
-                self.program.motions.append(Motion("PTP", None, motion.line, self.file))
-            self.frame = frame
         self.program.motions.append(motion)
 
 

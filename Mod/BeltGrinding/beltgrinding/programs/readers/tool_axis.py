@@ -26,7 +26,7 @@ class Tracer:
     def gap(self, line):
         """What is left out: the path beyond must not be joined over it."""
         self.position = None
-        self.program.motions.append(Motion("PTP", None, line, self.program.file))
+        self.program.gap(line, self.program.file)
 
     def move(self, kind, position, axis, line, speed=None, base="", tool="", aux=False):
         """One motion to ``position`` in mm with the unit ``axis``; ``speed`` in mm/s."""

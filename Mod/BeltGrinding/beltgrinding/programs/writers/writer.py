@@ -11,6 +11,7 @@ from typing import Optional
 
 import numpy as np
 
+from .. import one_frame
 from ..program import Motion, Program, ProgramError
 from .frames import Frames, checked
 from .text import printable
@@ -86,12 +87,17 @@ def write_program(
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
 
-    Returns a list of Facts: which frames the program leaves to the controller.
+    A CSV has all poses in the frames that most are in; those of which the way there is not known are left out.
+
+    Returns a list of Facts: which frames the program leaves to the controller, and what is left out.
     """
     path = Path(path)
     suffix = (language or path.suffix).lower()
     writer = _writer(suffix, path)
-    motions = motions_of(program)
+    motions, left_out = motions_of(program), []
+    if suffix == ".csv":  # a table has no frames
+        known = program if isinstance(program, Program) else Program("", "", motions)
+        motions, left_out = one_frame.motions(known)
     used = {m.base for m in motions} | {m.tool for m in motions}
     if part_in_hand is None:
         part_in_hand = any(words.endswith(IN_HAND) for words in used)
@@ -101,6 +107,7 @@ def write_program(
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
         head += [f"not followed there: {problem}" for problem in program.problems[:20]]
+    head += [str(fact) for _, _, fact in left_out]
     sheet.comments = [printable(text) for text in head]
     sheet.speed_mm_s, sheet.ptp_speed_mm_s = float(speed_mm_s), float(ptp_speed_mm_s)
     sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
@@ -108,7 +115,7 @@ def write_program(
     from ...base.files import write_whole
 
     write_whole(path, data)
-    return sheet.notes
+    return [*sheet.notes, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix, path):

@@ -289,6 +289,7 @@ class _Reader(Registers):
         # It may move the robot, change registers and select frames.
         self.here = self.uframe = self.utool = None
         self.registers.clear()
+        self.gap(line)
 
     def forget(self, statements):
         """What statements assign that may or may not run is unknown afterwards."""

@@ -266,6 +266,7 @@ class _Reader(TaughtPath):
                 name=name,
             )
             self.here = None
+            self.gap(line)
         elif word == "SPEED":
             self.speed_set = self.speed(line, text[5:])
         elif text.startswith("+"):

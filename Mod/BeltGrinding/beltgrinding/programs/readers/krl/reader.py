@@ -117,6 +117,7 @@ class _Interpreter:
         self.calls = self.depth = 0
         self.rounds = 0  # units of work; below 0: what the files allow
         self.missing = set()
+        self.held = False  # $IPO_FRAME is #TCP
 
     def problem(self, line, told, text=None, /, **arguments):
         self.program.problem(self.file, line, told, text, **arguments)
@@ -157,6 +158,9 @@ class _Interpreter:
     def assign(self, match, line):
         _, name, index, text = match.groups()
         name = name.lower()
+        if name == "$ipo_frame":
+            self.held = text.strip().lower() == "#tcp"
+            return
         try:
             indices = ()
             if index and index.strip("[] "):
@@ -338,6 +342,13 @@ class _Interpreter:
         routine, begin, end = body
         if routine.moves(begin, end):
             self.problem(line, message)
+            if message.code != "programs.endless":
+                self.gap(line)
+
+    def gap(self, line):
+        """What is left out: the path beyond must not be joined over it."""
+        self.here = None
+        self.program.gap(line, self.file)
 
     def forget(self, body):
         """What a block assigns that may or may not run is unknown afterwards."""
@@ -468,6 +479,8 @@ class _Interpreter:
     def call(self, line, name, arguments):
         if name == "bas":
             what, _, value = arguments.partition(",")
+            if what.strip().lower() in ("#cp_params", "#ptp_params"):
+                self.take_fdat()
             if what.strip().lower() in ("#cp_params", "#vel_cp"):
                 self.speed_text(value, line)
                 distance = self.component("ldat_act", "apo_dist")
@@ -483,6 +496,7 @@ class _Interpreter:
                     "{name} calls itself too deeply; its motions are left out",
                     name=name,
                 )
+                self.gap(line)
                 return
             self.tick(line, 1)
             self.calls += 1
@@ -496,14 +510,45 @@ class _Interpreter:
                 "{name}() is not in this file; motions in it are left out",
                 name=name,
             )
-            self.here = None
+            self.gap(line)
+        elif name not in HARMLESS:
+            self.gap(line)
 
     def set_frame(self, what, index):
         """BAS(#TOOL, n), BAS(#BASE, n): as $TOOL=TOOL_DATA[n]."""
         with contextlib.suppress(Unknown):
             index = f"{number(self.evaluate(index)):.0f}"
-        self.values.pop((f"${what}", ()), None)
-        self.named[f"${what}"] = f"{what}_data[{index}]".upper()[:MAX_NAME]
+        self.take_frame(f"${what}", what, index)
+
+    def take_frame(self, name, what, index):
+        """$TOOL or $BASE (``name``) from TOOL_DATA or BASE_DATA (``what``: tool, base) number ``index``, a
+        text; 0: $NULLFRAME."""
+        self.values.pop((name, ()), None)
+        self.named.pop(name, None)
+        number_ = int(index) if re.fullmatch(r"\d{1,3}", index, re.ASCII) else None
+        known = self.values.get((f"{what}_data", (number_,)))
+        if number_ == 0:
+            self.values[name, ()] = dict.fromkeys(FRAME, 0.0)
+        elif isinstance(known, dict):
+            self.values[name, ()] = known
+        else:
+            self.named[name] = f"{what}_data[{index}]".upper()[:MAX_NAME]
+
+    def take_fdat(self):
+        """The frames of an inline form, FDAT_ACT, as BAS takes them. With the tool in the room (IPO_FRAME
+        #TCP) that is one of BASE_DATA, and the part in the robot one of TOOL_DATA."""
+        given = self.values.get(("fdat_act", ()))
+        if not isinstance(given, dict):
+            return
+        numbers = {what: given.get(f"{what}_no") for what in ("tool", "base")}
+        if not all(
+            isinstance(n, float) and 0 <= n < 1000 and n == int(n) for n in numbers.values()
+        ):
+            return
+        self.held = str(given.get("ipo_frame", "")).lower().lstrip("#") == "tcp"
+        tool, base = ("base", "tool") if self.held else ("tool", "base")
+        self.take_frame("$tool", tool, f"{numbers[tool]:.0f}")
+        self.take_frame("$base", base, f"{numbers[base]:.0f}")
 
     def motion(self, line, kind, text, whole=None):
         """``whole``: the statement with what stands behind WITH."""
@@ -532,9 +577,7 @@ class _Interpreter:
                 what=kind,
                 reason=unknown.fact,
             )
-            self.here = None
-            # The path beyond must not be joined over the gap as if nothing were missing.
-            self.program.motions.append(Motion("PTP", None, line, self.file))
+            self.gap(line)
 
     def own_speed(self, line, kind, text, speed, whole):
         """A motion with a speed of its own."""
@@ -550,7 +593,7 @@ class _Interpreter:
             kind.replace("_REL", ""), kind.replace("_REL", "")
         )
         motion = Motion(simple, None, line, self.file, aux=aux)
-        motion.tool, motion.base = (self.named_frame(n) for n in ("$tool", "$base"))
+        motion.tool, motion.base = self.frames_now()
         if any(f"a{k}" in target for k in range(1, 7)):
             if simple != "PTP":
                 raise Unknown("programs.joint_target", "its target is a joint position")
@@ -606,8 +649,24 @@ class _Interpreter:
             return components_of(frame_of(self.here) @ frame_of(step))
         return {name: self.here[name] + given.get(name, 0.0) for name in FRAME}
 
-    def named_frame(self, name):
-        value = self.values.get((name, ()))
-        if not isinstance(value, dict):
-            return self.named.get(name, "")
-        return " ".join(f"{k.upper()} {v:g}" for k, v in value.items() if isinstance(v, float))
+    def frames_now(self):
+        """The words of $TOOL and $BASE; what they are is kept in the program."""
+        program, words = self.program, []
+        for name, kept in (("$tool", program.tool_frames), ("$base", program.base_frames)):
+            value = self.values.get((name, ()))
+            if not isinstance(value, dict):
+                told = self.named.get(name, "")
+            else:
+                told = " ".join(
+                    f"{k.upper()} {v:.9g}" for k, v in value.items() if isinstance(v, float)
+                )
+            if self.held:  # $IPO_FRAME is #TCP: the part is on the flange
+                side = "fixed in the room" if name == "$tool" else "held by the robot"
+                told = f"{told} {side}".strip()
+            if isinstance(value, dict) and all(isinstance(value.get(k), float) for k in FRAME):
+                if told not in kept:
+                    kept[told] = frame_of({k: value[k] for k in FRAME})
+            words.append(told)
+        if self.held:
+            program.held.add(words[1])
+        return words

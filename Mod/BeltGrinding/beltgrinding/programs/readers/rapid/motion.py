@@ -152,6 +152,7 @@ class MotionRunner(State):
         self.override, self.most = 1.0, math.inf  # VelSet: factor, mm/s
         self.displacement = None  # PDispSet; False: known to the controller only
         self.here = None  # target, tool, work object; None: not known
+        self.frames = {1: {}, 3: {}}  # of tools and work objects in words: position, quaternion
         self.written = {}  # names of tools and work objects as the program writes them
 
     def problem(self, line, told, text=None, /, once=None, **arguments):
@@ -168,9 +169,7 @@ class MotionRunner(State):
     def gap(self, line):
         """The path beyond must not be joined over the gap as if nothing were missing."""
         self.forget_position()
-        motions = self.program.motions
-        if not motions or (self.poses and self.poses[-1][0] is motions[-1]):
-            motions.append(Motion("PTP", None, line, self.file))
+        self.program.gap(line, self.file, again=False)
 
     def finish(self):
         """The Program with all poses."""
@@ -179,6 +178,9 @@ class MotionRunner(State):
             frames = from_quaternions(positions, quaternions)
             for (motion, _, _), frame in zip(self.poses, frames):
                 motion.pose = frame
+        for at, kept in ((1, self.program.tool_frames), (3, self.program.base_frames)):
+            for words, (position, quaternion) in self.frames[at].items():
+                kept[words] = from_quaternions(np.array([position]), np.array([quaternion]))[0]
         return self.program
 
     def motion(self, line, text, spec):
@@ -378,6 +380,12 @@ class MotionRunner(State):
                 text = f"{text} {data.components(pose)}"
                 if value[0] == (at == 3):
                     text += " held by the robot" if at == 3 else " fixed in the room"
+                if (
+                    at == 1 or value[1] and not value[2]
+                ):  # one that a mechanical unit moves is nowhere
+                    self.frames[at][text] = pose
+                if at == 3 and value[0]:
+                    self.program.held.add(text)
             except (Unknown, IndexError):
                 pass
             self.texts[name, at] = text

@@ -4,7 +4,7 @@ import re
 
 from ...program import Fact, Motion, Program, Unknown
 from ..urscript.reader import Interpreter
-from .position import NOWHERE, NUMBER, Positions
+from .position import NOWHERE, NUMBER, Positions, in_mm
 
 THE_WAYPOINT = Fact("programs.urp.waypoint", "the waypoint")
 # Six numbers, as they are named when they are none.
@@ -41,7 +41,7 @@ class Waypoints:
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
-        self.program.motions.append(Motion("PTP", None, line, self.file))
+        self.program.gap(line, self.file)
 
     def target(self, element):
         """What an element stands for: itself, or what its reference leads to (as XStream writes
@@ -207,7 +207,9 @@ class Waypoints:
         offset = self.part(self.target(position), "TCPOffset") if position is not None else None
         if (name, offset) not in self.tools:
             text = "" if offset is None else "p[" + ", ".join(f"{v:g}" for v in offset) + "]"
-            self.tools[name, offset] = f"{name} {text}".strip()
+            words = self.tools[name, offset] = f"{name} {text}".strip()
+            if offset is not None:
+                self.program.tool_frames[words] = in_mm(offset)
         return self.tools[name, offset]
 
     def speed(self, line, node, move, kind):

@@ -12,6 +12,7 @@ import numpy as np
 
 from ....base.frames import to_quaternions
 from ...program import Fact, Unknown
+from ..urscript.expression import pose_of
 
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 PARAMETERS = ("deltaTheta", "a", "d", "alpha")
@@ -37,6 +38,13 @@ def six(text, what):
     return values
 
 
+def in_mm(values):
+    """4 x 4 in mm of six numbers: m, and a rotation vector."""
+    frame = pose_of(list(values)).frame.copy()
+    frame[:3, 3] *= 1000.0
+    return frame
+
+
 def keep_kinematics():
     """A function for <Kinematics> elements just read: their parameters become attributes, which are
     kept once, since every waypoint repeats them."""
@@ -58,6 +66,7 @@ class Positions:
         self.poses = []  # (motion, pose, feature)
         self.taught = []  # (motion, pose in the base, pose in the feature, name of the feature)
         self.arms, self.texts, self.numbers = {}, {}, {}
+        self.frames = {}  # of features in words, 4 x 4 in mm
 
     def six(self, text, what):
         """Six numbers, those that many waypoints have read once."""
@@ -73,6 +82,7 @@ class Positions:
         if key not in self.texts:
             text = f"{name or 'feature'} p[" + ", ".join(f"{v:g}" for v in feature) + "]"
             self.texts[key] = "" if not name and feature == NOWHERE else text
+            self.frames[self.texts[key]] = in_mm(feature)
         return self.texts[key]
 
     def arm(self, element):

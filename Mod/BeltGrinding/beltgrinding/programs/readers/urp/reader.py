@@ -9,6 +9,8 @@ kinematics) is a Problem.
 
 import re
 
+import numpy as np
+
 from ....base.stopping import check
 from ...program import (
     MAX_UNROLLED,
@@ -102,19 +104,8 @@ class _Reader(Waypoints):
                 "programs.urp.far_pose",
                 "the waypoint's pose is no robot's; it is left out",
             )
-        before = None
-        for motion in self.program.motions:
-            changed = before is not None and motion.base != before.base and motion.kind != "PTP"
-            if changed and motion.pose is not None:
-                self.problem(
-                    motion.line,
-                    "programs.urp.feature_changes",
-                    "the feature changes from {old} to {new}; each pose stays in its own",
-                    old=before.base or THE_BASE,
-                    new=motion.base or THE_BASE,
-                )
-                break  # once is enough
-            before = motion if motion.pose is not None else None
+        self.program.base_frames.update(self.positions.frames)
+        self.program.base_frames[""] = np.eye(4)  # the robot's base
         return self.program
 
     def run(self):

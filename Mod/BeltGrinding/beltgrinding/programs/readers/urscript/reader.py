@@ -118,7 +118,7 @@ class Interpreter:
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
         self.here = None
-        self.program.motions.append(Motion("PTP", None, line, self.file))
+        self.program.gap(line, self.file)
 
     def tree(self, lines):
         """List of _Block. A block without its end, or the other way round, is a Problem."""
@@ -480,9 +480,12 @@ class Interpreter:
 
     def set_tool(self, line, tree):
         try:
-            self.tool = str(a_pose(self.node(tree.args[0]) if tree.args else None))
+            pose = a_pose(self.node(tree.args[0]) if tree.args else None)
+            self.tool = str(pose)
+            self.program.tool_frames[self.tool] = pose.frame.copy()
+            self.program.tool_frames[self.tool][:3, 3] *= 1000.0
         except Unknown as unknown:
-            self.tool = ""
+            self.tool = f"as line {line} sets it"
             self.problem(
                 line,
                 "programs.urscript.tool",

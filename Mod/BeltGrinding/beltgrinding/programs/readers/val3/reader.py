@@ -246,7 +246,6 @@ class _Interpreter(Control):
                 number(end.get(name))
             motion = Motion("PTP", None, line, self.file, tool=self.tool(line, tool))
             self.program.motions.append(motion)
-            self.frame = None
             return
         rows = []
         for point in targets:
@@ -267,22 +266,12 @@ class _Interpreter(Control):
                 row = data.product(data.inverse(home), data.in_world(point))
             rows.append(row)
         base, held = self.described(end.father, "world"), self.tool(line, tool)
-        if kind != "PTP" and self.frame is not None and self.frame[0] is not end.father:
-            before = self.described(self.frame[0], "world")
-            message = Fact(
-                "programs.val3.frame_changes",
-                "the frame changes from {before} to {after}; each pose stays in its own",
-                before=before,
-                after=base,
-            )
-            self.problem(line, message, once="the frame changes")  # once is enough
         speed = self.speed(line, kind, mdesc)
         for k, row in enumerate(rows):
             motion = Motion(kind, None, line, self.file, speed, tool=held, base=base)
             motion.aux = k < len(rows) - 1
             self.program.motions.append(motion)
             self.rows.append((motion, row))
-        self.frame = (end.father,)
 
     def tool(self, line, text):
         try:

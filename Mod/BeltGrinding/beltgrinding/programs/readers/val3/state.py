@@ -6,7 +6,6 @@ from ....base.stopping import check
 from ...program import (
     MAX_UNROLLED,
     Fact,
-    Motion,
     Program,
     ProgramError,
     Unknown,
@@ -37,8 +36,8 @@ class State:
         self.rounds = 0  # units of work; below 0: as many as the files have
         self.said = set()
         self.rows = []  # (motion, six components), made poses all at once
-        self.frame = None  # (the Record of) the frame of the last pose, in a tuple
         self.texts = {}  # frames and tools in words; cleared when data change
+        self.places = {}  # of frames and tools in words, in the world or the flange
 
     def problem(self, line, told, text=None, /, once=None, **arguments):
         """Says something once, however often a loop comes by."""
@@ -61,9 +60,7 @@ class State:
 
     def gap(self, line):
         """The path beyond must not be joined over what is left out as if nothing were missing."""
-        motions, self.frame = self.program.motions, None
-        if not motions or (self.rows and self.rows[-1][0] is motions[-1]):
-            motions.append(Motion("PTP", None, line, self.file))
+        self.program.gap(line, self.file, again=False)
 
     def array(self, name):
         """The Array of that name. Raises Unknown."""
@@ -286,7 +283,9 @@ class State:
         if id(record) not in self.texts:
             text = record.name or root
             try:
-                text += " " + data.words(data.in_world(record))
+                place = data.in_world(record)
+                text += " " + data.words(place)
+                self.places[text] = place
             except Unknown:
                 pass
             self.texts[id(record)] = (text, record)
@@ -299,4 +298,9 @@ class State:
             frames[:, :3, 3] *= self.project.unit
             for (motion, _), frame in zip(self.rows, frames):
                 motion.pose = frame
+        self.places.update(world=(0.0,) * 6, flange=(0.0,) * 6)
+        known = data.frames(list(self.places.values()))
+        known[:, :3, 3] *= self.project.unit
+        for words, frame in zip(self.places, known):
+            self.program.base_frames[words] = self.program.tool_frames[words] = frame
         return self.program

@@ -1,0 +1,252 @@
+"""Programs that change between bases and tools: every pose lies where the robot makes it, or is left out and
+named."""
+
+import math
+
+import numpy as np
+import pytest
+
+from beltgrinding.base import frames
+from beltgrinding.programs.program import Motion
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.writers.writer import write_program
+
+TOP = (500.0, 100.0, 300.0), (0.0, 0.0, 0.0)  # x, y, z in mm; a, b, c in degrees
+SIDE = (620.0, 40.0, 180.0), (90.0, 0.0, 30.0)
+SHORT = (10.0, 0.0, 120.0), (0.0, 90.0, 0.0)
+LONG = (0.0, -25.0, 260.0), (45.0, 20.0, 0.0)
+POINTS = [(k * 12.0, 5.0, 2.0 - k) for k in range(4)]  # in the base, turned as they stand
+TURN = (15.0, 10.0, 180.0)
+
+
+def matrix(frame):
+    return frames.from_abc(*frame)
+
+
+def expected():
+    """Poses of the tool SHORT in the base TOP: three points, two in SIDE, two by LONG, one in both."""
+    top, side, short, long = map(matrix, (TOP, SIDE, SHORT, LONG))
+    into, onto = np.linalg.inv(top) @ side, np.linalg.inv(long) @ short
+    pose = [frames.from_abc(point, TURN) for point in POINTS]
+    return np.array(
+        [*pose[:3], into @ pose[0], into @ pose[1], pose[1] @ onto, pose[2] @ onto,
+         into @ pose[3] @ onto]
+    )  # fmt: skip
+
+
+PLAN = [  # base, tool, number of the point
+    *(("TOP", "SHORT", k) for k in range(3)),
+    *(("SIDE", "SHORT", k) for k in range(2)),
+    *(("TOP", "LONG", k) for k in (1, 2)),
+    ("SIDE", "LONG", 3),
+]
+FRAMES = {"TOP": TOP, "SIDE": SIDE, "SHORT": SHORT, "LONG": LONG}
+
+
+def krl(frame):
+    (x, y, z), (a, b, c) = frame
+    return f"{{X {x},Y {y},Z {z},A {a},B {b},C {c}}}"
+
+
+def krl_program(assign):
+    rows = ["DEF p()", "$VEL.CP=0.1"]
+    for base, tool, k in PLAN:
+        rows += [*assign(base, tool), f"LIN {krl((POINTS[k], TURN))}"]
+    return "\n".join([*rows, "END", ""])
+
+
+def quaternion(frame):
+    return frames.to_quaternions(matrix(frame)[None, :3, :3])[0]
+
+
+def rapid(frame):
+    return f"[{list(frame[0])},[{','.join(repr(float(v)) for v in quaternion(frame))}]]"
+
+
+def rotation_vector(frame):
+    w, *axis = quaternion(frame)
+    sine = math.sqrt(sum(v * v for v in axis))
+    return [float(v * (2 * math.atan2(sine, w) / sine if sine else 2.0)) for v in axis]
+
+
+def metres(frame):
+    return "p[" + ",".join(repr(float(v)) for v in [*np.array(frame[0]) / 1000, *rotation_vector(frame)]) + "]"
+
+
+def rapid_program(held=False):
+    robot, room = ("FALSE", "TRUE") if held else ("TRUE", "FALSE")
+    rows = ["MODULE m"]
+    for name in ("SHORT", "LONG"):
+        rows.append(
+            f"PERS tooldata {name}:=[{robot},{rapid(FRAMES[name])},[1,[0,0,1],[1,0,0,0],0,0,0]];"
+        )
+    for name in ("TOP", "SIDE"):
+        rows.append(f'PERS wobjdata {name}:=[{room},TRUE,"",{rapid(FRAMES[name])},[[0,0,0],[1,0,0,0]]];')
+    rows.append("PROC main()")
+    for base, tool, k in PLAN:
+        target = rapid((POINTS[k], TURN))[:-1] + ",[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+        rows.append(f"MoveL {target},v100,fine,{tool}\\WObj:={base};")
+    return "\n".join([*rows, "ENDPROC", "ENDMODULE", ""])
+
+
+def read(folder, name, text):
+    path = folder / name
+    path.write_text(text)
+    return read_program(path)
+
+
+def krl_by_number(base, tool):
+    number = {"TOP": 1, "SIDE": 2, "SHORT": 3, "LONG": 4}
+    return [f"BAS(#BASE,{number[base]})", f"BAS(#TOOL,{number[tool]})"]
+
+
+DATA = "DEFDAT p\n" + "".join(
+    f"{what}_DATA[{n}]={krl(FRAMES[name])}\n"
+    for what, n, name in (("BASE", 1, "TOP"), ("BASE", 2, "SIDE"), ("TOOL", 3, "SHORT"), ("TOOL", 4, "LONG"))
+) + "ENDDAT\n"
+
+
+def test_krl_frames_that_are_assigned(tmp_path):
+    program = read(
+        tmp_path,
+        "p.src",
+        krl_program(lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]),
+    )
+    path = program.path_arrays(50.0)
+    assert not program.problems and not path["gaps"].any()
+    np.testing.assert_allclose(path["frames"], expected(), atol=1e-9)
+    assert path["rapid"].tolist() == [True] + [False] * 7
+
+
+def test_krl_frames_by_number_and_inline_forms(tmp_path):
+    (tmp_path / "p.dat").write_text(DATA)
+    program = read(tmp_path, "p.src", krl_program(krl_by_number))
+    np.testing.assert_allclose(program.path_arrays(50.0)["frames"], expected(), atol=1e-9)
+
+    numbers = {"TOP": 1, "SIDE": 2, "SHORT": 3, "LONG": 4}
+    points = "".join(
+        f'DECL FDAT FP{i}={{TOOL_NO {numbers[tool]},BASE_NO {numbers[base]},IPO_FRAME #BASE,POINT2[] " "}}\n'
+        f"DECL E6POS XP{i}={krl((POINTS[k], TURN))}\n"
+        for i, (base, tool, k) in enumerate(PLAN)
+    )
+    (tmp_path / "q.dat").write_text(DATA.replace("ENDDAT\n", points + "ENDDAT\n"))
+    rows = "".join(f"FDAT_ACT=FP{i}\nBAS(#CP_PARAMS,0.1)\nLIN XP{i} C_DIS\n" for i in range(len(PLAN)))
+    program = read(tmp_path, "q.src", f"DEF q()\n{rows}END\n")
+    np.testing.assert_allclose(program.path_arrays(50.0)["frames"], expected(), atol=1e-9)
+    # The same numbers with the tool in the room: BASE_DATA are tools there, TOOL_DATA the part on the flange.
+    (tmp_path / "r.dat").write_text((tmp_path / "q.dat").read_text().replace("#BASE", "#TCP"))
+    program = read(tmp_path, "r.src", f"DEF r()\n{rows}END\n")
+    assert all("held by the robot" in m.base for m in program.motions)
+    short, top = matrix(SHORT), matrix(TOP)
+    wanted = [
+        np.linalg.inv(short) @ matrix(FRAMES[tool]) @ frames.from_abc(POINTS[k], TURN)
+        @ np.linalg.inv(matrix(FRAMES[base])) @ top
+        for base, tool, k in PLAN
+    ]  # fmt: skip
+    np.testing.assert_allclose(program.path_arrays(50.0)["frames"], wanted, atol=1e-9)
+
+
+def test_krl_frames_that_only_the_controller_knows_are_left_out_and_named(tmp_path):
+    program = read(tmp_path, "p.src", krl_program(krl_by_number))
+    path = program.path_arrays(50.0)
+    np.testing.assert_allclose(path["frames"], expected()[:3], atol=1e-9)
+    told = [problem for problem in program.problems if problem.code == "programs.other_frame"]
+    assert [fact.arguments["frame"] for fact in told] == ["BASE_DATA[2]", "TOOL_DATA[4]", "BASE_DATA[2]"]
+    assert [fact.arguments["count"] for fact in told] == [2, 2, 1]
+    assert [fact.line for fact in told] == [14, 20, 26]
+    program.path_arrays(50.0)
+    assert len(program.problems) == 3  # told once
+
+
+def test_what_comes_behind_a_gap_is_reached_without_grinding(tmp_path):
+    rows = [krl((point, TURN)) for point in POINTS]
+    text = (
+        f"DEF p()\n$BASE={krl(TOP)}\nLIN {rows[0]}\nLIN {rows[1]}\n$BASE=BASE_DATA[7]\nLIN {rows[2]}\n"
+        f"$BASE={krl(TOP)}\nLIN {rows[3]}\nLIN {rows[0]}\nWHILE $IN[3]\nLIN {rows[1]}\nENDWHILE\n"
+        f"LIN {rows[2]}\nother()\nLIN {rows[3]}\nEND\n"
+    )
+    program = read(tmp_path, "p.src", text)
+    path = program.path_arrays(50.0)
+    assert path["lines"].tolist() == [3, 4, 8, 9, 13, 15]
+    assert path["rapid"].tolist() == [True, False, True, False, True, True]
+    assert path["gaps"].tolist() == [0, 0, 6, 0, 10, 14]
+    assert [m.kind for m in program.motions].count("PTP") == 0
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_rapid_work_objects_and_tools(tmp_path, held):
+    program = read(tmp_path, "p.mod", rapid_program(held))
+    path = program.path_arrays(50.0)
+    assert not program.problems
+    np.testing.assert_allclose(path["frames"], expected(), atol=1e-6)
+
+
+def test_rapid_a_work_object_of_a_mechanical_unit_is_left_out(tmp_path):
+    text = rapid_program().replace("PERS wobjdata SIDE:=[FALSE,TRUE", "PERS wobjdata SIDE:=[FALSE,FALSE")
+    program = read(tmp_path, "p.mod", text)
+    path = program.path_arrays(50.0)
+    assert len(path["frames"]) == 5 and path["gaps"].tolist()[3] > 0
+    assert [p.arguments["frame"].split()[0] for p in program.problems if p.code == "programs.other_frame"] == ["SIDE"] * 2
+
+
+def test_urscript_tools(tmp_path):
+    rows = []
+    for base, tool, k in PLAN:
+        if base == "TOP":
+            rows += [f"set_tcp({metres(SHORT if tool == 'SHORT' else LONG)})", f"movel({metres((POINTS[k], TURN))}, v=0.1)"]
+    program = read(tmp_path, "p.script", "\n".join(rows) + "\n")
+    want = [pose for pose, (base, _, _) in zip(expected(), PLAN) if base == "TOP"]
+    np.testing.assert_allclose(program.path_arrays(50.0)["frames"], want, atol=1e-6)
+
+
+def test_g_code_offsets_and_tools_are_named(tmp_path):
+    text = "T1 M6\nG90 G21 G54\nG1 X0 Y0 Z0 F600\nX10\nX20\nG55\nX0\nX5\nG54\nX30\nT2 M6\nX40\nM30\n"
+    program = read(tmp_path, "p.nc", text)
+    path = program.path_arrays(50.0)
+    assert path["frames"][:, 0, 3].tolist() == [0, 10, 20, 30]
+    assert path["rapid"].tolist()[-1] and path["gaps"].tolist() == [0, 0, 0, 7]
+    told = [p.arguments for p in program.problems if p.code == "programs.other_frame"]
+    assert [(one["frame"], one["count"]) for one in told] == [("G55", 2), ("T2", 1)]
+
+
+def test_where_most_is_ground_is_the_reference(tmp_path):
+    far = krl(((0.0, 0.0, 900.0), TURN))
+    text = f"DEF p()\n$BASE=BASE_DATA[9]\nPTP {far}\n$BASE={krl(TOP)}\n" + "".join(
+        f"LIN {krl((point, TURN))}\n" for point in POINTS
+    )
+    program = read(tmp_path, "p.src", text + "END\n")
+    assert len(program.path_arrays(50.0)["frames"]) == 4
+    told = next(p for p in program.problems if p.code == "programs.other_frame")
+    assert "BASE_DATA[9]" in str(told) and told.line == 3
+
+
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".csv"])
+def test_two_frames_come_back_as_they_were_written(tmp_path, suffix):
+    program = read(
+        tmp_path,
+        "p.src",
+        krl_program(lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]),
+    )
+    out = tmp_path / f"written{suffix}"
+    given = {"tools": "as-known", "bases": "as-known"}
+    try:
+        write_program(out, None, program, **given)
+    except Exception as error:  # a language that has no such frames says so, and writes nothing
+        assert suffix in (".csv", ".script") and not out.exists(), error
+        return
+    again = read_program(out)
+    path = again.path_arrays(50.0)
+    assert len(path["frames"]) == 8
+    # Both are relative to a reference of their own: compare the way from the first pose on.
+    first = np.linalg.inv(path["frames"][0]) @ path["frames"]
+    wanted = np.linalg.inv(expected()[0]) @ expected()
+    np.testing.assert_allclose(first, wanted, atol=2e-3)
+
+
+def test_a_program_in_one_frame_is_as_it_was(tmp_path):
+    motions = [Motion("LIN", matrix((point, TURN)), k, "p") for k, point in enumerate(POINTS)]
+    from beltgrinding.programs.program import Program
+
+    program = Program("x", "p", motions)
+    frames_ = program.path_arrays(50.0)["frames"]
+    assert all((a == m.pose).all() for a, m in zip(frames_, motions)) and not program.problems

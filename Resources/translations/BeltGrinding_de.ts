@@ -3372,6 +3372,10 @@ im Mittel {} abgetragen</translation>
         <source>in a fixed direction</source>
         <translation>in fester Richtung</translation>
     </message>
+    <message>
+        <source>Each place in a line of its own</source>
+        <translation>Jede Stelle in eigener Zeile</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

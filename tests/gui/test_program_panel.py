@@ -38,3 +38,24 @@ press("OK")
 """,
         window=True,
     )
+
+
+def test_problems_of_a_kind_are_one_line_until_each_is_asked_for(freecad):
+    freecad.run(
+        PREPARE
+        + """
+rows = "".join(f"CYCLE/DRILL,{k}\\nGOTO/{k},0,0\\n" for k in range(12))
+Path("p.apt").write_text(f"UNITS/MM\\nFEDRAT/60,MMPM\\n{rows}FINI\\n")
+path = set_up.import_program(job, "p.apt")
+edit(path)
+problems = window.findChild(QtGui.QListWidget, "problems")
+each = window.findChild(QtGui.QCheckBox, "eachProblem")
+assert len(path.Problems) == 12 and problems.count() == 1, problems.count()
+assert "11 more like it" in problems.item(0).text()
+assert not each.isHidden()
+each.setChecked(True)
+assert problems.count() == 12
+press("OK")
+""",
+        window=True,
+    )

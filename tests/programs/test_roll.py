@@ -291,7 +291,9 @@ def test_a_job_s_roll(tmp_path):
     apt(tmp_path, [zigzag()])
     file = str(tmp_path / "p.apt")
     arrays = program_arrays({"file": file, "roll": "fixed", "roll_direction": [0, 1, 0]}, "p", [])
-    np.testing.assert_allclose(arrays["frames"][:, :3, 0], [[0, 1, 0]] * len(arrays["frames"]), atol=1e-9)
+    np.testing.assert_allclose(
+        arrays["frames"][:, :3, 0], [[0, 1, 0]] * len(arrays["frames"]), atol=1e-9
+    )
     with pytest.raises(InputError) as caught:
         program_arrays({"poses": [], "roll": "hold"}, "p", [])
     assert caught.value.code == "job.roll_of_poses"

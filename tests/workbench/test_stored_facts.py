@@ -14,6 +14,7 @@ beltgrinding.make_belt_machine(job)
 with open("pass.src", "w") as file:
     file.write(
         "DEF pass()\\n"
+        "$VEL.CP = 0.1\\n"
         "LIN {X 0, Y 0, Z 30, A 0, B 0, C 180}\\n"
         "LIN NOWHERE\\n"
         "LIN {X 50, Y 0, Z 30, A 0, B 0, C 180}\\n"
@@ -30,7 +31,7 @@ doc = FreeCAD.openDocument(os.path.abspath("kept.FCStd"))
 robot = doc.RobotPath
 assert list(robot.Problems) == english
 german = stored_facts.sentences(robot, "Problems", "de")
-assert "NOWHERE" in german[0] and "pass.src:3: " in german[0] and german != english, german
+assert "NOWHERE" in german[0] and "pass.src:4: " in german[0] and german != english, german
 
 robot.Problems = ["mine", *english]  # of a macro: as it stands
 assert stored_facts.sentences(robot, "Problems", "de") == ["mine", *english]

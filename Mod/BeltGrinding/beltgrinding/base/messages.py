@@ -11,6 +11,7 @@ import re
 import string
 from functools import lru_cache
 
+from .grouping import grouped
 from .resources import resources
 
 POINTS = {"en": ".", "de": ","}
@@ -136,9 +137,9 @@ def _plain(value):
 
 
 def warnings(summary, language):
-    """The sentences of a run's warnings, from its summary."""
+    """The sentences of a run's warnings, from its summary; many of a kind as one."""
     told = summary.get("warning_facts") or summary.get("warnings", [])
-    return [sentence(one, language) for one in told]
+    return [sentence(one, language) for one in grouped(told)]
 
 
 def notes(found, language):

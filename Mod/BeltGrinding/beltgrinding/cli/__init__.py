@@ -33,10 +33,11 @@ TOPICS = (grind, press, program, faces, calibrate, inspect, measure, report, vie
 
 
 JSON_ERRORS = "--json-errors"
+ALL = "--all"
 
 
 class _Parser(argparse.ArgumentParser):
-    """Takes ``--json-errors`` before and after the command; its own errors are JSON then, too."""
+    """Takes ``--json-errors`` and ``--all`` before and after the command; its own errors are JSON then, too."""
 
     def __init__(self, *arguments, **options):
         super().__init__(*arguments, **options)
@@ -45,6 +46,13 @@ class _Parser(argparse.ArgumentParser):
             action="store_true",
             default=argparse.SUPPRESS,
             help="an error as one line of JSON: its code, message, culprit and arguments",
+        )
+        self.add_argument(
+            ALL,
+            action="store_true",
+            dest="everything",
+            default=argparse.SUPPRESS,
+            help="each warning in a line of its own; many of a kind are told in one",
         )
         self.as_json = False
 
@@ -108,6 +116,7 @@ def process(handler=None):
 def _main(argv, messages):
     arguments = _parser().parse_args(argv)
     messages.set(arguments.message_language, getattr(arguments, "json_errors", False))
+    messages.everything = getattr(arguments, "everything", False)
     arguments.messages = messages
     try:
         from ..engine import Cancelled, InputError, core

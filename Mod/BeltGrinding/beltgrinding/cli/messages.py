@@ -19,10 +19,12 @@ def of_locale():
 
 
 class Messages:
-    """``language``: "en", "de" or None for the locale's. ``as_json``: errors as one line of JSON."""
+    """``language``: "en", "de" or None for the locale's. ``as_json``: errors as one line of JSON.
+    ``everything``: each warning in a line of its own."""
 
     def __init__(self, language=None, as_json=False):
         self.set(language, as_json)
+        self.everything = False
 
     def set(self, language, as_json):
         self.language, self.as_json = language or of_locale(), as_json
@@ -36,8 +38,23 @@ class Messages:
         _to_stderr(text)
 
     def print_warnings(self, warnings):
-        """Sentences or facts, a line each."""
-        self._print("cli.warning", "warning", warnings)
+        """Sentences or facts, a line each; many of a kind in one line, unless ``everything`` is set."""
+        from ..base.grouping import grouped
+
+        told = list(warnings)
+        shown = told if self.everything else grouped(told)
+        self._print("cli.warning", "warning", shown)
+        if len(shown) < len(told):
+            from ..engine import Fact
+
+            note = Fact(
+                "cli.warnings_grouped",
+                "{count} warnings in {lines} lines; {option} prints each",
+                count=len(told),
+                lines=len(shown),
+                option="--all",
+            )
+            self.print_notes([note])
 
     def print_notes(self, notes):
         """Facts that are no warnings, a line each."""

@@ -164,7 +164,7 @@ def _program(arguments):
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
     arguments.messages.print_notes(notes)
-    print(json.dumps(table.summary(program), indent=2))
+    print(json.dumps(table.summary(program, arguments.messages.everything), indent=2))
 
 
 def _raster(arguments):

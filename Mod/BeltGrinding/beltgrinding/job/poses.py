@@ -76,10 +76,10 @@ def program_arrays(program, where, warnings, pose_of=None):
     if "poses" in program:
         arrays = listed_poses(program["poses"], where)
     else:
-        from ..programs.registry import read_program
+        from ..programs.registry import read_program, told_problems
 
         read = read_program(program["file"], program.get("roll"), program.get("roll_direction"))
-        problems = read.problems
+        problems = told_problems(read, None if "feed_mm_s" in program else DEFAULT_FEED)
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)
     warnings += problems
     count = len(arrays["frames"])

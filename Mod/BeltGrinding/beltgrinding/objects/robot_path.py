@@ -13,7 +13,7 @@ from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
 from ..programs.readers.roll import RULES, lay
-from ..programs.registry import read_program
+from ..programs.registry import read_program, told_problems
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
 from . import freecad_path, stored_facts
@@ -271,7 +271,7 @@ def follow(obj):
         arrays["frames"] = frames.base_from_tcp(arrays["frames"], **cell)
     set_arrays(obj, arrays)
     obj.Language = program.language
-    stored_facts.store(obj, "Problems", program.problems)
+    stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
 
 
 def load_program(obj, path, **values):
@@ -282,7 +282,7 @@ def load_program(obj, path, **values):
     obj.SourceObject = None
     obj.Source = os.path.abspath(path)
     obj.Language = program.language
-    stored_facts.store(obj, "Problems", program.problems)
+    stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
     set_by_name(obj, values)
 
 

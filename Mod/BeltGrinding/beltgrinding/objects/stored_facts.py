@@ -4,6 +4,7 @@ sentences in another language.
 
 import json
 
+from ..base.grouping import grouped
 from ..base.messages import fact_data, sentence
 from .properties import Output
 
@@ -22,13 +23,13 @@ def store(obj, name, facts):
     setattr(obj, f"{name}Data", json.dumps(data) if data else "")
 
 
-def sentences(obj, name, language, most=MOST):
-    """The first ``most`` sentences of a property. Those without a fact are told as they stand: of a
-    version before 0.2, or set by a macro.
+def sentences(obj, name, language, most=MOST, alike=False):
+    """The first ``most`` sentences of a property (None: all); ``alike``: many of a kind as one. Those without
+    a fact are told as they stand: of a version before 0.2, or set by a macro.
     """
     told = list(getattr(obj, name))[:most]
     data = json.loads(getattr(obj, f"{name}Data", "") or "[]")
     for at, (english, fact) in enumerate(zip(told, data)):
         if sentence(fact, "en") == english:
-            told[at] = sentence(fact, language)
-    return told
+            told[at] = fact
+    return [sentence(one, language) for one in (grouped(told) if alike else told)]

@@ -10,6 +10,7 @@ from ..base.regular_files import open_regular, shown
 from ..engine import InputError
 from .program import MAX_FILE, ProgramError
 from .readers.roll import lay
+from .readers.speeds import told as told_problems  # noqa: F401
 
 
 def _krl(path):

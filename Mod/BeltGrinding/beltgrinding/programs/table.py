@@ -7,10 +7,11 @@ import numpy as np
 
 from ..base.cells import cell
 from ..base.frames import to_quaternions
+from ..base.grouping import grouped
 from . import one_frame
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
-SHOWN = 20  # problems in a summary
+SHOWN = 20  # problems in a summary, or kinds of them
 
 
 def poses_csv(program):
@@ -34,8 +35,10 @@ def poses_csv(program):
     return text.getvalue()
 
 
-def summary(program):
-    """Language, motions by kind, frames, extents (mm) and problems, as a dict."""
+def summary(program, everything=False):
+    """Language, motions by kind, frames, extents (mm) and problems, as a dict; problems of a kind as one,
+    unless ``everything`` is asked for."""
+    problems = program.problems if everything else grouped(program.problems)[:SHOWN]
     kinds, gaps = {}, 0
     for motion in program.motions:
         if motion.kind == "GAP":
@@ -62,5 +65,5 @@ def summary(program):
         "read_in": {"base": base, "tool": tool, "poses": known},
         "extents_mm": extents,
         "problems": len(program.problems),
-        "first_problems": [str(problem) for problem in program.problems[:SHOWN]],
+        "first_problems": [str(problem) for problem in problems],
     }

@@ -60,6 +60,15 @@ class ProgramPanel(Panel):
         self.table.setMinimumHeight(TABLE_HEIGHT)
         self.problems = QtGui.QListWidget()
         self.problems.setObjectName("problems")
+        self.problems.setWordWrap(True)
+        self.each = QtGui.QCheckBox(translate("BeltGrinding", "Each place in a line of its own"))
+        self.each.setObjectName("eachProblem")
+        self.each.toggled.connect(self.show_problems)
+        self.trouble = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(self.trouble)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.each)
+        column.addWidget(self.problems)
         self.walk.moved = self.table.show_pose
         self.table.chosen = self.walk.go
         self.body.addWidget(self.walk)
@@ -107,18 +116,26 @@ class ProgramPanel(Panel):
         self.walk.choose(0)
         if obj.Poses:
             self.table.show_pose(0)
-        self.problems.clear()
-        self.problems.addItems(stored_facts.sentences(obj, "Problems", language(), SHOWN_PROBLEMS))
-        if len(obj.Problems) > SHOWN_PROBLEMS:
-            more = len(obj.Problems) - SHOWN_PROBLEMS
-            self.problems.addItem(translate("BeltGrinding", "... and {} more").format(more))
-        at = self.table.indexOf(self.problems)
+        self.show_problems()
+        at = self.table.indexOf(self.trouble)
         if at >= 0:
             self.table.removeTab(at)
         if obj.Problems:
             text = translate("BeltGrinding", "Problems ({})").format(len(obj.Problems))
-            self.table.addTab(self.problems, text)
+            self.table.addTab(self.trouble, text)
         self.describe()
+
+    def show_problems(self):
+        """The list of problems: many of a kind in one line, or each place."""
+        each, count = self.each.isChecked(), len(self.obj.Problems)
+        most = None if each else SHOWN_PROBLEMS
+        told = stored_facts.sentences(self.obj, "Problems", language(), most, alike=not each)
+        self.problems.clear()
+        self.problems.addItems(told)
+        if not each and count > SHOWN_PROBLEMS:
+            more = translate("BeltGrinding", "... and {} more").format(count - SHOWN_PROBLEMS)
+            self.problems.addItem(more)
+        self.each.setVisible(each or self.problems.count() < count)
 
     def describe(self):
         """Figures of the path."""

@@ -23,7 +23,9 @@ REVERSAL = math.cos(math.radians(105.0))  # between two passes; the belt keeps i
 ALONG_AXIS = math.cos(math.radians(25.0))  # of a retract, of a plunge
 LEAST_LIFT = 2.0  # mm of a retract and of a plunge
 NO_STEP = 1e-9  # mm
-PARALLEL = math.sin(math.radians(3.0))  # a fixed direction so near to the axis says nothing of the roll
+PARALLEL = math.sin(
+    math.radians(3.0)
+)  # a fixed direction so near to the axis says nothing of the roll
 
 
 def lay(program, rule=None, direction=None):

@@ -63,9 +63,7 @@ def followed(motions, way, angles):
         course = _Course(way, first, last, angles[first] if before is None else before)
         for k in range(first, last + 1):
             own[k], inserted = course.angle(course.ends[k - first + 1]), course.inserted(k - first)
-            added[way.places[k]] = [
-                (share, course.angle(s)) for s, share in inserted
-            ]
+            added[way.places[k]] = [(share, course.angle(s)) for s, share in inserted]
         start = course.angle(0.0)
         out = way.lengths[begin:first]
         change = begin + int(np.argmax(out)) if len(out) else first

@@ -38,7 +38,7 @@ def _one(members):
         )
     if not isinstance(first, dict):
         return found
-    return {"code": found.code, "text": found.text, "arguments": found.arguments}
+    return {"code": found.code, "text": found.text, "arguments": {**found.arguments, "first": first}}
 
 
 def _parts(told):

@@ -328,3 +328,109 @@ def test_mutated_programs_never_crash(tmp_path):
             continue
         if len(program.motions) < 1000:
             assert np.isfinite(program.path_arrays(10.0)["frames"]).all()
+
+
+GERMAN = """/PROG  P
+/ATTR
+EIGN.\t\t= MNEDITOR;
+PROG_GR\xd6\xdfE\t= 100;
+/MN
+   1:  BENUTZER_NUM=1 ;
+   2:  WKZ_NUM=2 ;
+   3:  TRAGLST[1] ;
+   4:  i[5]=2    ;
+   5:J P[1] 10% CNT0 ACC100 ZEIT VOR   0.00sek,P-SPS    ;
+      1:  A[14]=AN ;
+      2:  FB-PSPS (M[1] [&] !E[30]) ;
+       ------ ;
+   6:  WENN i[5]=2,SPRUNG LABEL[3] ;
+   7:L P[2] 50mm/sek CNT0    ;
+   8:  LABEL[3] ;
+   9:L P[3] 250mm/sek CNT50 ACC100    ;
+  10:L P[4] 2sek CNT50    ;
+  11:  WENN (E[4]=AUS),AUFRUF MAKRO7 ;
+  12:L P[5] 100mm/sek CNT0 WKZ_Offset ,PR[3]    ;
+  13:L P[6] max_Geschw. CNT0    ;
+  14:  //AUFRUF NICHTS ;
+  15:  WARTE    .50(sek) ;
+  16:  ENDE ;
+  17:L P[1] 50mm/sek CNT0    ;
+/POS
+"""
+
+
+def test_a_german_listing_reads_like_the_english_one(tmp_path):
+    words = [
+        ("BENUTZER_NUM", "UFRAME_NUM"), ("WKZ_NUM", "UTOOL_NUM"), ("TRAGLST", "PAYLOAD"),
+        ("EIGN.", "OWNER"), ("i[5]", "R[5]"), ("ZEIT VOR", "TB"), ("sek", "sec"), ("=AN", "=ON"),
+        ("A[14]", "DO[14]"), ("FB-PSPS", "TC_ONLINE"), ("[&]", "AND"), ("E[", "DI["),
+        ("WENN", "IF"), ("SPRUNG", "JMP"), ("LABEL", "LBL"), ("=AUS", "=OFF"), ("AUFRUF", "CALL"),
+        ("WKZ_Offset ,", "Tool_Offset,"), ("max_Geschw.", "max_speed"), ("WARTE", "WAIT"),
+        ("ENDE", "END"), ("KONFIG", "CONFIG"),
+    ]  # fmt: skip
+    positions = "".join(position(n, 10 * n, n * n, ut=2) for n in range(1, 7))
+    german = GERMAN + positions.replace("CONFIG", "KONFIG") + "/END\n"
+    text = german
+    for own, word in words:
+        assert own in text, own
+        text = text.replace(own, word)
+    found = []
+    for name, one in (("de.ls", german), ("en.ls", text)):
+        (tmp_path / name).write_bytes(one.encode("latin-1"))
+        found.append(fanuc.read(tmp_path / name))
+    for a, b in zip(*(f.motions for f in found)):
+        assert (a.kind, a.line, a.speed_mm_s, a.zone_mm) == (
+            b.kind,
+            b.line,
+            b.speed_mm_s,
+            b.zone_mm,
+        )
+        assert (a.base, a.tool) == (b.base, b.tool)
+        np.testing.assert_array_equal(a.pose, b.pose)
+    german, plain = found
+    assert len(german.motions) == len(plain.motions)
+    assert [(p.line, p.message) for p in german.problems] == [
+        (p.line, p.message) for p in plain.problems
+    ]
+    known = [m for m in german.motions if m.pose is not None]
+    assert [m.pose[0, 3] for m in known] == [10, 30, 40, 60] and known[0].base == "UFRAME 1"
+    assert known[1].speed_mm_s == 250.0 and len(german.problems) == 3
+
+
+def test_german_words_count_in_a_german_listing_only(tmp_path):
+    program = tp(tmp_path, ["AUFUHR ;", "WENNGLEICH"])
+    assert [p.code for p in program.problems] == ["programs.ignored"] * 2
+
+
+def test_words_that_are_not_known_are_reported_by_line(tmp_path):
+    head, positions = GERMAN.split("   3:")[0], POSITIONS.replace("CONFIG", "KONFIG")
+    text = f"{head}   3:  DREHUNG[1]=5 ;\n   4:L P[1] 5mm/sek CNT0 ;\n/POS\n{positions}/END\n"
+    (tmp_path / "p.ls").write_bytes(text.encode("latin-1"))
+    (problem,) = [p for p in fanuc.read(tmp_path / "p.ls").problems if "DREHUNG" in p]
+    assert problem.line == 8
+
+
+def test_changes_go_back_into_a_german_listing(tmp_path):
+    from beltgrinding.programs.patch.patch import patch
+
+    positions = "".join(position(n, 10 * n, n * n, ut=2) for n in range(1, 7))
+    text = GERMAN + positions.replace("CONFIG", "KONFIG") + "/END\n"
+    (tmp_path / "p.ls").write_bytes(text.encode("latin-1"))
+    patch(tmp_path / "p.ls", [{"line": 17, "speed_mm_s": 120.0}], tmp_path / "q.ls")
+    new = (tmp_path / "q.ls").read_bytes().decode("latin-1")
+    assert new == text.replace("250mm/sek", "120mm/sek")
+    patch(tmp_path / "p.ls", [{"line": 18, "speed_mm_s": 40.0}], tmp_path / "r.ls")
+    new = (tmp_path / "r.ls").read_bytes().decode("latin-1")
+    assert new == text.replace("P[4] 2sek", "P[4] 40mm/sek")
+
+
+def test_positions_of_other_groups_or_of_a_remote_tcp_leave_only_their_motions_out(tmp_path):
+    other = "P[1]{\n   GP2:\n\tUF : 0, UT : 1,\n\tJ1= 5.0 mm\n};\n"
+    remote = re.sub(r"\b([XYZWPR]) =", r"R\1 =", position(2, 1, 2))
+    program = tp(
+        tmp_path,
+        ["L P[1] 9mm/sec CNT0", "L P[2] 9mm/sec CNT0", "L P[3] 9mm/sec CNT0"],
+        other + remote + position(3, 30, 0),
+    )
+    assert [m.pose is not None for m in program.motions if m.pose is not None] == [True]
+    assert [p.line for p in program.problems] == [3, 4]

@@ -38,7 +38,11 @@ def _one(members):
         )
     if not isinstance(first, dict):
         return found
-    return {"code": found.code, "text": found.text, "arguments": {**found.arguments, "first": first}}
+    return {
+        "code": found.code,
+        "text": found.text,
+        "arguments": {**found.arguments, "first": first},
+    }
 
 
 def _parts(told):

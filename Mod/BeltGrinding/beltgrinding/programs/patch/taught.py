@@ -5,20 +5,22 @@ import re
 
 import numpy as np
 
-from ..readers.fanuc.reader import MM_PER_S
+from ..readers.fanuc import localized
+from ..readers.fanuc.reader import MM_PER_S as ENGLISH
 from ..readers.taught import DIGITS
 from .text import decimal, decimals, moved
 
+MM_PER_S = {**ENGLISH, **{own: ENGLISH[unit] for own, unit in localized.MM_PER_S.items()}}
 ROUNDING_MM = 5.1e-4  # positions have three decimals
 INDEX = r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]"
 MOTION = re.compile(rf"\b([JLCAS])\s+PR?\s*{INDEX}")
 TARGET = re.compile(rf"[\s:]*PR?\s*{INDEX}")
 SPEED = re.compile(
-    rf"[\s:]*({DIGITS}|R{INDEX})\s*(mm/sec|cm/min|inch/min|deg/sec|msec|sec|%)(?=\s|;|$)"
+    rf"[\s:]*({DIGITS}|R{INDEX})\s*(mm/se[ck]|cm/min|inch/min|deg/se[ck]|mse[ck]|se[ck]|%)(?=\s|;|$)"
 )
 BLOCK = re.compile(r"P\[(\d+)(?:\s*:[^\]\r\n]*)?\]\s*\{([^{}]*)\}\s*;")
 PLACE = re.compile(rf"\b([XYZ])(\s*=\s*)({DIGITS})(\s*mm)")
-LEAST_DECIMALS = {"mm/sec": 0, "cm/min": 0, "inch/min": 1}  # what all controllers take
+LEAST_DECIMALS = {"mm/sec": 0, "mm/sek": 0, "cm/min": 0, "inch/min": 1}  # what all controllers take
 MOVE = re.compile(r"\s*(?:MOV[LCS]|IMOV)\s+(C|P)(\d+)(?=\s|$)")
 V = re.compile(r"(\s)V=(\S*)")
 ROW = re.compile(rf"\s*C(\d+)\s*=\s*({DIGITS})\s*,\s*({DIGITS})\s*,\s*({DIGITS})\s*,")
@@ -67,13 +69,13 @@ def _feed(source, line):
 
 def _set_feed(source, work, line, value):
     number, unit, found = _feed(source, line)
-    if unit in ("%", "deg/sec", ""):
+    if unit in ("%", "deg/sec", "deg/sek", ""):
         raise work.refuse(
             line,
             "programs.patch.no_speed_to_change",
             "the statement has no path speed that could be changed",
         )
-    new = unit if unit in MM_PER_S else "mm/sec"
+    new = unit if unit in MM_PER_S else ("mm/sek" if unit.endswith("sek") else "mm/sec")
     digits = _digits(number, new) if new == unit else 0
     text = decimal(value / MM_PER_S[new], digits, digits)
     if float(text) == 0.0:

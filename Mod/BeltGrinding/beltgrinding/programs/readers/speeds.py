@@ -17,7 +17,8 @@ OWN_DEFAULT = ("CSV",)  # languages that say what an empty speed means
 
 def told(program, speed_mm_s):
     """The Problems of a Program whose motions without a speed take ``speed_mm_s``: one in place of those at
-    each motion, at the first of them. With None the program's speeds do not matter: none is told."""
+    each motion, at the first of them. With None the program's speeds do not matter: none is told.
+    """
     others = [problem for problem in program.problems if problem.code not in PER_MOTION]
     without = [
         motion

@@ -8,7 +8,7 @@ from ..taught import sound_number
 COMPONENTS = ("X", "Y", "Z", "W", "P", "R")
 UNITS = dict(zip(COMPONENTS, ("mm", "mm", "mm", "deg", "deg", "deg")))
 BLOCK = re.compile(r"P\[(\d{1,6})(?:\s*:[^\]\n]*)?\]\s*\{([^{}]*)\}\s*;")
-CONFIG = re.compile(r"CONFIG\s*:\s*'[^'\n]*'")
+CONFIG = re.compile(r"\w+\s*:\s*'[^'\n]*'")  # CONFIG, or what it is called in another language
 ITEM = re.compile(r"\s*([A-Z]{1,2}\d*)\s*[=:]\s*([^\s,=:]+)\s*(mm|deg)?\s*$")
 BLANK = re.compile(r"\s*")
 
@@ -38,7 +38,12 @@ def positions_of(lines, line, file, problem):
                 file, line, "programs.fanuc.position_twice", "P[{n}] occurs twice", n=n
             )
         groups = re.split(r"\bGP(\d+)\s*:", CONFIG.sub("", match.group(2)))
-        if groups[0].strip() or "1" not in groups[1::2]:
+        if not groups[0].strip() and len(groups) > 1 and "1" not in groups[1::2]:
+            positions[n] = Fact("programs.fanuc.only_others", "P[{n}] is of other groups", n=n)
+            line += text.count("\n", begin, match.end())
+            at = match.end()
+            continue
+        if groups[0].strip() or len(groups) == 1:
             raise ProgramError.at(
                 file, line, "programs.fanuc.no_group", "P[{n}] has no group GP1", n=n
             )
@@ -78,6 +83,8 @@ def _position(body, n, file, line):
             )
         values[name] = value
     joints = "J1" in values
+    if "RX" in values:
+        return Fact("programs.fanuc.remote", "P[{n}] is of a remote TCP", n=n)
     components = []
     for name in [k for k in values if re.fullmatch(r"J\d", k)] if joints else COMPONENTS:
         if name not in values:

@@ -11,6 +11,7 @@ import numpy as np
 from ....base.stopping import check
 from ...program import LOOPED, MAX_UNROLLED, SKIPPED, Fact, Motion, ProgramError, Unknown, work_of
 from ..taught import DIGITS, lines_in, pose_of
+from . import localized
 from .positions import positions_of
 from .registers import INDEX, Registers
 
@@ -79,6 +80,7 @@ class _Reader(Registers):
     def load(self, lines):
         """Splits the file into statements and positions."""
         section, begin, ended = "", None, False
+        self.words = localized.english if localized.is_german(lines) else str
         for number, text in enumerate(lines, 1):
             head = text.strip()
             mark = re.match(r"/(?:PROG|ATTR|APPL|MN|POS|END)\b", head)
@@ -118,7 +120,7 @@ class _Reader(Registers):
                 )
                 self.statements.append((number, "?", True))
             return
-        text = match.group(2).strip()
+        text = self.words(match.group(2).strip())
         ended = text.endswith(";")
         text = text[:-1].rstrip() if ended else text
         if not match.group(1) and self.statements and not self.statements[-1][2]:

@@ -200,7 +200,7 @@ def test_urscript_tools(tmp_path):
 
 
 def test_g_code_offsets_and_tools_are_named(tmp_path):
-    text = "T1 M6\nG90 G21 G54\nG1 X0 Y0 Z0 F600\nX10\nX20\nG55\nX0\nX5\nG54\nX30\nT2 M6\nX40\nM30\n"
+    text = "T1 M6\nG90 G21 G54\nG1 X0 Y0 Z0 F600\nX10\nX20 T2\nG55\nX0\nX5\nG54\nX30\nM6\nX40\nM30\n"
     program = read(tmp_path, "p.nc", text)
     path = program.path_arrays(50.0)
     assert path["frames"][:, 0, 3].tolist() == [0, 10, 20, 30]

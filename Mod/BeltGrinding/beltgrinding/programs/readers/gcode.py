@@ -33,6 +33,7 @@ NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 WORD = re.compile(rf"\s*([A-Z])\s*(?:=\s*)?({NUMBER})(?![\d.]|[A-Z]\w{{0,40}}\s{{0,40}}\()")
 VECTOR = re.compile(rf"(?<![A-Z0-9])([ABC])3\s*=\s*({NUMBER})(?![\w.])")
 MACRO = re.compile(r"#|\[|\b(?:IF|WHILE|GOTO|GOTOF|GOTOB|FOR|REPEAT|DEF|R\d+\s*=|Q\d+|CALL)\b|\$")
+CHANGE = re.compile(r"(?<![A-Za-z0-9.])[Mm]0?6(?![\d.])")
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 OFFSETS = {54, 55, 56, 57, 58, 59, 500, *range(505, 600), 54.1, 59.1, 59.2, 59.3}
 # No motion, and no change of what the coordinates mean.
@@ -56,7 +57,7 @@ FRAMES = re.compile(r"A?(?:TRANS|ROT|SCALE|MIRROR)S?\b|CYCLE800\b")
 def read(path):
     """The Program of a G-code file. Raises ProgramError when it cannot be read at all."""
     text = bytes_of(path, "G-code").decode("latin-1")
-    reader = _Reader(name_of(path))
+    reader = _Reader(name_of(path), CHANGE.search(text) is not None)
     for line, text in enumerate(lines_of(text, reader.file), 1):
         check()
         if len(reader.program.motions) > MAX_MOTIONS:
@@ -80,7 +81,7 @@ def _frame_changed(word):
 
 
 class _Reader:
-    def __init__(self, name):
+    def __init__(self, name, by_m6=False):
         self.program = Program("G-code", name)
         self.file = name
         self.trace = Tracer(self.program)
@@ -96,7 +97,8 @@ class _Reader:
         self.feed_mode = 94
         self.feed = None  # mm/s
         self.zone = None  # mm around a corner, modal
-        self.base = self.tool = ""
+        self.base = self.tool = self.waiting = ""
+        self.by_m6 = by_m6  # a T word takes the tool at the M6 only
         self.shifted = None  # why coordinates mean something that is not known here
         self.told = set()
         self.ended = False  # by % or M99
@@ -231,12 +233,13 @@ class _Reader:
         return True
 
     def words(self, line, words, turned):
-        given, codes, going = {}, [], True
+        given, codes, going, changes = {}, [], True, False
         for letter, value in words:
             if letter == "G":
                 codes.append(value)
             elif letter == "M":
                 going = going and value not in (2, 30)
+                changes = changes or value == 6
                 if value in (98, 97):
                     raise Unknown(
                         "programs.gcode.subprogram", "a subprogram's motions are not in this block"
@@ -252,7 +255,9 @@ class _Reader:
             else:
                 given[letter] = value
         if "T" in given:
-            self.tool = f"T{given['T']:g}"
+            self.waiting = f"T{given['T']:g}"
+        if changes or not self.by_m6:  # a T before its M6 only fetches the tool
+            self.tool = self.waiting
         once = None
         for code in codes:
             once = self.code(line, code) or once

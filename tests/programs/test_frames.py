@@ -70,7 +70,11 @@ def rotation_vector(frame):
 
 
 def metres(frame):
-    return "p[" + ",".join(repr(float(v)) for v in [*np.array(frame[0]) / 1000, *rotation_vector(frame)]) + "]"
+    return (
+        "p["
+        + ",".join(repr(float(v)) for v in [*np.array(frame[0]) / 1000, *rotation_vector(frame)])
+        + "]"
+    )
 
 
 def rapid_program(held=False):
@@ -81,7 +85,9 @@ def rapid_program(held=False):
             f"PERS tooldata {name}:=[{robot},{rapid(FRAMES[name])},[1,[0,0,1],[1,0,0,0],0,0,0]];"
         )
     for name in ("TOP", "SIDE"):
-        rows.append(f'PERS wobjdata {name}:=[{room},TRUE,"",{rapid(FRAMES[name])},[[0,0,0],[1,0,0,0]]];')
+        rows.append(
+            f'PERS wobjdata {name}:=[{room},TRUE,"",{rapid(FRAMES[name])},[[0,0,0],[1,0,0,0]]];'
+        )
     rows.append("PROC main()")
     for base, tool, k in PLAN:
         target = rapid((POINTS[k], TURN))[:-1] + ",[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
@@ -100,17 +106,28 @@ def krl_by_number(base, tool):
     return [f"BAS(#BASE,{number[base]})", f"BAS(#TOOL,{number[tool]})"]
 
 
-DATA = "DEFDAT p\n" + "".join(
-    f"{what}_DATA[{n}]={krl(FRAMES[name])}\n"
-    for what, n, name in (("BASE", 1, "TOP"), ("BASE", 2, "SIDE"), ("TOOL", 3, "SHORT"), ("TOOL", 4, "LONG"))
-) + "ENDDAT\n"
+DATA = (
+    "DEFDAT p\n"
+    + "".join(
+        f"{what}_DATA[{n}]={krl(FRAMES[name])}\n"
+        for what, n, name in (
+            ("BASE", 1, "TOP"),
+            ("BASE", 2, "SIDE"),
+            ("TOOL", 3, "SHORT"),
+            ("TOOL", 4, "LONG"),
+        )
+    )
+    + "ENDDAT\n"
+)
 
 
 def test_krl_frames_that_are_assigned(tmp_path):
     program = read(
         tmp_path,
         "p.src",
-        krl_program(lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]),
+        krl_program(
+            lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]
+        ),
     )
     path = program.path_arrays(50.0)
     assert not program.problems and not path["gaps"].any()
@@ -130,7 +147,9 @@ def test_krl_frames_by_number_and_inline_forms(tmp_path):
         for i, (base, tool, k) in enumerate(PLAN)
     )
     (tmp_path / "q.dat").write_text(DATA.replace("ENDDAT\n", points + "ENDDAT\n"))
-    rows = "".join(f"FDAT_ACT=FP{i}\nBAS(#CP_PARAMS,0.1)\nLIN XP{i} C_DIS\n" for i in range(len(PLAN)))
+    rows = "".join(
+        f"FDAT_ACT=FP{i}\nBAS(#CP_PARAMS,0.1)\nLIN XP{i} C_DIS\n" for i in range(len(PLAN))
+    )
     program = read(tmp_path, "q.src", f"DEF q()\n{rows}END\n")
     np.testing.assert_allclose(program.path_arrays(50.0)["frames"], expected(), atol=1e-9)
     # The same numbers with the tool in the room: BASE_DATA are tools there, TOOL_DATA the part on the flange.
@@ -151,7 +170,11 @@ def test_krl_frames_that_only_the_controller_knows_are_left_out_and_named(tmp_pa
     path = program.path_arrays(50.0)
     np.testing.assert_allclose(path["frames"], expected()[:3], atol=1e-9)
     told = [problem for problem in program.problems if problem.code == "programs.other_frame"]
-    assert [fact.arguments["frame"] for fact in told] == ["BASE_DATA[2]", "TOOL_DATA[4]", "BASE_DATA[2]"]
+    assert [fact.arguments["frame"] for fact in told] == [
+        "BASE_DATA[2]",
+        "TOOL_DATA[4]",
+        "BASE_DATA[2]",
+    ]
     assert [fact.arguments["count"] for fact in told] == [2, 2, 1]
     assert [fact.line for fact in told] == [14, 20, 26]
     program.path_arrays(50.0)
@@ -182,31 +205,58 @@ def test_rapid_work_objects_and_tools(tmp_path, held):
 
 
 def test_rapid_a_work_object_of_a_mechanical_unit_is_left_out(tmp_path):
-    text = rapid_program().replace("PERS wobjdata SIDE:=[FALSE,TRUE", "PERS wobjdata SIDE:=[FALSE,FALSE")
+    text = rapid_program().replace(
+        "PERS wobjdata SIDE:=[FALSE,TRUE", "PERS wobjdata SIDE:=[FALSE,FALSE"
+    )
     program = read(tmp_path, "p.mod", text)
     path = program.path_arrays(50.0)
     assert len(path["frames"]) == 5 and path["gaps"].tolist()[3] > 0
-    assert [p.arguments["frame"].split()[0] for p in program.problems if p.code == "programs.other_frame"] == ["SIDE"] * 2
+    assert [
+        p.arguments["frame"].split()[0]
+        for p in program.problems
+        if p.code == "programs.other_frame"
+    ] == ["SIDE"] * 2
 
 
 def test_urscript_tools(tmp_path):
     rows = []
     for base, tool, k in PLAN:
         if base == "TOP":
-            rows += [f"set_tcp({metres(SHORT if tool == 'SHORT' else LONG)})", f"movel({metres((POINTS[k], TURN))}, v=0.1)"]
+            rows += [
+                f"set_tcp({metres(SHORT if tool == 'SHORT' else LONG)})",
+                f"movel({metres((POINTS[k], TURN))}, v=0.1)",
+            ]
     program = read(tmp_path, "p.script", "\n".join(rows) + "\n")
     want = [pose for pose, (base, _, _) in zip(expected(), PLAN) if base == "TOP"]
     np.testing.assert_allclose(program.path_arrays(50.0)["frames"], want, atol=1e-6)
 
 
 def test_g_code_offsets_and_tools_are_named(tmp_path):
-    text = "T1 M6\nG90 G21 G54\nG1 X0 Y0 Z0 F600\nX10\nX20 T2\nG55\nX0\nX5\nG54\nX30\nM6\nX40\nM30\n"
+    text = (
+        "T1 M6\nG90 G21 G54\nG1 X0 Y0 Z0 F600\nX10\nX20 T2\nG55\nX0\nX5\nG54\nX30\nM6\nX40\nM30\n"
+    )
     program = read(tmp_path, "p.nc", text)
     path = program.path_arrays(50.0)
     assert path["frames"][:, 0, 3].tolist() == [0, 10, 20, 30]
     assert path["rapid"].tolist()[-1] and path["gaps"].tolist() == [0, 0, 0, 7]
     told = [p.arguments for p in program.problems if p.code == "programs.other_frame"]
     assert [(one["frame"], one["count"]) for one in told] == [("G55", 2), ("T2", 1)]
+
+
+def test_apt_coordinate_systems_are_applied_and_shifts_named(tmp_path):
+    rows = ["UNITS/MM", "MSYS/100,0,0,1,0,0,0,1,0", "FEDRAT/600,MMPM"]
+    rows += [f"GOTO/{x},0,0,0,0,1" for x in (0, 1, 2)]
+    rows += ["MSYS/0,50,0,0,1,0,-1,0,0", "GOTO/7,0,0,0,0,1"]  # x along the part's y
+    rows += ["MSYS/100,0,0,1,0,0,0,1,0", "GOTO/3,0,0,0,0,1", "ORIGIN/5,0,0", "GOTO/4,0,0,0,0,1"]
+    rows += ["ORIGIN/0,0,0", "GOTO/5,0,0,0,0,1", "FINI"]
+    program = read(tmp_path, "p.apt", "\n".join(rows) + "\n")
+    path = program.path_arrays(50.0)
+    points = path["frames"][:, :3, 3]
+    np.testing.assert_allclose(points[:, 0], [0, 1, 2, -100, 3, 5], atol=1e-9)
+    np.testing.assert_allclose(points[3], [-100, 57, 0], atol=1e-9)
+    assert path["gaps"].tolist() == [0, 0, 0, 0, 0, 12]
+    (told,) = [p for p in program.problems if p.code == "programs.other_frame"]
+    assert told.arguments["frame"].endswith("ORIGIN 5,0,0") and told.line == 12
 
 
 def test_where_most_is_ground_is_the_reference(tmp_path):
@@ -225,7 +275,9 @@ def test_two_frames_come_back_as_they_were_written(tmp_path, suffix):
     program = read(
         tmp_path,
         "p.src",
-        krl_program(lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]),
+        krl_program(
+            lambda base, tool: [f"$BASE={krl(FRAMES[base])}", f"$TOOL={krl(FRAMES[tool])}"]
+        ),
     )
     out = tmp_path / f"written{suffix}"
     given = {"tools": "as-known", "bases": "as-known"}

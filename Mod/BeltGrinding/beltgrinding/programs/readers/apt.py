@@ -6,8 +6,11 @@ MOVARC with the GOTO or INDIRV after them become arcs. What depends on the post-
 GOHOME, feeds per revolution) is a Problem. A FEDRAT without unit is one per minute.
 """
 
+import contextlib
 import math
 import re
+
+import numpy as np
 
 from ...base.stopping import check
 from ..program import (
@@ -43,7 +46,10 @@ HARMLESS = set(
     "ROTHED CLEARP CLRSRF RETURN THICK MULTAX UNITS RAPID FEDRAT LINTOL GOUGCK PLUNGE MODULE "
     "CUTANG ENDSUB CATEGORY SAFETY INSIST RESET CLAMP".split()
 )
-MOVING = set("GOHOME HOME CALLSUB CALL COPY INDEX TRACUT ROTATE ROTABL ORIGIN TRANS".split())
+MOVING = set("GOHOME HOME CALLSUB CALL COPY INDEX".split())
+SHIFTING = set("TRACUT ROTATE ROTABL ORIGIN TRANS".split())
+SQUARE = 1e-3  # cosine between the axes of a coordinate system
+MAX_WORDS = 200  # characters of a base's
 
 
 def read(path):
@@ -76,6 +82,7 @@ class _Reader:
         self.speed = None  # mm/s
         self.circle = None  # (line, centre, normal, radius) waiting for its end
         self.tool = self.base = ""
+        self.system, self.shifts = "", {}  # what the base is made of
         self.told = set()
         self.line = 1
         self.ended = False  # FINI, or NX's END-OF-PATH without motions after it
@@ -149,7 +156,9 @@ class _Reader:
             elif word in ("LOADTL", "LOAD"):
                 self.tool = rest.strip()
             elif word == "MSYS":
-                self.base = f"MSYS {rest.strip()}"
+                self.machine_system(rest.strip(), values)
+            elif word in SHIFTING:
+                self.shift(word, rest.strip(), values)
             elif word in ("TLCOMP", "CUTCOM") and values and values[0].upper() != "OFF":
                 self.once(
                     word,
@@ -365,6 +374,40 @@ class _Reader:
                     "programs.apt.fedrat_not_positive",
                     "FEDRAT is not positive; the speed is not known",
                 )
+
+    def shift(self, word, rest, values):
+        """ORIGIN, TRANS, TRACUT, ...: coordinates after it are others, which the post-processor knows."""
+        off = not values or values[0].upper() in ("OFF", "NOMORE")
+        with contextlib.suppress(Unknown):
+            off = off or word in ("ORIGIN", "TRANS") and not any(self.numbers(values, 3))
+        self.shifts.pop(word, None)
+        if not off:
+            self.shifts[word] = rest
+        self.set_base()
+
+    def set_base(self):
+        """The base in words: the coordinate system, and what shifts it."""
+        words = [f"MSYS {self.system}"] if self.system else []
+        words += [f"{word} {rest}" for word, rest in self.shifts.items()]
+        self.base = " ".join(words)[:MAX_WORDS]
+
+    def machine_system(self, rest, values):
+        """MSYS/x,y,z,i,j,k,i,j,k: origin, x and y of the coordinates to come in those of the part (NX)."""
+        self.system = rest
+        self.set_base()
+        if self.shifts:
+            return
+        try:
+            numbers = self.numbers(values, 9)
+            x, y = (unit(numbers[at : at + 3]) for at in (3, 6))
+            if x is None or y is None or abs(sum(a * b for a, b in zip(x, y))) > SQUARE:
+                return
+            frame = np.eye(4)
+            frame[:3, 0], frame[:3, 1], frame[:3, 2] = x, y, np.cross(x, y)
+            frame[:3, 3] = self.point(numbers[:3])
+        except Unknown:
+            return  # of this base nothing is known
+        self.program.base_frames[self.base] = frame
 
     def units(self, line, values):
         name = values[0].upper() if len(values) == 1 else ""

@@ -115,3 +115,17 @@ def test_warnings_of_a_kind_are_a_line(capsys):
     messages.everything = True
     messages.print_warnings(told)
     assert len(capsys.readouterr().err.splitlines()) == 981
+
+
+def test_motions_in_a_frame_that_is_not_known_are_told_by_the_job(tmp_path):
+    poses = "LIN {{X {0}, Y 0, Z 0, A 0, B 0, C 180}}\n"
+    (tmp_path / "p.src").write_text(
+        "DEF p()\n$VEL.CP = 0.1\n$BASE = BASE_DATA[1]\n"
+        + "".join(poses.format(x) for x in (0, 10, 20))
+        + "$BASE = BASE_DATA[2]\n"
+        + poses.format(5)
+        + "END\n"
+    )
+    told = []
+    program_arrays({"file": str(tmp_path / "p.src")}, "p", told)
+    assert "programs.other_frame" in {problem.code for problem in told}

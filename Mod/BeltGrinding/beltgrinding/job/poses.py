@@ -79,8 +79,8 @@ def program_arrays(program, where, warnings, pose_of=None):
         from ..programs.registry import read_program, told_problems
 
         read = read_program(program["file"], program.get("roll"), program.get("roll_direction"))
+        arrays = read.path_arrays(DEFAULT_FEED, pose_of)  # may find more problems
         problems = told_problems(read, None if "feed_mm_s" in program else DEFAULT_FEED)
-        arrays = read.path_arrays(DEFAULT_FEED, pose_of)
     warnings += problems
     count = len(arrays["frames"])
     if count < 2:

@@ -179,16 +179,19 @@ class JobPanel(Panel):
         for name, text, action in (
             ("addFaces", translate("BeltGrinding", "Add selected"), self.add_selected),
             ("removeFaces", translate("BeltGrinding", "Remove"), self.remove),
-            ("flipFaces", translate("BeltGrinding", "Flip side"), self.flip),
         ):
             button = QtGui.QPushButton(text)
             button.setObjectName(name)
             button.clicked.connect(action)
             row.addWidget(button)
-        button.setToolTip(
+        layout.addLayout(row)
+        self.flipping = QtGui.QPushButton(translate("BeltGrinding", "Flip side"))
+        self.flipping.setObjectName("flipFaces")
+        self.flipping.setToolTip(
             translate("BeltGrinding", "Turns loose faces to be ground from their other side")
         )
-        layout.addLayout(row)
+        self.flipping.clicked.connect(self.flip)
+        layout.addWidget(self.flipping)
         self.fill()
         return box
 
@@ -198,6 +201,8 @@ class JobPanel(Panel):
 
     def fill(self):
         self.list.clear()
+        parts = {obj for obj, _ in self.pairs()}
+        self.flipping.setVisible(any(sides.loose_faces(obj.Shape) for obj in parts))
         for obj, sub in self.pairs():
             everything = translate("BeltGrinding", "all faces")
             flipped = translate("BeltGrinding", "flipped") if (obj, sub) in self.flips() else ""
@@ -248,6 +253,9 @@ class JobPanel(Panel):
         flips = [pair for pair in self.flips() if pair not in found]
         flips += [pair for pair in found if pair not in self.flips()]
         self.obj.FlipFaces = [(obj, (sub,)) for obj, sub in flips]
+        for path in job_data.children(self.obj, RasterPath):
+            if "Touched" in path.State:
+                path.recompute()
         self.fill()
         self.estimate()
 

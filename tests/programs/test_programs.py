@@ -48,8 +48,8 @@ def test_flagship_program_against_its_truth():
 
 # What a person reads in these files: (motions, those with a pose, lines of the problems).
 REAL = {
-    # A loop over points that are not in the excerpt's .dat; it is named after another program.
-    "kuka_frame_array_loop.src": (779, 0, [9] * 779),
+    # A loop over points that another list of the folder makes GLOBAL: the excerpt has the first 79.
+    "kuka_frame_array_loop.src": (779, 79, [9] * 700),
     # Begins in the middle of an IF; calls two routines of other files, each a gap.
     "kuka_inline_forms_excerpt.src": (6, 4, [4, 26, 48]),
     # The second motion is by joints, which are no pose without the robot.

@@ -17,6 +17,7 @@ import numpy as np
 from ...base.files import cannot_be_written, write_whole
 from ...base.regular_files import shown
 from ..program import Fact, ProgramError, bytes_of, name_of
+from ..readers.krl.data_lists import others as krl_lists
 from ..registry import read_program
 from .text import SMALL, Overlap, Shift, Source, Work
 
@@ -175,6 +176,8 @@ def patch(path, changes, output):
     with tempfile.TemporaryDirectory() as folder:
         if beside:
             (Path(folder) / beside.name).write_bytes(beside.read_bytes())
+        for other, _ in krl_lists(path)[0] if program.language == "KUKA KRL" else ():
+            (Path(folder) / other.name).write_bytes(other.read_bytes())
         copy = Path(folder) / path.name
         copy.write_bytes(written)
         again = read_program(copy)

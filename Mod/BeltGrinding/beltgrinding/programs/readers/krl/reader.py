@@ -22,12 +22,11 @@ from ...program import (
     Program,
     ProgramError,
     Unknown,
-    bytes_of,
     joint_angles,
-    lines_of,
     name_of,
     work_of,
 )
+from . import data_lists
 from .blocks import MOTION, OPENING, Routine, word_of
 from .expression import FRAME, MAX_COMPONENTS, Reader, components_of, frame_of, number
 from .values import Values
@@ -61,22 +60,9 @@ def read(path):
     """The Program of a .src file. Raises ProgramError when it cannot be read at all."""
     path = Path(path)
     interpreter = _Interpreter(name_of(path))
-    data = (
-        next(
-            (
-                p
-                for p in sorted(path.parent.glob("*"))
-                if p.stem.lower() == path.stem.lower() and p.suffix.lower() == ".dat"
-            ),
-            None,
-        )
-        if path.parent.is_dir()
-        else None
-    )
-    if data is not None:
-        interpreter.read_data(_statements(data), name_of(data))
+    interpreter.read_lists(path)
     try:
-        interpreter.run(_statements(path))
+        interpreter.run(data_lists.statements(path))
     except RecursionError:
         raise ProgramError(
             "programs.krl.nested",
@@ -84,18 +70,6 @@ def read(path):
             file=interpreter.file,
         ) from None
     return interpreter.program
-
-
-def _statements(path):
-    """(line number, statement) without comments, folds and header lines."""
-    raw = bytes_of(path, "KRL")
-    result = []
-    for line, text in enumerate(lines_of(raw.decode("latin-1"), name_of(path)), 1):
-        check()
-        text = re.sub(r'("[^"]*")|;.*', lambda m: m.group(1) or "", text).strip()
-        if text and not text.startswith("&"):
-            result.append((line, text))
-    return result
 
 
 class _Leave(Exception):
@@ -211,6 +185,36 @@ class _Interpreter:
                 "programs.krl.speed_no_number",
                 "the path speed is no sensible number; the last one stays",
             )
+
+    def read_lists(self, path):
+        """Takes the values of the data lists that a module sees, its own last."""
+        shared, more = data_lists.others(path)
+        if more:
+            self.problem(
+                1,
+                "programs.krl.many_lists",
+                "the folder has too many .dat files; some are not read",
+            )
+        origin = {}
+        for one, rows in shared:
+            told = len(self.program.problems)
+            before = dict(self.values)
+            self.read_data(rows, name_of(one))
+            del self.program.problems[told:]  # those of other modules
+            for key in [k for k, v in self.values.items() if before.get(k, v) != v]:
+                self.problem(
+                    1,
+                    "programs.krl.defined_twice",
+                    "{name} is not the same in {one} and {other}; neither is taken",
+                    name=key[0].upper(),
+                    one=origin.get(key, ""),
+                    other=name_of(one),
+                )
+                self.values.pop(key)
+            origin.update({k: name_of(one) for k in self.values if k not in origin})
+        data = data_lists.own(path)
+        if data is not None:
+            self.read_data(data_lists.statements(data), name_of(data))
 
     def read_data(self, statements, name):
         own, self.file = self.file, name

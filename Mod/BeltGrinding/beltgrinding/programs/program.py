@@ -116,6 +116,9 @@ class Motion:
     # mm from the target within which the corner is rounded; 0: the robot stands still there; inf:
     # it passes through, the target is no corner; None: not known (the job's default zone)
     zone_mm: Optional[float] = None
+    # How the tool turns on the way: from the start's orientation to the target's; "path": so against an
+    # arc's tangent; "hold": it keeps the start's; "hold path": it keeps that against the tangent
+    turn: str = ""
     joints_deg: Optional[tuple] = None  # of a joint target: six angles as the controller shows them
     free_roll: bool = (
         False  # the program gives the tool's axis only: a rule turns the pose about it
@@ -186,7 +189,9 @@ class Program:
             rapid = motion.kind == "PTP" or lost or previous is None
             poses = [motion.pose]
             if aux is not None and not rapid:
-                poses = _arc(previous, aux.pose, motion.pose)
+                poses = _arc(previous, aux.pose, motion.pose, motion.turn)
+            elif motion.turn.startswith("hold") and not rapid:
+                poses = [through_with(motion.pose, previous)]
             speed = motion.speed_mm_s or default_speed_mm_s
             force = -1.0 if motion.force_N is None else motion.force_N
             joints = motion.joints_deg or (math.nan,) * 6
@@ -204,7 +209,7 @@ class Program:
                     limit=MAX_POSES,
                 )
             rows[-1][-1] = _zone(motion, following)
-            previous, aux, lost, gap = motion.pose, None, False, 0
+            previous, aux, lost, gap = poses[-1], None, False, 0
         columns = list(zip(*rows)) if rows else [[] for _ in range(8)]
         frames = np.array(columns[0], dtype=float).reshape(-1, 4, 4)
         arrays = {
@@ -300,28 +305,56 @@ def name_of(path):
     return shown(Path(path).name)
 
 
-def _arc(start, through, end):
-    """Poses after ``start`` on the circle through three points; orientation by slerp."""
+def _arc(start, through, end, turn=""):
+    """Poses after ``start`` on the circle through three points; ``turn``: as a Motion's."""
+    circle = circle_through(start, through, end)
+    if circle is None:
+        halfway = through_with(through, start)  # on a line
+        return [halfway, through_with(end, start) if turn.startswith("hold") else end]
+    centre, x_axis, y_axis, radius, angle = circle
+    step = 2.0 * math.acos(max(-1.0, 1.0 - CHORD_ERROR / radius)) if radius > CHORD_ERROR else 1.0
+    count = min(MAX_CHORDS, max(2, math.ceil(angle / step)))
+    shares = np.arange(1, count + 1) / count
+    at = shares[:, None] * angle
+    poses = np.zeros((count, 4, 4))
+    poses[:, :3, :3] = turned(start, end, circle, turn, shares)
+    poses[:, :3, 3] = centre + radius * (np.cos(at) * x_axis + np.sin(at) * y_axis)
+    poses[:, 3, 3] = 1.0
+    last = poses[-1] if turn.startswith("hold") else end
+    return [*poses[:-1], through_with(end, last)]
+
+
+def circle_through(start, through, end):
+    """(centre, x axis to the start, y axis, radius, angle to the end by way of ``through``) of the
+    circle through three poses, mm and radians; None where they lie on a line."""
     a, b, c = (pose[:3, 3] for pose in (start, through, end))
     u, v = b - a, c - a
     normal = np.cross(u, v)
     size = float(normal @ normal)
     if size < 1e-18 * max(u @ u, v @ v, 1e-300) ** 2 or size == 0.0:
-        return [through_with(through, start), end]  # on a line
+        return None
     centre = a + np.cross((u @ u) * v - (v @ v) * u, normal) / (2.0 * size)
     radius = float(np.linalg.norm(a - centre))
     x_axis = (a - centre) / radius
     y_axis = np.cross(normal / math.sqrt(size), x_axis)
     angle = math.atan2((c - centre) @ y_axis, (c - centre) @ x_axis) % (2.0 * math.pi)
-    step = 2.0 * math.acos(max(-1.0, 1.0 - CHORD_ERROR / radius)) if radius > CHORD_ERROR else 1.0
-    count = min(MAX_CHORDS, max(2, math.ceil(angle / step)))
-    shares = np.arange(1, count) / count
-    at = shares[:, None] * angle
-    poses = np.zeros((count - 1, 4, 4))
-    poses[:, :3, :3] = start[:3, :3] @ powers(start[:3, :3].T @ end[:3, :3], shares)
-    poses[:, :3, 3] = centre + radius * (np.cos(at) * x_axis + np.sin(at) * y_axis)
-    poses[:, 3, 3] = 1.0
-    return [*poses, end]
+    return centre, x_axis, y_axis, radius, angle
+
+
+def turned(start, end, circle, turn, shares):
+    """Rotations (n, 3, 3) at ``shares`` (n,) of a circle (as ``circle_through``), by a Motion's ``turn``."""
+    _, x_axis, y_axis, _, angle = circle
+    first, last = start[:3, :3], end[:3, :3]
+    if "path" not in turn:
+        return first @ powers(np.eye(3) if turn == "hold" else first.T @ last, shares)
+    plane = np.column_stack([x_axis, y_axis, np.cross(x_axis, y_axis)])
+    about = np.zeros((len(shares) + 1, 3, 3))  # the turns of the tangent, and the whole
+    at = angle * np.append(shares, 1.0)
+    about[:, 0, 0] = about[:, 1, 1] = np.cos(at)
+    about[:, 1, 0], about[:, 0, 1], about[:, 2, 2] = np.sin(at), -np.sin(at), 1.0
+    about = plane @ about @ plane.T
+    own = np.eye(3) if turn == "hold path" else first.T @ about[-1].T @ last
+    return about[:-1] @ first @ powers(own, shares)
 
 
 def through_with(through, orientation):

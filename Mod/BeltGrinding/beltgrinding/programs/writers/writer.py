@@ -5,7 +5,7 @@ and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The contro
 their own arithmetic (32 bit in KRL and RAPID) is what limits them.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Optional
 
@@ -15,6 +15,7 @@ from .. import one_frame
 from ..program import Motion, Program, ProgramError
 from .frames import Frames, checked
 from .text import printable
+from .turned import resolved
 
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
@@ -94,9 +95,12 @@ def write_program(
     path = Path(path)
     suffix = (language or path.suffix).lower()
     writer = _writer(suffix, path)
-    motions, left_out = motions_of(program), []
+    motions, turns = resolved(motions_of(program))
+    left_out = []
     if suffix == ".csv":  # a table has no frames
-        known = program if isinstance(program, Program) else Program("", "", motions)
+        known = Program("", "", motions)
+        if isinstance(program, Program):
+            known = replace(program, motions=motions)
         motions, left_out = one_frame.motions(known)
     used = {m.base for m in motions} | {m.tool for m in motions}
     if part_in_hand is None:
@@ -115,7 +119,7 @@ def write_program(
     from ...base.files import write_whole
 
     write_whole(path, data)
-    return [*sheet.notes, *(fact for _, _, fact in left_out)]
+    return [*sheet.notes, *turns, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix, path):

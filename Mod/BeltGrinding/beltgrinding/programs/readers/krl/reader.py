@@ -5,8 +5,10 @@ System Software operating manuals. What only the controller can know is a Proble
 """
 
 import contextlib
+import copy
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,9 +28,10 @@ from ...program import (
     name_of,
     work_of,
 )
-from . import data_lists
+from . import circles, data_lists
 from .blocks import MOTION, OPENING, Routine, word_of
 from .expression import FRAME, MAX_COMPONENTS, Reader, components_of, frame_of, number
+from .turning import Turning
 from .values import Values
 
 MAX_MOTIONS = 1_000_000
@@ -91,7 +94,8 @@ class _Interpreter:
         self.calls = self.depth = 0
         self.rounds = 0  # units of work; below 0: what the files allow
         self.missing = set()
-        self.held = False  # $IPO_FRAME is #TCP
+        self.held = False  # $IPO_MODE is #TCP
+        self.turning = Turning(self.values)
 
     def problem(self, line, told, text=None, /, **arguments):
         self.program.problem(self.file, line, told, text, **arguments)
@@ -132,7 +136,7 @@ class _Interpreter:
     def assign(self, match, line):
         _, name, index, text = match.groups()
         name = name.lower()
-        if name == "$ipo_frame":
+        if name in ("$ipo_mode", "$ipo_frame"):
             self.held = text.strip().lower() == "#tcp"
             return
         try:
@@ -164,8 +168,12 @@ class _Interpreter:
                 self.speed = None if name == "$vel.cp" else self.speed
             if name in FRAMES:
                 self.named[name] = " ".join(text.split())[:MAX_NAME].upper()
+            self.touch(name, line)
             return
+        if isinstance(value, dict):
+            value = copy.deepcopy(value)  # a component that is set later is this variable's only
         self.values[name, indices] = value
+        self.touch(name, line)
         self.named.pop(name, None)
         head, _, component = name.rpartition(".")
         inner = self.values.get((head, ())) if head else None
@@ -175,6 +183,16 @@ class _Interpreter:
             self.set_speed(value, line)
         elif name == "$vel" and isinstance(value, dict) and "cp" in value:
             self.set_speed(value["cp"], line)
+
+    def touch(self, name, line):
+        """A component of $TOOL or $BASE is set: where only their name is known, they are another now."""
+        head, _, component = name.rpartition(".")
+        if head not in FRAMES:
+            return
+        inner, value = self.values.get((head, ())), self.values.get((name, ()))
+        if not isinstance(inner, dict) or component not in inner or not isinstance(value, float):
+            self.values.pop((head, ()), None)
+            self.named[head] = f"{head} as line {line} sets it".upper()
 
     def set_speed(self, metres_per_second, line):
         if isinstance(metres_per_second, float) and 0 < metres_per_second < MAX_SPEED:
@@ -437,12 +455,14 @@ class _Interpreter:
             return
         if word == "spline":
             self.around, self.spline = self.speed, True
+            self.turning.block = text
             found = SPEED.search(text)
             if found:
                 self.speed_text(found.group(1), line)
             return
         if word == "endspline":  # WITH holds within the block
             self.speed, self.spline = self.around, False
+            self.turning.block = ""
             if self.program.motions:  # its own word rounds the block's last corner
                 self.program.motions[-1].zone_mm = self.zone(text)
             return
@@ -487,9 +507,12 @@ class _Interpreter:
                 self.take_fdat()
             if what.strip().lower() in ("#cp_params", "#vel_cp"):
                 self.speed_text(value, line)
+                self.turning.take(self.values.get(("ldat_act", ())))
                 distance = self.component("ldat_act", "apo_dist")
                 if isinstance(distance, float):  # what BAS makes of an inline form's CONT
                     self.values["$apo.cdis", ()] = distance
+            elif what.strip().lower() == "#initmov":
+                self.turning.reset()
             elif what.strip().lower() in ("#tool", "#base"):
                 self.set_frame(what.strip()[1:].lower(), value.strip())
         elif name in self.routines and not arguments.strip():
@@ -534,7 +557,7 @@ class _Interpreter:
         if number_ == 0:
             self.values[name, ()] = dict.fromkeys(FRAME, 0.0)
         elif isinstance(known, dict):
-            self.values[name, ()] = known
+            self.values[name, ()] = dict(known)
         else:
             self.named[name] = f"{what}_data[{index}]".upper()[:MAX_NAME]
 
@@ -568,11 +591,17 @@ class _Interpreter:
             if "CIRC" in kind:
                 reader.expect(",")
                 targets.append(reader.expression())
+            angle = circles.angle(reader) if "CIRC" in kind else None
             rest = [t for _, t in reader.tokens[reader.at :]]
             zone = math.inf if self.spline else self.zone(whole)
+            turn = "" if "PTP" in kind else self.turning.of(whole, line, self.problem)
+            start, first = self.here, len(self.program.motions)
             for aux, target in [(True, t) for t in targets[:-1]] + [(False, targets[-1])]:
                 self.target(line, kind, target, aux, [t.lower() for t in rest])
+                self.program.motions[-1].turn = turn
                 self.program.motions[-1].zone_mm = zone
+            if angle is not None:
+                self.by_angle(line, first, start, angle)
         except Unknown as unknown:
             self.problem(
                 line,
@@ -582,6 +611,31 @@ class _Interpreter:
                 reason=unknown.fact,
             )
             self.gap(line)
+
+    def by_angle(self, line, first, start, angle):
+        """An arc, the motions from number ``first`` on, that ends behind an angle (CA) instead of at its
+        second point."""
+        through, end = self.program.motions[first:]
+        del self.program.motions[first:]
+        if start is None or any(name not in start for name in FRAME):
+            raise Unknown(
+                "programs.krl.circle_start",
+                "where a circle by an angle (CA) ends depends on the pose before, which is not known",
+            )
+        begin = frame_of(start)
+        found = circles.arcs(begin, through.pose, end.pose, angle, end.turn)
+        if np.abs(begin[:3, :3] - end.pose[:3, :3]).max() > 1e-3 and "hold" not in end.turn:
+            self.problem(
+                line,
+                "programs.krl.circle_turn",
+                "the circle ends at its angle (CA) with the orientation of its second point, as here; "
+                "a controller that is set to extrapolate it turns further",
+            )
+        for middle, last in found:
+            self.program.motions.append(replace(through, pose=middle))
+            self.program.motions.append(replace(end, pose=last, zone_mm=math.inf))
+        self.program.motions[-1].zone_mm = end.zone_mm
+        self.here = components_of(found[-1][1])
 
     def own_speed(self, line, kind, text, speed, whole):
         """A motion with a speed of its own."""
@@ -664,7 +718,7 @@ class _Interpreter:
                 told = " ".join(
                     f"{k.upper()} {v:.9g}" for k, v in value.items() if isinstance(v, float)
                 )
-            if self.held:  # $IPO_FRAME is #TCP: the part is on the flange
+            if self.held:  # $IPO_MODE is #TCP: the part is on the flange
                 side = "fixed in the room" if name == "$tool" else "held by the robot"
                 told = f"{told} {side}".strip()
             if isinstance(value, dict) and all(isinstance(value.get(k), float) for k in FRAME):

@@ -302,3 +302,15 @@ def test_a_program_in_one_frame_is_as_it_was(tmp_path):
     program = Program("x", "p", motions)
     frames_ = program.path_arrays(50.0)["frames"]
     assert all((a == m.pose).all() for a, m in zip(frames_, motions)) and not program.problems
+
+
+def test_a_part_in_the_hand_is_told_where_the_cell_holds_the_tool(tmp_path):
+    from beltgrinding.job.poses import program_arrays
+
+    for held in (True, False):
+        (tmp_path / "p.mod").write_text(rapid_program(held))
+        for holding in ("tool_in_hand", "part_in_hand", None):
+            told = []
+            program_arrays({"file": str(tmp_path / "p.mod")}, "p", told, None, holding)
+            expected = ["programs.part_in_hand"] if held and holding == "tool_in_hand" else []
+            assert [fact.code for fact in told] == expected

@@ -14,7 +14,11 @@ def tool_path(job, index, warnings, count=None, gaps=None):
     that its gaps are added to, as ``Program.path_arrays`` has them."""
     where = program_name(job, index)
     arrays = program_arrays(
-        job["programs"][index], where, warnings, robots.pose_function(job["robot"])
+        job["programs"][index],
+        where,
+        warnings,
+        robots.pose_function(job["robot"]),
+        job["cell"]["holding"],
     )
     left_out = arrays.pop("gaps")
     if gaps is not None:

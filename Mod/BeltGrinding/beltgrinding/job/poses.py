@@ -62,9 +62,10 @@ def listed_poses(poses, where):
     }
 
 
-def program_arrays(program, where, warnings, pose_of=None):
+def program_arrays(program, where, warnings, pose_of=None, holding=None):
     """dict(frames, feeds, forces, rapid, lines, zones, gaps) of a job's program, overrides applied.
-    ``pose_of``: of joint angles, as in ``Program.path_arrays``.
+    ``pose_of``: of joint angles, as in ``Program.path_arrays``. ``holding``: cell.holding, with which a
+    program must go.
     """
     problems = []
     if "poses" in program and ("roll" in program or "roll_direction" in program):
@@ -80,6 +81,7 @@ def program_arrays(program, where, warnings, pose_of=None):
 
         read = read_program(program["file"], program.get("roll"), program.get("roll_direction"))
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)  # may find more problems
+        read.check_holding(holding)
         problems = told_problems(read, None if "feed_mm_s" in program else DEFAULT_FEED)
     warnings += problems
     count = len(arrays["frames"])

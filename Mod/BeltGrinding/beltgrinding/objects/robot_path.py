@@ -277,6 +277,8 @@ def follow(obj):
 def load_program(obj, path, **values):
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
     program, arrays = read_arrays(path, *_roll(obj))
+    if obj.Machine is not None:
+        program.check_holding(obj.Machine.Holding)
     set_arrays(obj, arrays)
     obj.RollOfPoses = roll_text(obj)
     obj.SourceObject = None

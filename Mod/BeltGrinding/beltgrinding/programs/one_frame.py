@@ -73,6 +73,22 @@ def motions(program):
     return found, problems
 
 
+def holding_problems(program, holding):
+    """[(file, line, Fact)] where the program moves the part in the robot and the cell (tool_in_hand,
+    part_in_hand) the tool; else []."""
+    base, _ = reference(program)
+    if base not in program.held or holding != "tool_in_hand":
+        return []
+    first = next(m for m in program.motions if m.base == base and m.pose is not None)
+    fact = Fact(
+        "programs.part_in_hand",
+        "the program moves the part in the robot along a tool in the room ({base}), but the cell has the tool "
+        "in the robot: set cell.holding to part_in_hand",
+        base=base,
+    )
+    return [(first.file, first.line, fact)]
+
+
 def _way(program, chosen, key):
     """((what stands before a pose, what behind), None); or (None, (what is not known, its words))."""
     sides = []

@@ -147,6 +147,13 @@ class Program:
         if again or not self.motions or self.motions[-1].kind != "GAP":
             self.motions.append(Motion("GAP", None, line, file))
 
+    def check_holding(self, holding):
+        """Adds a problem where the cell holds part and tool otherwise than the program does."""
+        from . import one_frame
+
+        for file, line, fact in one_frame.holding_problems(self, holding):
+            self.problem(file, line, fact)
+
     def problem(self, file, line, told, text=None, /, **arguments):
         """Adds a Problem; the arguments are those of its class."""
         self.problems.append(Problem(file, line, told, text, **arguments))

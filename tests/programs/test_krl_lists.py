@@ -43,9 +43,7 @@ def test_global_values_of_a_public_list(tmp_path, declare):
 
 
 def test_global_arrays_are_declared_before_their_values(tmp_path):
-    rows = "DECL GLOBAL FRAME GP[2]\n" + "".join(
-        f"GP[{k}]={POSE.format(10 * k)}\n" for k in (1, 2)
-    )
+    rows = "DECL GLOBAL FRAME GP[2]\n" + "".join(f"GP[{k}]={POSE.format(10 * k)}\n" for k in (1, 2))
     program = module(
         tmp_path, "FOR I = 1 TO 2\nLIN GP[I]\nENDFOR\n", points=f"DEFDAT G PUBLIC\n{rows}ENDDAT\n"
     )

@@ -18,6 +18,7 @@ from ...base.files import cannot_be_written, write_whole
 from ...base.regular_files import shown
 from ..program import Fact, ProgramError, bytes_of, name_of
 from ..readers.krl.data_lists import others as krl_lists
+from ..readers.rapid import modules as rapid_modules
 from ..registry import read_program
 from .text import SMALL, Overlap, Shift, Source, Work
 
@@ -176,7 +177,7 @@ def patch(path, changes, output):
     with tempfile.TemporaryDirectory() as folder:
         if beside:
             (Path(folder) / beside.name).write_bytes(beside.read_bytes())
-        for other, _ in krl_lists(path)[0] if program.language == "KUKA KRL" else ():
+        for other in _seen(path, program.language):
             (Path(folder) / other.name).write_bytes(other.read_bytes())
         copy = Path(folder) / path.name
         copy.write_bytes(written)
@@ -184,6 +185,13 @@ def patch(path, changes, output):
     report = _verify(program, again, work, source, module)
     _write(output, written, beside, path)
     return report
+
+
+def _seen(path, language):
+    """Other files that the reading of a program looks at."""
+    if language == "KUKA KRL":
+        return [other for other, _ in krl_lists(path)[0]]
+    return rapid_modules.files(path) if language == "ABB RAPID" else []
 
 
 def _data_file(path):

@@ -12,8 +12,12 @@ from ...program import ProgramError, bytes_of, lines_of, name_of
 
 MAX_LISTS = 400  # of a folder
 MAX_BYTES = 64 << 20  # of all of them
-HEAD = re.compile(r"^\s*(?:GLOBAL\s+)?DEFDAT\s+([$\w]+)[ \t]*(PUBLIC\b)?", re.IGNORECASE | re.MULTILINE)
-GLOBAL = re.compile(r"^(?:(?:DECL|CONST)\s+)*GLOBAL\s+(?:(?:DECL|CONST)\s+)*\w+\s+(.*)$", re.IGNORECASE)
+HEAD = re.compile(
+    r"^\s*(?:GLOBAL\s+)?DEFDAT\s+([$\w]+)[ \t]*(PUBLIC\b)?", re.IGNORECASE | re.MULTILINE
+)
+GLOBAL = re.compile(
+    r"^(?:(?:DECL|CONST)\s+)*GLOBAL\s+(?:(?:DECL|CONST)\s+)*\w+\s+(.*)$", re.IGNORECASE
+)
 NAME = re.compile(r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:\w+\s+)?([$\w]+)[\w.]*\s*(?:\[[^\]]*\]\s*)?=")
 
 

@@ -339,6 +339,9 @@ class Reader:
         positional, optional = arguments(self.tokens[start : self.at - 1])
         if name == "crobt":
             return self.data.position(optional)
+        own = self.data.function(name, positional, optional)
+        if own is not None:
+            return own
         if name not in FUNCTIONS:
             raise Unknown(
                 "programs.function_of_controller",

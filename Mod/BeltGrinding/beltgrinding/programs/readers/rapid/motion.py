@@ -61,6 +61,10 @@ class State:
             return row[0][1]
         return Reader(row, self).whole()
 
+    def function(self, name, positional, optional):
+        """The value of a program's function; None where there is none of that name."""
+        return None
+
     def entry(self, name):
         if self.locals is not None and name in self.locals:
             return self.locals[name]

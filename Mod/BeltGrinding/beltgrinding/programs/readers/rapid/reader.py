@@ -4,10 +4,12 @@ Poses are those of the tool in the work object (object frame), as programmed. PE
 value the module gives. What only the controller can know is a Problem.
 """
 
+import contextlib
 import re
+from pathlib import Path
 
-from ...program import LOOPED, ProgramError, Unknown, work_of
-from . import data
+from ...program import LOOPED, Fact, ProgramError, Unknown, work_of
+from . import data, modules
 from .calls import CHANGING, HARMLESS, Exit, Jump, Return
 from .control import TARGET, Control
 from .data import number
@@ -21,7 +23,7 @@ DECLARATION = re.compile(
     r"(?:(?:LOCAL|TASK)\s+)*(CONST|PERS|VAR)\s+(\w+)\s+(\w+)\s*(?:(\{[^}]*\})\s*)?(?::=(.*))?$",
     re.IGNORECASE | re.DOTALL,
 )
-ROUTINE = re.compile(r"(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
+ROUTINE = re.compile(r"\s*(?:LOCAL\s+)?(?:PROC|FUNC\s+\w+)\s+(\w+)\s*\(([^)]*)\)", re.IGNORECASE)
 PARAMETER = re.compile(r"(?:(INOUT|VAR|PERS)\s+)?(\w+)\s+(\w+)\s*(?:\{[^}]*\})?$", re.IGNORECASE)
 BLOCKS = ("if", "for", "while", "test")
 
@@ -30,7 +32,7 @@ def read(path):
     """The Program of a RAPID module. Raises ProgramError when it cannot be read at all."""
     interpreter = _Interpreter(path)
     try:
-        interpreter.run(tree(path))
+        interpreter.run(tree(path), modules.others(Path(path)))
     except RecursionError:
         raise ProgramError.at(
             interpreter.file,
@@ -41,6 +43,14 @@ def read(path):
     return interpreter.finish()
 
 
+class _Undecided(Exception):
+    """What a function gives is decided at run time; ``fact`` says why."""
+
+    def __init__(self, fact):
+        super().__init__(fact)
+        self.fact = fact
+
+
 class _Interpreter(Control):
     """Follows a program from PROC main on with the values it can know."""
 
@@ -48,23 +58,175 @@ class _Interpreter(Control):
         super().__init__(path)
         self.calls = 0
         self.missing = set()
+        self.functions = {}  # as routines
+        self.evaluating = 0  # functions in each other
+        self.homes = {}  # of routines of other modules, by the id of their node
+        self.own = None  # the data of another module while its routine runs
+        self.private = set()  # LOCAL data of this module
 
-    def run(self, nodes):
-        stack = list(nodes)
+    def run(self, nodes, near=()):
+        """``near``: the other modules of the folder, (file, nodes) each."""
+        for one in (nodes, *(others for _, others in near)):
+            stack = list(one)
+            while stack:
+                node = stack.pop()
+                stack += node.body or []
+                self.rounds -= LOOPED * (work_of(node.text) + 2 * node.text.count("("))
+        loose = self.module(nodes)
+        own = dict(self.routines)
+        self.neighbours(near)
+        self.follow(loose, own)
+
+    def neighbours(self, near):
+        """Declares what other modules tell all, where this one does not and no two of them do."""
+        mine = set(self.globals) | set(self.routines) | set(self.functions)
+        told, homes = {}, []
+        for file, nodes in near:
+            home = modules.Home(file)
+            kept = self.globals, self.routines, self.functions, self.constants
+            self.globals, self.routines, self.functions, self.constants = {}, {}, {}, set()
+            with contextlib.suppress(ProgramError):
+                self.module(nodes)
+            found = self.globals, self.routines, self.functions
+            self.globals, self.routines, self.functions, self.constants = kept
+            home.data, home.routines, home.functions = found
+            homes.append(home)
+            for name in {*found[0], *found[1], *found[2]} - self.local_names(nodes) - mine:
+                told.setdefault(name, []).append(home)
+        shared = {name: found[0] for name, found in told.items() if len(found) == 1}
+        for name, home in shared.items():
+            for here, there in (
+                (self.globals, home.data),
+                (self.routines, home.routines),
+                (self.functions, home.functions),
+            ):
+                if name in there and name != "main":
+                    here[name] = there[name]
+        for home in homes:
+            for node, _, _ in (*home.routines.values(), *home.functions.values()):
+                self.homes[id(node)] = home
+        for home in homes:  # before the names of this module's own are the only ones that are seen
+            home.routines = {**self.routines, **home.routines}
+            home.functions = {**self.functions, **home.functions}
+            with self.within(home):
+                for name in home.data:
+                    with contextlib.suppress(Unknown):
+                        self.variable(name)
+
+    @staticmethod
+    def local_names(nodes):
+        """Names that a module declares LOCAL, in lower case."""
+        names, stack = set(), list(nodes)
+        while stack:
+            node = stack.pop()
+            if node.word == "module":
+                stack += node.body
+            elif modules.LOCAL.match(node.text):
+                for pattern, group in ((DECLARATION, 3), (ROUTINE, 1)):
+                    match = pattern.match(node.text)
+                    if match:
+                        names.add(match.group(group).lower())
+        return names
+
+    @contextlib.contextmanager
+    def within(self, home):
+        """Runs statements of another module (None: of the one that runs)."""
+        if home is None:
+            yield
+            return
+        kept = self.file, self.own, self.routines, self.functions, self.locals
+        self.file, self.own = home.file, home.data
+        self.routines, self.functions = home.routines, home.functions
+        self.texts.clear()
+        try:
+            yield
+        finally:
+            self.file, self.own, self.routines, self.functions, self.locals = kept
+            self.texts.clear()
+
+    def entry(self, name):
+        if self.own is None or self.locals is not None and name in self.locals:
+            return super().entry(name)
+        if name in self.own:
+            return self.own[name]
+        return None if name in self.private else self.globals.get(name)
+
+    def problem(self, line, told, text=None, /, once=None, **arguments):
+        if self.evaluating:
+            raise _Undecided(told if text is None else Fact(told, text, **arguments))
+        super().problem(line, told, text, once=once, **arguments)
+
+    def skip(self, nodes, line, message):
+        if self.evaluating:
+            raise _Undecided(message)
+        super().skip(nodes, line, message)
+
+    def function(self, name, positional, optional):
+        """The value of a function of the program, or None where there is none of that name. Raises
+        Unknown where it is decided at run time."""
+        if name not in self.functions:
+            return None
+        head, parameters, body = self.functions[name]
+        written = head.text.split("(")[0].split()[-1]
+        if self.calls >= MAX_CALLS or optional or len(positional) != len(parameters):
+            raise Unknown(
+                "programs.rapid.function_call", "the call of {name} is not followed", name=written
+            )
+        self.tick(head.line, 2)
+        inner = {}
+        for (by_reference, kind, parameter), row in zip(parameters, positional):
+            if by_reference:
+                raise Unknown(
+                    "programs.rapid.function_call",
+                    "the call of {name} is not followed",
+                    name=written,
+                )
+            inner[parameter] = [kind, self.copy(self.value(row), head.line)]
+        kept = self.locals
+        self.calls, self.evaluating = self.calls + 1, self.evaluating + 1
+        try:
+            with self.within(self.homes.get(id(head))):
+                self.locals = inner
+                self.texts.clear()
+                self.block(body)
+            fact = Fact("programs.rapid.no_return", "no RETURN is reached")
+        except Return as found:
+            if found.args:
+                return found.args[0]
+            fact = Fact("programs.rapid.no_return", "no RETURN is reached")
+        except _Undecided as undecided:
+            fact = undecided.fact
+        except (Jump, Exit):
+            fact = Fact("programs.rapid.no_return", "no RETURN is reached")
+        finally:
+            self.calls, self.evaluating = self.calls - 1, self.evaluating - 1
+            self.locals = kept
+            self.texts.clear()
+        stack = list(body)  # what it may have changed is not known
         while stack:
             node = stack.pop()
             stack += node.body or []
-            self.rounds -= LOOPED * (work_of(node.text) + 2 * node.text.count("("))
-        loose = self.module(nodes)
+            for word in re.findall(r"\w+", node.text):
+                if word.lower() in self.globals:
+                    self.forget(word.lower())
+        raise Unknown(
+            "programs.rapid.function_unknown",
+            "what {name} gives is not known: {reason}",
+            name=written,
+            reason=fact,
+        )
+
+    def follow(self, loose, own):
+        """Runs the program: ``loose`` statements, or the routines ``own`` of its module."""
         for name in list(self.globals):
             try:
                 self.variable(name)
             except Unknown:
                 pass  # whoever uses it reports it
-        starts = [self.routines["main"]] if "main" in self.routines else self.uncalled()
-        if loose and not self.routines:  # an excerpt without its PROC
+        starts = [own["main"]] if "main" in own else self.uncalled(own)
+        if loose and not own:  # an excerpt without its PROC
             starts = [(loose[0], [], loose)]
-        elif "main" not in self.routines and starts:
+        elif "main" not in own and starts:
             self.problem(
                 starts[0][0].line,
                 "programs.rapid.no_main",
@@ -86,13 +248,14 @@ class _Interpreter(Control):
                 loose += self.module(node.body)
             elif node.word == "record":
                 self.record(node)
-            elif node.word == "proc":
+            elif node.word in ("proc", "func") and ROUTINE.match(node.text):
                 name, parameters = ROUTINE.match(node.text).groups()
                 handler = next(
                     (k for k, n in enumerate(node.body) if n.word in ("error", "undo", "backward")),
                     len(node.body),
                 )
-                self.routines[name.lower()] = (
+                kept = self.routines if node.word == "proc" else self.functions
+                kept[name.lower()] = (
                     node,
                     self.parameters(parameters),
                     node.body[:handler],
@@ -101,6 +264,8 @@ class _Interpreter(Control):
                 continue  # evaluated, and interrupted by, on the controller only
             elif DECLARATION.match(node.text):
                 self.declare(node, self.globals)
+                if modules.LOCAL.match(node.text):
+                    self.private.add(DECLARATION.match(node.text).group(3).lower())
             else:
                 loose.append(node)
         return loose
@@ -123,7 +288,7 @@ class _Interpreter(Control):
                     result.append((bool(match.group(1)), *(g.lower() for g in match.groups()[1:])))
         return result
 
-    def uncalled(self):
+    def uncalled(self, own):
         called = set()
 
         def visit(nodes):
@@ -133,11 +298,9 @@ class _Interpreter(Control):
                 stack += node.body or []
                 called.update(w.lower() for w in re.findall(r"\w+", node.text))
 
-        for _, _, body in self.routines.values():
+        for _, _, body in own.values():
             visit(body)
-        return [r for name, r in self.routines.items() if name not in called] or list(
-            self.routines.values()
-        )[:1]
+        return [r for name, r in own.items() if name not in called] or list(own.values())[:1]
 
     def declare(self, node, scope):
         storage, kind, name, dimensions, text = DECLARATION.match(node.text).groups()
@@ -186,6 +349,8 @@ class _Interpreter(Control):
 
     def statement(self, node):
         spec = spec_of(node.word)
+        if spec is not None and self.evaluating:
+            raise _Undecided(Fact("programs.rapid.function_moves", "it moves the robot"))
         if spec is not None:
             self.motion(node.line, node.text, spec)
         elif node.word in BLOCKS:
@@ -248,10 +413,17 @@ class _Interpreter(Control):
         word, line = node.word, node.line
         if word == "goto":
             raise Jump(node.text[4:].strip().lower(), line)
+        if word == "return" and self.evaluating:
+            try:
+                raise Return(self.copy(self.value(tokens(node.text)[1:]), line))
+            except Unknown as unknown:
+                raise _Undecided(unknown.fact) from None
         if word in ("return", "raise"):
             raise Return
         if word in ("exit", "exitcycle"):
             raise Exit
+        if word in ("velset", "pdispset", "pdispon", "pdispoff") and self.evaluating:
+            raise _Undecided(Fact("programs.rapid.function_sets", "it changes what motions follow"))
         if word in ("velset", "pdispset", "pdispon", "pdispoff"):
             self.setting(line, word, node.text)
             return
@@ -315,13 +487,20 @@ class _Interpreter(Control):
                 pass
             if by_reference and k < len(given):
                 back.append((given[k], name))
-        self.calls, self.locals = self.calls + 1, inner
-        self.texts.clear()
+        home, before = self.homes.get(id(head)), len(self.program.motions)
+        away = self.own is not None
+        self.calls += 1
         try:
-            self.routine(head, body)
+            with self.within(home):
+                self.locals = inner
+                self.texts.clear()
+                self.routine(head, body)
         finally:
             self.calls, self.locals = self.calls - 1, own
             self.texts.clear()
+            if home is not None and not away:  # to who looks at this file they are the call's
+                for motion in self.program.motions[before:]:
+                    motion.line, motion.file = node.line, self.file
         for row, name in back:
             value = inner[name][1]
             if len(row) == 1 and value is not None:

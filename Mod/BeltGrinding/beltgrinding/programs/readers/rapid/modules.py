@@ -1,0 +1,64 @@
+"""Other RAPID modules in a program's folder: what they declare for all, and what is theirs."""
+
+import re
+
+from ...program import ProgramError, name_of
+from .text import tree
+
+SUFFIXES = (".mod", ".modx", ".sys")
+MAX_MODULES = 100
+MAX_BYTES = 16 << 20  # of all of them
+LISTED = re.compile(r"<Module>\s*([^<]+?)\s*</Module>", re.IGNORECASE)
+LOCAL = re.compile(r"\s*LOCAL\b", re.IGNORECASE)
+
+
+class Home:
+    """Where a routine's statements stand: the file's name, the module's own data, and by name the routines
+    and functions that are seen from there."""
+
+    def __init__(self, file):
+        self.file = file
+        self.data, self.routines, self.functions = {}, {}, {}
+
+
+def others(path):
+    """[(file's name, outermost nodes)] of the other modules in the folder of ``path``: those of the .pgf that
+    lists it, or all. Damaged ones are left out: what they would have told is reported where it is missed."""
+    if not path.parent.is_dir():
+        return []
+    near = sorted(path.parent.glob("*"))
+    found, size = [], 0
+    wanted = _listed(path, near)
+    for one in near:
+        if one.suffix.lower() not in SUFFIXES or one.name.lower() == path.name.lower():
+            continue
+        if wanted is not None and one.name.lower() not in wanted:
+            continue
+        try:
+            size += one.stat().st_size
+            if len(found) >= MAX_MODULES or size > MAX_BYTES:
+                break
+            found.append((name_of(one), tree(one)))
+        except (ProgramError, OSError, RecursionError):
+            continue
+    return found
+
+
+def files(path):
+    """The files that reading ``path`` may look at."""
+    near = sorted(path.parent.glob("*")) if path.parent.is_dir() else []
+    return [p for p in near if p.suffix.lower() in (*SUFFIXES, ".pgf") and p != path and p.is_file()]
+
+
+def _listed(path, near):
+    """Names of the modules in the .pgf that names this one, in lower case; None without such a file."""
+    for one in near:
+        if one.suffix.lower() == ".pgf":
+            try:
+                text = one.read_bytes()[:100_000].decode("latin-1")
+            except OSError:
+                continue
+            names = {name.replace("\\", "/").rsplit("/", 1)[-1].lower() for name in LISTED.findall(text)}
+            if path.name.lower() in names:
+                return names
+    return None

@@ -109,7 +109,9 @@ def test_circles_that_cannot_be_known_are_left_out(tmp_path):
         assert word in str(program.problems[0]) and program.problems[0].line == 4
         assert [m.kind for m in program.motions][:2] == ["LIN", "GAP"]
     program = read(tmp_path, ARC % "0" + ", CA 90")
-    assert [m.kind for m in program.motions] == ["GAP"] and "pose before" in str(program.problems[0])
+    assert [m.kind for m in program.motions] == ["GAP"] and "pose before" in str(
+        program.problems[0]
+    )
     told = read(tmp_path, START, ARC % "40" + ", CA 270").problems
     assert len(told) == 1 and "extrapolate" in str(told[0])
 

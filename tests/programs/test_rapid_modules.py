@@ -59,7 +59,7 @@ def test_functions_of_the_program_are_evaluated(tmp_path):
         "RETURN CRobT();\n",
         "a: GOTO a;\nRETURN p1;\n",
         "RETURN f(p1);\n",
-        "TPWrite \"none\";\n",
+        'TPWrite "none";\n',
     ],
 )
 def test_what_is_decided_at_run_time_gives_no_value(tmp_path, body):
@@ -102,7 +102,9 @@ def test_names_of_two_modules_and_mains_of_others_are_not_taken(tmp_path):
 
 
 def test_the_module_s_own_comes_first_and_a_pgf_says_which_belong(tmp_path):
-    found = program(tmp_path, MOVE.format("p1") + MOVE.format("p9"), a=target("p1", 7) + target("p9", 9))
+    found = program(
+        tmp_path, MOVE.format("p1") + MOVE.format("p9"), a=target("p1", 7) + target("p9", 9)
+    )
     assert xs(found) == [1, 9]
     (tmp_path / "p.pgf").write_text("<Program><Module>p.mod</Module></Program>")
     assert xs(read_program(tmp_path / "p.mod")) == [1]

@@ -233,6 +233,45 @@ def test_scripts_are_followed(tmp_path):
     assert len(program.problems) == 1 and "get_actual_tcp_pose" in str(program.problems[0])
 
 
+def variable_waypoint(name="V"):
+    return f'<Waypoint type="Variable" name="{name}"><motionParameters/><variable name="v"/></Waypoint>\n'
+
+
+def assigned(text):
+    return f'<Assignment><variable name="v"/>{expression(text)}</Assignment>\n'
+
+
+def test_variable_waypoints_that_the_program_assigns(tmp_path):
+    program = read(
+        tmp_path,
+        move(old("0.1, 0, 0, 0, 0, 0"))
+        + assigned("p[0.3, 0.2, 0.1, 0, 0, 0]")
+        + move(variable_waypoint())
+        + assigned("pose_trans(v, p[0, 0, 0.05, 0, 0, 0])")
+        + move(variable_waypoint()),
+    )
+    assert positions(program) == [[100, 0, 0], [300, 200, 100], [300, 200, 150]]
+    assert not program.problems and len(program.path_arrays(50.0)["frames"]) == 3
+
+
+@pytest.mark.parametrize(
+    "text", ["get_actual_tcp_pose()", "[0, 1, 2, 3, 4, 5]", "5", "p[9e99, 0, 0, 0, 0, 0]"]
+)
+def test_variable_waypoints_without_a_pose_of_the_program_are_left_out(tmp_path, text):
+    program = read(tmp_path, assigned(text) + move(variable_waypoint()) + move(old(NONE)))
+    assert positions(program) == [[0, 0, 0]] and program.problems
+
+
+def test_variable_waypoints_of_a_branch_at_run_time_or_of_another_feature_are_left_out(tmp_path):
+    branch = f"<If type='If'>{expression('x')}<children>{assigned('p[9, 0, 0, 0, 0, 0]')}</children></If>"
+    feature = '<feature class="GeomFeatureReference" referencedName="Plane_1"/>'
+    first = assigned("p[0.3, 0, 0, 0, 0, 0]")
+    program = read(tmp_path, first + branch + move(variable_waypoint()))
+    assert positions(program) == []
+    program = read(tmp_path, first + move(variable_waypoint(), feature=feature))
+    assert positions(program) == [] and "Plane_1" in str(program.problems[0])
+
+
 @pytest.mark.parametrize(
     "node, culprit",
     [

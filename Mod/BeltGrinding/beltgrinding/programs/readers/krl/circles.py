@@ -35,7 +35,9 @@ def arcs(start, through, end, degrees, turn):
     """
     circle = circle_through(start, through, end)
     if circle is None:
-        raise Unknown("programs.krl.circle_on_a_line", "its points lie on a line, which is no circle")
+        raise Unknown(
+            "programs.krl.circle_on_a_line", "its points lie on a line, which is no circle"
+        )
     centre, x_axis, y_axis, radius, _ = circle
     whole = math.radians(abs(degrees))
     y_axis = y_axis * math.copysign(1.0, degrees)

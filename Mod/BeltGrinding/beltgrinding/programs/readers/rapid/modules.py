@@ -23,7 +23,8 @@ class Home:
 
 def others(path):
     """[(file's name, outermost nodes)] of the other modules in the folder of ``path``: those of the .pgf that
-    lists it, or all. Damaged ones are left out: what they would have told is reported where it is missed."""
+    lists it, or all. Damaged ones are left out: what they would have told is reported where it is missed.
+    """
     if not path.parent.is_dir():
         return []
     near = sorted(path.parent.glob("*"))
@@ -47,7 +48,9 @@ def others(path):
 def files(path):
     """The files that reading ``path`` may look at."""
     near = sorted(path.parent.glob("*")) if path.parent.is_dir() else []
-    return [p for p in near if p.suffix.lower() in (*SUFFIXES, ".pgf") and p != path and p.is_file()]
+    return [
+        p for p in near if p.suffix.lower() in (*SUFFIXES, ".pgf") and p != path and p.is_file()
+    ]
 
 
 def _listed(path, near):
@@ -58,7 +61,9 @@ def _listed(path, near):
                 text = one.read_bytes()[:100_000].decode("latin-1")
             except OSError:
                 continue
-            names = {name.replace("\\", "/").rsplit("/", 1)[-1].lower() for name in LISTED.findall(text)}
+            names = {
+                name.replace("\\", "/").rsplit("/", 1)[-1].lower() for name in LISTED.findall(text)
+            }
             if path.name.lower() in names:
                 return names
     return None

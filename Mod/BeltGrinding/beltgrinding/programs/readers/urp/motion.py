@@ -1,8 +1,10 @@
 """The motions of a PolyScope program: its waypoints and arcs with their features, tools and speeds."""
 
+import math
 import re
 
 from ...program import Fact, Motion, Program, Unknown
+from ..urscript.expression import Pose
 from ..urscript.reader import Interpreter
 from .position import NOWHERE, NUMBER, Positions, in_mm
 
@@ -81,6 +83,8 @@ class Waypoints:
         """Hands a waypoint's position on; returns the pose of its feature, which is called
         ``name``; None where the pose is not known. Raises Unknown."""
         kind = waypoint.get("type", "Fixed")
+        if kind == "Variable" and not in_base and self.variable(waypoint, motion, name):
+            return NOWHERE
         if kind != "Fixed":
             raise Unknown(
                 "programs.urp.waypoint_kind",
@@ -118,6 +122,28 @@ class Waypoints:
             return None
         positions.joints.append((motion, joints, arm, tcp, NOWHERE if in_base else feature))
         return feature
+
+    def variable(self, waypoint, motion, name):
+        """Whether the program itself gives a variable waypoint its pose, which is one in the move's feature
+        (PolyScope's manual, Move, feature selection). Raises Unknown where nothing tells that feature.
+        """
+        holder = waypoint.find("variable")
+        if holder is None:
+            return False
+        value = self.script.scopes[0].get(self.target(holder).get("name", ""))
+        if not isinstance(value, Pose):
+            return False
+        if name:
+            raise Unknown(
+                "programs.urp.variable_feature",
+                "the variable is a pose in the feature {name}, and no waypoint tells where that is",
+                name=name[:40],
+            )
+        pose = value.components()
+        if not all(math.isfinite(v) for v in pose):
+            return False
+        self.positions.poses.append((motion, tuple(pose), NOWHERE))
+        return True
 
     def part(self, element, tag):
         """The six numbers of a child's pose, None where there is no such child."""
@@ -205,6 +231,12 @@ class Waypoints:
         name = self.tool if holder is None else self.target(holder).get("referencedName", "")
         position = node.find("position")
         offset = self.part(self.target(position), "TCPOffset") if position is not None else None
+        if node.get("type") == "Variable":  # the TCP in force, if the program has met it
+            known = {
+                words for (one, o), words in self.tools.items() if one == name and o is not None
+            }
+            if len(known) == 1:
+                return known.pop()
         if (name, offset) not in self.tools:
             text = "" if offset is None else "p[" + ", ".join(f"{v:g}" for v in offset) + "]"
             words = self.tools[name, offset] = f"{name} {text}".strip()

@@ -129,7 +129,7 @@ def test_motions_layout_frames_and_positions(tmp_path):
         ("L P[99] 10mm/sec FINE", "P\\[99\\] is not in /POS"),
         ("L P[R[5]] 10mm/sec FINE", "R\\[5\\] has no value"),
         ("L P[2] 10mm/sec FINE Offset", "Offset"),
-        ("L P[2] 10mm/sec FINE Tool_Offset,PR[3]", "Tool_Offset"),
+        ("L P[2] 10mm/sec FINE Tool_Offset,PR[3]", r"PR\[3\]"),
         ("L P[2] 10mm/sec FINE Skip,LBL[2]", "Skip"),
         ("C P[2] 10mm/sec FINE", "end point"),
         ("L P[7] 10mm/sec FINE", "joint"),

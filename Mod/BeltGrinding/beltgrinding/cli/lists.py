@@ -13,7 +13,7 @@ def add(commands):
     printed.add_argument(
         "name",
         nargs="?",
-        choices=("job", "contact", "presets", "raster", "events", "summary", "verdict"),
+        choices=("job", "contact", "presets", "raster", "events", "summary", "values", "verdict"),
         default="job",
     )
     printed.set_defaults(do=_schema)

@@ -27,6 +27,16 @@ def add(commands):
         help="how poses that are tool axes only (APT, G-code) are turned about them: held along a pass "
         "(default), along the pass, or the belt along a direction in the program's base",
     )
+    program.add_argument(
+        "--values",
+        metavar="JSON",
+        help="what only the controller knows (default: NAME.values.json beside the program)",
+    )
+    program.add_argument(
+        "--write-values",
+        action="store_true",
+        help="write what the program asks for into NAME.values.json beside it, to be filled in",
+    )
     outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
@@ -119,7 +129,7 @@ def _frame_words(job):
 def _program(arguments):
     from ..base.files import cannot_be_written, write_whole
     from ..engine import InputError
-    from ..programs import table
+    from ..programs import given, table
     from ..programs.patch.patch import patch
     from ..programs.registry import read_program
     from ..programs.writers.writer import write_program
@@ -149,6 +159,15 @@ def _program(arguments):
         raise InputError(
             "cli.roll_of_written", "program write: --roll changes nothing in the original"
         )
+    if action != "read" and arguments.write_values:
+        raise InputError(
+            "cli.write_values", "program {action}: --write-values is for reading", action=action
+        )
+    if arguments.values and (action == "write" or arguments.write_values):
+        raise InputError(
+            "cli.values_beside",
+            "--values: program write and --write-values take the file beside the program only",
+        )
     outputs.check(arguments, [arguments.output], files)
     notes = []
     try:
@@ -156,9 +175,13 @@ def _program(arguments):
             changed = patch(*files, arguments.output)
             print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
             return
-        program = read_program(files[0], **_roll(arguments))
+        program = read_program(files[0], **_roll(arguments), values=arguments.values)
         if action == "convert":
             notes = write_program(arguments.output, None, program, **_frames(arguments))
+        elif arguments.write_values:
+            file, count = given.write_template(program, files[0])
+            print(json.dumps({"values": str(file), "to_be_given": count}))
+            return
         elif arguments.output:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:

@@ -45,7 +45,7 @@ def _inputs(job):
             yield f"cell.bodies[{i}].brep", None, body["brep"]
     for i, program in enumerate(job["programs"]):
         if "file" in program:
-            for path in _program_files(program["file"]):
+            for path in _program_files(program["file"], program.get("values")):
                 yield f"programs[{i}]", path, None
         else:
             yield f"programs[{i}].poses", None, program["poses"]
@@ -54,14 +54,16 @@ def _inputs(job):
         yield "belt_machine.compliance.surrogate_file", Path(surrogate), None
 
 
-def _program_files(path):
+def _program_files(path, values=None):
     path = Path(path)
+    values = Path(values) if values else path.with_name(path.stem + ".values.json")
+    given = [values] if values.is_file() else []
     try:
         near = sorted(path.parent.iterdir())
     except OSError:
         near = []
     stem = path.stem.lower()
-    return [path] + [
+    return [path, *given] + [
         p
         for p in near
         if p != path and p.stem.lower() == stem and p.suffix.lower() in BESIDE and p.is_file()

@@ -37,6 +37,9 @@ def validate(job, folder="."):
     for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
         if "file" in holder:
             holder["file"] = absolute(folder, holder["file"])
+    for program in job["programs"]:
+        if "values" in program:
+            program["values"] = absolute(folder, program["values"])
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])

@@ -74,12 +74,23 @@ def program_arrays(program, where, warnings, pose_of=None, holding=None):
             "{program}: roll is for a file of tool axes; the poses given here are whole",
             program=where,
         )
+    if "poses" in program and "values" in program:
+        raise InputError(
+            "job.values_of_poses",
+            "{program}: values are for a program's file; the poses given here are whole",
+            program=where,
+        )
     if "poses" in program:
         arrays = listed_poses(program["poses"], where)
     else:
         from ..programs.registry import read_program, told_problems
 
-        read = read_program(program["file"], program.get("roll"), program.get("roll_direction"))
+        read = read_program(
+            program["file"],
+            program.get("roll"),
+            program.get("roll_direction"),
+            program.get("values"),
+        )
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)  # may find more problems
         read.check_holding(holding)
         problems = told_problems(read, None if "feed_mm_s" in program else DEFAULT_FEED)

@@ -8,15 +8,16 @@ from pathlib import Path
 
 from ..base.regular_files import open_regular, shown
 from ..engine import InputError
+from . import given
 from .program import MAX_FILE, ProgramError
 from .readers.roll import lay
 from .readers.speeds import told as told_problems  # noqa: F401
 
 
-def _krl(path):
+def _krl(path, values=None):
     from .readers.krl import reader as krl
 
-    return krl.read(path)
+    return krl.read(path, values)
 
 
 def _csv(path):
@@ -49,10 +50,10 @@ def _gcode(path):
     return gcode.read(path)
 
 
-def _fanuc(path):
+def _fanuc(path, values=None):
     from .readers.fanuc import reader as fanuc
 
-    return fanuc.read(path)
+    return fanuc.read(path, values)
 
 
 def _inform(path):
@@ -97,6 +98,9 @@ READERS = {
 }
 
 
+WITH_VARIABLES = (_krl, _fanuc)  # which take variables that a person gives
+
+
 def file_pattern():
     """What a file dialog shows: "*.src *.csv ..."; suffixes in upper case as well."""
     return " ".join(f"*{s} *{s.upper()}" for s in sorted(READERS))
@@ -115,10 +119,12 @@ def _no_collection():
             gc.enable()
 
 
-def read_program(path, roll=None, roll_direction=None):
+def read_program(path, roll=None, roll_direction=None, values=None):
     """The Program in the file ``path``, its language told by the suffix. Raises ProgramError.
 
     ``roll``, ``roll_direction``: how poses with a free roll are turned (``readers.roll.lay``).
+    ``values``: the file of what only the controller knows (``given``); without it NAME.values.json beside
+    the program, where there is one.
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
@@ -135,8 +141,15 @@ def read_program(path, roll=None, roll_direction=None):
         open_regular(path, MAX_FILE).close()  # before anything looks at what lies beside it
     except InputError as error:
         raise ProgramError.of(error) from None
+    side = Path(values) if values else given.beside(path)
+    known = given.load(side) if values or side.is_file() else None
     with _no_collection():
-        program = reader(path)
+        if known and reader in WITH_VARIABLES:
+            program = reader(path, known["variables"])
+        else:
+            program = reader(path)
+        if known:
+            given.apply(program, known, shown(side.name))
         lay(program, roll, roll_direction)
     if not program.motions and not program.problems:
         program.problem(

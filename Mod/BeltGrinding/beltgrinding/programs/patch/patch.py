@@ -16,6 +16,7 @@ import numpy as np
 
 from ...base.files import cannot_be_written, write_whole
 from ...base.regular_files import shown
+from ..given import beside as values_beside
 from ..program import Fact, ProgramError, bytes_of, name_of
 from ..readers.krl.data_lists import others as krl_lists
 from ..readers.rapid import modules as rapid_modules
@@ -180,8 +181,10 @@ def patch(path, changes, output):
         for other in _seen(path, program.language):
             (Path(folder) / other.name).write_bytes(other.read_bytes())
         copy = Path(folder) / path.name
+        values = values_beside(path)
+        values = values if values.is_file() else None
         copy.write_bytes(written)
-        again = read_program(copy)
+        again = read_program(copy, values=values)
     report = _verify(program, again, work, source, module)
     _write(output, written, beside, path)
     return report

@@ -8,6 +8,7 @@ import re
 
 import numpy as np
 
+from ....base.frames import to_abc
 from ....base.stopping import check
 from ...program import LOOPED, MAX_UNROLLED, SKIPPED, Fact, Motion, ProgramError, Unknown, work_of
 from ..taught import DIGITS, lines_in, pose_of
@@ -26,6 +27,9 @@ MM_PER_S = {"mm/sec": 1.0, "cm/min": 10.0 / 60.0, "inch/min": 25.4 / 60.0}
 SECONDS = {"sec": 1.0, "msec": 1e-3}
 # Options that move the target, or end the motion before it.
 SHIFTS = re.compile(r"\b(Tool_Offset|Offset|VOFFSET|Search|TrackPR|Skip|VR\[)", re.IGNORECASE)
+OFFSET = re.compile(
+    r"\b(Tool_Offset|Offset)\s*,\s*PR\s*\[([^\[\]]*(?:\[[^\[\]]*\])?[^\[\]]*)\]", re.IGNORECASE
+)
 HARMLESS = re.compile(
     r"(DO|DI|RO|RI|GO|GI|AO|AI|SO|UO|UI|WO|WI|F|M|SR|AR|TIMER|PAYLOAD|OVERRIDE|WAIT|PAUSE|MESSAGE|"
     r"UALM|LOCK|UNLOCK|COL|RSR|MONITOR|JOINT_MAX_SPEED|LINEAR_MAX_SPEED|TC_ONLINE|STOP_TRACKING|"
@@ -49,9 +53,9 @@ def zeither(rest):
     return 0.0 if match.group(1) else float(match.group(2))
 
 
-def read(path):
-    """The Program of a .ls file. Raises ProgramError when it cannot be read."""
-    reader = _Reader(path)
+def read(path, values=None):
+    """The Program of a .ls file; ``values``: as Registers takes them. Raises ProgramError when it cannot be read."""
+    reader = _Reader(path, values)
     reader.load(lines_in(path, "TP"))
     reader.follow()
     reader.close_arc()
@@ -61,8 +65,9 @@ def read(path):
 class _Reader(Registers):
     """Follows a TP program from top to bottom with the registers it can know."""
 
-    def __init__(self, path):
-        super().__init__("Fanuc TP", path)
+    def __init__(self, path, values=None):
+        super().__init__("Fanuc TP", path, values)
+        self.set_here = {}  # line in which the program sets a position register, by its number
         self.statements = []  # (line, text, whether it ended)
         self.continued = 0  # lines of the last one after its first
         self.rounds = 0  # units of work; below 0: what the file allows
@@ -244,7 +249,9 @@ class _Reader(Registers):
                 )
             self.here = None
             self.gap(line)
-        elif not HARMLESS.match(text) and not re.match(r"PR\s*\[", text):
+        elif re.match(r"PR\s*\[", text):
+            self.sets_position(line, text)
+        elif not HARMLESS.match(text):
             self.problem(
                 line,
                 "programs.ignored",
@@ -295,12 +302,14 @@ class _Reader(Registers):
 
     def forget(self, statements):
         """What statements assign that may or may not run is unknown afterwards."""
-        for _, text, _ in statements:
+        for line, text, _ in statements:
             for found in re.findall(rf"\bR{INDEX}\s*=", text):
                 try:
                     self.registers.pop(self.index(found), None)
                 except Unknown:
                     self.registers.clear()
+            if re.search(r"\bPR\s*\[[^\]]*\]\s*=", text):
+                self.sets_position(line, text)
             if "CALL" in text or "RUN" in text:
                 self.registers.clear()
             if "_NUM" in text:
@@ -460,6 +469,7 @@ class _Reader(Registers):
                 raise Unknown("programs.fanuc.no_end_point", "its end point is missing")
             targets.append(match.groups()[:2])
             rest = match.group(3)
+        shift, rest = self.offset(kind, rest)
         if SHIFTS.search(rest):
             raise Unknown(
                 "programs.known_at_run_time",
@@ -470,6 +480,8 @@ class _Reader(Registers):
             self.target(line, KINDS[kind], *target, re.search(r"\bINC\b", rest))
             for target in targets
         ]
+        if shift is not None:
+            motions = [(m, self.shifted(m, shift)) for m, _ in motions]
         before = self.here
         for motion, components in motions:
             motion.aux = motion is not motions[-1][0]
@@ -485,14 +497,11 @@ class _Reader(Registers):
 
     def target(self, line, kind, register, index, incremental):
         """(Motion, components) of one position. Raises Unknown."""
-        if register == "PR":
-            raise Unknown(
-                "programs.fanuc.position_register",
-                "PR[{index}] is a position register of the controller",
-                index=index,
-            )
         n = self.index(index)
-        position = self.positions.get(n)
+        if register == "PR":
+            position = (self.position_register(n), None, None)
+        else:
+            position = self.positions.get(n)
         if position is None:
             raise Unknown("programs.fanuc.not_in_pos", "P[{n}] is not in /POS", n=n)
         if isinstance(position, str):
@@ -524,6 +533,59 @@ class _Reader(Registers):
             components = [*np.add(self.here[0][:3], components[:3]), *self.here[0][3:]]
         motion.pose = pose_of(components)
         return motion, components
+
+    def position_register(self, n):
+        """X, Y, Z, W, P, R of PR[n] as a person gives it. Raises Unknown."""
+        if n in self.set_here or None in self.set_here:
+            raise Unknown(
+                "programs.fanuc.register_set",
+                "PR[{n}] is set by the program, in line {line}, which is not followed",
+                n=n,
+                line=self.set_here.get(n, self.set_here.get(None)),
+            )
+        six = self.ask(f"PR[{n}]", "frame")
+        if not isinstance(six, tuple):
+            raise Unknown(
+                "programs.fanuc.position_register",
+                "PR[{index}] is a position register of the controller",
+                index=n,
+            )
+        x, y, z, a, b, c = six
+        return [x, y, z, c, b, a]
+
+    def sets_position(self, line, text):
+        """What a statement makes of a position register only the controller knows."""
+        for found in re.findall(rf"PR\s*\[\s*([^\],]*)[^\]]*\]\s*=", text) or [""]:
+            try:
+                n = self.index(found.strip())
+            except Unknown:
+                n = None  # any of them
+            self.set_here.setdefault(n, line)
+
+    def offset(self, kind, rest):
+        """((which side, 4 x 4) of Offset,PR[n] or Tool_Offset,PR[n], the rest without it), or (None, rest).
+        Raises Unknown."""
+        found = OFFSET.findall(rest)
+        if len(found) != 1:
+            return None, rest
+        if kind in "CA" or re.search(r"\bINC\b", rest):
+            raise Unknown(
+                "programs.fanuc.offset_of_arc",
+                "what an offset does to an arc, or with INC, is not known here",
+            )
+        side, index = found[0]
+        return (side.lower(), pose_of(self.position_register(self.index(index)))), OFFSET.sub(
+            " ", rest
+        )
+
+    def shifted(self, motion, shift):
+        """Moves a Motion by an offset; its new components."""
+        side, frame = shift
+        if motion.pose is None:
+            raise Unknown("programs.fanuc.offset_of_joints", "an offset moves a joint position")
+        motion.pose = motion.pose @ frame if side == "tool_offset" else frame @ motion.pose
+        a, b, c = to_abc(motion.pose)
+        return [*motion.pose[:3, 3].tolist(), c, b, a]
 
     def speed(self, line, kind, rest, before):
         """mm/s of a path motion, None (and a Problem) when it is not known."""

@@ -20,9 +20,11 @@ COMPARE = {
 class Registers(TaughtPath):
     """Values of registers; what the program does not set raises Unknown."""
 
-    def __init__(self, language, path):
+    def __init__(self, language, path, values=None):
+        """``values``: what a person gives, {NAME: number, or six of a frame}."""
         super().__init__(language, path)
         self.registers = {}
+        self.values = values or {}
 
     def index(self, text):
         """The number in P[3], P[3:name], P[R[2]]."""
@@ -34,12 +36,20 @@ class Registers(TaughtPath):
     def register(self, text):
         n = self.index(text)
         if n not in self.registers:
+            value = self.ask(f"R[{n}]", "")
+            if isinstance(value, float):
+                return value
             raise Unknown(
                 "programs.fanuc.no_register_value",
                 "R[{text}] has no value that this file gives",
                 text=text,
             )
         return self.registers[n]
+
+    def ask(self, name, kind):
+        """What a person gives for a name; None: nothing."""
+        self.program.asked.setdefault(name, kind)
+        return self.values.get(name)
 
     def number(self, text):
         """The value of a number or register, or of two with + - * / between them."""

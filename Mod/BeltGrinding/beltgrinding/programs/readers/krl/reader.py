@@ -59,10 +59,11 @@ LABEL = re.compile(r"\w+\s*:(?!=)|[{}()\]]*$")
 HARMLESS = {"bas", "msgquit", "ir_stopm", "varstate", "msgnotify"}
 
 
-def read(path):
-    """The Program of a .src file. Raises ProgramError when it cannot be read at all."""
+def read(path, values=None):
+    """The Program of a .src file; ``values``: what a person gives, {NAME: number, truth value, or six of a
+    frame}. Raises ProgramError when it cannot be read at all."""
     path = Path(path)
-    interpreter = _Interpreter(name_of(path))
+    interpreter = _Interpreter(name_of(path), values)
     interpreter.read_lists(path)
     try:
         interpreter.run(data_lists.statements(path))
@@ -82,8 +83,9 @@ class _Leave(Exception):
 class _Interpreter:
     """Follows a program from top to bottom with the values it can know."""
 
-    def __init__(self, name):
+    def __init__(self, name, given=None):
         self.program = Program("KUKA KRL", name)
+        self.given = given or {}  # where neither the program nor a data list tells
         self.file = name
         self.values = Values()
         self.named = {}  # $tool, $base: the controller's own, by name
@@ -115,12 +117,21 @@ class _Interpreter:
         if isinstance(inner, dict) and component in inner:
             return inner[component]
         index = f"[{','.join(map(str, indices))}]" if indices else ""
+        given = self.ask(f"{name}{index}".upper())
+        if given is not None:
+            return given
         raise Unknown(
             "programs.krl.no_value",
             "{name}{index} has no value that this file or its .dat gives",
             name=name.upper(),
             index=index,
         )
+
+    def ask(self, name, kind=""):
+        """What a person gives for a name; None: nothing."""
+        value = self.given.get(name)
+        self.program.asked.setdefault(name, kind)
+        return dict(zip(FRAME, value)) if isinstance(value, tuple) else value
 
     def evaluate(self, text):
         reader = Reader(text, self.lookup)
@@ -230,6 +241,7 @@ class _Interpreter:
                 )
                 self.values.pop(key)
             origin.update({k: name_of(one) for k in self.values if k not in origin})
+        self.program.asked.clear()
         data = data_lists.own(path)
         if data is not None:
             self.read_data(data_lists.statements(data), name_of(data))
@@ -554,6 +566,8 @@ class _Interpreter:
         self.named.pop(name, None)
         number_ = int(index) if re.fullmatch(r"\d{1,3}", index, re.ASCII) else None
         known = self.values.get((f"{what}_data", (number_,)))
+        if number_ and not isinstance(known, dict):
+            known = self.ask(f"{what}_data[{number_}]".upper(), "frame")
         if number_ == 0:
             self.values[name, ()] = dict.fromkeys(FRAME, 0.0)
         elif isinstance(known, dict):

@@ -74,8 +74,10 @@ def test_a_jobs_warnings_stay_facts(tmp_path):
     (tmp_path / "a.src").write_text(text)
     warnings = []
     poses.program_arrays({"file": tmp_path / "a.src"}, "programs[0]", warnings)
-    assert isinstance(warnings[0], Problem) and warnings[0].startswith("a.src:3: LIN is left out")
-    assert sentence(warnings[0], "de").startswith("a.src:3: LIN bleibt weg")
+    speed, left_out = warnings
+    assert speed.code == "programs.speeds_assumed" and speed.line == 2
+    assert isinstance(left_out, Problem) and left_out.startswith("a.src:3: LIN is left out")
+    assert sentence(left_out, "de").startswith("a.src:3: LIN bleibt weg")
 
 
 def test_what_is_wrong_with_a_quaternion_keeps_its_code(tmp_path):

@@ -148,3 +148,11 @@ def test_a_component_that_is_set_is_its_own_variables_only(tmp_path):
     program = read(tmp_path, "BAS(#BASE,7)", f"LIN {point}", "$BASE.X=30", f"LIN {point}")
     assert program.motions[0].base != program.motions[1].base
     assert len(path(program)) == 1 and program.problems
+
+
+def test_a_setting_that_may_be_made_is_told(tmp_path):
+    rows = ["$ORI_TYPE=#CONSTANT", START, "IF $IN[4] THEN", "$ORI_TYPE=#VAR", "ENDIF", ARC % "40"]
+    program = read(tmp_path, *rows)
+    (told,) = program.problems
+    assert told.line == 6 and "$ORI_TYPE" in str(told)
+    assert abs(a_of(path(program)[-1])) < 1e-6  # as before

@@ -39,6 +39,7 @@ MAX_CALLS = 20
 MAX_NESTING = 60
 MAX_NAME = 60  # characters of a frame's
 FRAMES = ("$tool", "$base")
+SETTINGS = ("$ori_type", "$circ_type", "$ipo_mode", "$ipo_frame")
 MAX_SPEED = 1e6  # m/s; beyond, the file is damaged
 ASSIGN = re.compile(
     r"^(?:(?:GLOBAL|DECL|CONST)\s+)*(?:(\w+)\s+)?([$\w.]+)\s*(?:(\[[^\]]*\])\s*)?=(?!=)(.*)$", re.I
@@ -391,10 +392,18 @@ class _Interpreter:
         for k in range(begin, end):
             line, text = routine.statements[k]
             match = ASSIGN.match(text)
-            if match:
+            if match and match.group(2).lower() not in SETTINGS:
                 self.values.forget(match.group(2).lower())
                 if match.group(2).lower() in FRAMES:
                     self.named[match.group(2).lower()] = f"as line {line} may set it"
+            if match and match.group(2).lower() in SETTINGS:
+                self.problem(
+                    line,
+                    "programs.krl.setting_lost",
+                    "whether {name} is set here is decided at run time; behind it the program is read as "
+                    "if it were not set",
+                    name=match.group(2).upper(),
+                )
             if SETS_SPEED.match(text) and self.speed is not None:
                 self.problem(
                     line,

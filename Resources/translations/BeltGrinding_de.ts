@@ -1123,6 +1123,10 @@
         <source>the roll that the poses have</source>
         <translation>die Drehung, die die Posen haben</translation>
     </message>
+    <message>
+        <source>line from which on motions are left out before each pose; 0: none</source>
+        <translation>Zeile, ab der vor jeder Pose Bewegungen fehlen; 0: keine</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -1120,6 +1120,46 @@
         <translation>wie Posen, die nur Werkzeugachsen sind (APT, G-Code, CAM-Bahnen), um sie gedreht werden: über eine Bahn gehalten, längs der Bahn, oder das Band längs RollDirection</translation>
     </message>
     <message>
+        <source>feed of the contact while the force grows or falls, mm/s; 0: feed_mm_s</source>
+        <translation>Vorschub des Kontakts, während die Kraft wächst oder fällt, mm/s; 0: feed_mm_s</translation>
+    </message>
+    <message>
+        <source>force while the wheel comes down and lifts off, from which it grows, as a share of the full one</source>
+        <translation>Kraft, während das Rad aufsetzt und abhebt, von der aus sie wächst, als Anteil der vollen</translation>
+    </message>
+    <message>
+        <source>how the force comes onto a pass and off it. run_on: the wheel comes down outside the border, where there is room, and the force grows while it rolls over; inside: it comes down on the border, the force grows along the pass; direct: under the full force from the first moment</source>
+        <translation>wie die Kraft auf eine Bahn kommt und von ihr geht. run_on: das Rad setzt außerhalb des Rands auf, wo Platz ist, und die Kraft wächst, während es hinüberrollt; inside: es setzt auf dem Rand auf, die Kraft wächst längs der Bahn; direct: vom ersten Augenblick an unter voller Kraft</translation>
+    </message>
+    <message>
+        <source>length of pass over which the force grows to its full value, and falls at the end, mm; 0: the contact&apos;s length</source>
+        <translation>Länge der Bahn, über die die Kraft auf ihren vollen Wert wächst und am Ende fällt, mm; 0: die Länge des Kontakts</translation>
+    </message>
+    <message>
+        <source>of the wheel along a pass, degrees per mm</source>
+        <translation>des Rads längs einer Bahn, Grad je mm</translation>
+    </message>
+    <message>
+        <source>of the wheel between neighbouring poses of a pass</source>
+        <translation>des Rads zwischen benachbarten Posen einer Bahn</translation>
+    </message>
+    <message>
+        <source>run_on: how far outside the border the wheel comes down, mm; 0: half the contact&apos;s length</source>
+        <translation>run_on: wie weit außerhalb des Rands das Rad aufsetzt, mm; 0: die halbe Länge des Kontakts</translation>
+    </message>
+    <message>
+        <source>turn of the wheel along a pass, degrees per mm: faster turns of up to edge_turn_deg are spread along it, at others it ends</source>
+        <translation>Drehung des Rads längs einer Bahn, Grad je mm: schnellere Drehungen bis edge_turn_deg werden über sie verteilt, an anderen endet sie</translation>
+    </message>
+    <message>
+        <source>removed while the wheel comes down and lifts off, percent, by force and time; -1: not known</source>
+        <translation>abgetragen, während das Rad aufsetzt und abhebt, Prozent, nach Kraft und Zeit; -1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>line from which on motions are left out before each pose; 0: none</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>the roll that the poses have</source>
         <translation>die Drehung, die die Posen haben</translation>
     </message>
@@ -3375,6 +3415,50 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>in a fixed direction</source>
         <translation>in fester Richtung</translation>
+    </message>
+    <message>
+        <source>Entry and exit</source>
+        <translation>Ein- und Auslauf</translation>
+    </message>
+    <message>
+        <source>Entry feed (0: feed)</source>
+        <translation>Einlaufvorschub (0: Vorschub)</translation>
+    </message>
+    <message>
+        <source>Force grows over (0: by contact)</source>
+        <translation>Kraft wächst über (0: nach Kontakt)</translation>
+    </message>
+    <message>
+        <source>From outside, force grows</source>
+        <translation>Von außen, Kraft wächst</translation>
+    </message>
+    <message>
+        <source>Full force at once</source>
+        <translation>Volle Kraft sofort</translation>
+    </message>
+    <message>
+        <source>On the border, force grows</source>
+        <translation>Auf dem Rand, Kraft wächst</translation>
+    </message>
+    <message>
+        <source>Outside by (0: by contact)</source>
+        <translation>Außerhalb um (0: nach Kontakt)</translation>
+    </message>
+    <message>
+        <source>Removed while plunging: {:.1f} %</source>
+        <translation>Beim Eintauchen abgetragen: {:.1f} %</translation>
+    </message>
+    <message>
+        <source>Share of force at touch</source>
+        <translation>Kraftanteil beim Aufsetzen</translation>
+    </message>
+    <message>
+        <source>Turn in contact: {:.1f}° from pose to pose, {:.1f}° per mm</source>
+        <translation>Drehung im Kontakt: {:.1f}° von Pose zu Pose, {:.1f}° je mm</translation>
+    </message>
+    <message>
+        <source>Turn per mm at most (degrees)</source>
+        <translation>Drehung je mm höchstens (Grad)</translation>
     </message>
     <message>
         <source>Each place in a line of its own</source>

@@ -31,11 +31,17 @@ KEYS = (
     Key("ChordError", "Length", "Posing", "raster.chord_error_mm"),
     Key("MaxDistance", "Length", "Posing", "raster.max_distance_mm"),
     Key("MaxTurn", "Angle", "Posing", "raster.max_turn_deg"),
+    Key("TurnRate", "Float", "Posing", "raster.max_turn_deg_per_mm"),
     Key("Sampling", "Length", "Posing", "raster.sampling_mm"),
     Key("FitLimit", "Length", "Posing", "raster.fit_mm"),
     Key("Feed", "Speed", "Process", "raster.feed_mm_s"),
     Key("MaxTcpFeed", "Speed", "Process", "raster.max_tcp_feed_mm_s"),
     Key("Force", "Force", "Process", "raster.force_N"),
+    Key("Entry", "Enumeration", "Process", "raster.entry"),
+    Key("Lead", "Length", "Process", "raster.lead_mm"),
+    Key("Ramp", "Length", "Process", "raster.ramp_mm"),
+    Key("TouchForceShare", "Float", "Process", "raster.touch_force_share"),
+    Key("EntryFeed", "Speed", "Process", "raster.entry_feed_mm_s"),
     Key("Approach", "Enumeration", "Process", "raster.approach"),
     Key("ApproachLength", "Length", "Process", "raster.approach_mm"),
     Key("ApproachFeed", "Speed", "Process", "raster.approach_feed_mm_s"),
@@ -46,6 +52,14 @@ OUTPUTS = (
     Output("GroundLength", "Length", "Result", "length of all passes"),
     Output("StepOverUsed", "Length", "Result", "distance of neighbouring passes, at most"),
     Output("ContactWidth", "Length", "Result", "contact's width across the pass; 0: not asked for"),
+    Output("LargestTurn", "Angle", "Result", "of the wheel between neighbouring poses of a pass"),
+    Output("FastestTurn", "Float", "Result", "of the wheel along a pass, degrees per mm"),
+    Output(
+        "PlungeShare",
+        "Float",
+        "Result",
+        "removed while the wheel comes down and lifts off, percent, by force and time; -1: not known",
+    ),
     Output("Warnings", "StringList", "Result", "what the user should know of the passes"),
     stored_facts.output("Warnings", "Result"),
     Output("Inputs", "String", "Result", "hash of what the passes were laid from", True),
@@ -92,6 +106,11 @@ def generate(obj):
     obj.GroundLength = sum(one["length_mm"] for one in found["passes"])
     obj.StepOverUsed = found["step_over_mm"]
     obj.ContactWidth = found["contact_width_mm"] or 0.0
+    seen = found["check"]
+    obj.LargestTurn = seen["turn_deg"]
+    per_mm = seen["turn_deg_per_mm"]
+    obj.FastestTurn = 1e9 if per_mm is None else per_mm  # on the spot
+    obj.PlungeShare = -1.0 if seen["plunge_share"] is None else 100.0 * seen["plunge_share"]
     stored_facts.store(obj, "Warnings", found["warnings"])
     obj.Inputs = digest
 

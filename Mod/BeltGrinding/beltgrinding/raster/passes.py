@@ -5,8 +5,12 @@ import math
 import numpy as np
 
 from ..base import frames
+from . import turn_limits
 
 STILL = 1e-6  # mm; less is no way
+LEAST_LEAD = 0.2  # mm; a shorter way outside the border is none
+RAMP_STEPS = 6  # poses in a ramp of the force: that of a pose holds on the whole way to it
+AHEAD = 0.8  # cosine: so near to its way out, the pass goes on beyond a gap
 CELL = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
@@ -24,35 +28,39 @@ def lever(cell, points):
     return float(np.linalg.norm(points @ frame[:3, :3].T + frame[:3, 3], axis=1).max())
 
 
-def assemble(levels, settings, cell):
+def assemble(levels, settings, cell, entry):
     """The whole path. ``levels``: for each level line its pieces, dict(points, normals, tangents
-    (n, 3), closed). Returns dict(frames, feeds, forces, rapid, lines, zones, contacts, contact
-    (n,) bool: pose of a pass, passes).
+    (n, 3), closed); ``entry``: entry.Entry. Returns dict(frames, feeds, forces, rapid, lines, zones,
+    contacts, contact (n,) bool: pose of a pass, passes, cuts: how often a pass ends where it would turn too
+    fast or go back, beside (count of ends without room to come from outside)).
     """
-    parts, passes, count, end = [], [], 0, None
+    strokes, end, cuts = [], None, 0
     backwards = False
     for number, pieces in enumerate(levels):
-        strokes = _strokes(pieces, backwards, end, settings)
-        for stroke in strokes:
-            part = _stroke(stroke, settings)
-            first = count + int(np.argmax(part["contact"]))
-            on = part["contacts"][part["contact"]]
-            last = first + len(on) - 1
-            length = float(np.linalg.norm(np.diff(on[:, :3, 3], axis=0), axis=1).sum())
-            passes.append({"first": first, "last": last, "level": number, "length_mm": length})
-            count += len(part["contacts"])
-            parts.append(part)
-            end = stroke["points"][-1]
-        if strokes and settings["order"] == "zigzag":
-            backwards = not backwards
-    names = ("contacts", "feeds", "rapid", "contact")
+        some, ended = _strokes(pieces, backwards, end, settings)
+        cuts += ended
+        strokes += [{**stroke, "level": number} for stroke in some]
+        if some:
+            end = some[-1]["points"][-1]
+            backwards = backwards != (settings["order"] == "zigzag")
+    beside = _lead_in(strokes, settings, entry)
+    parts, passes, count = [], [], 0
+    for stroke in strokes:
+        part = _stroke(stroke, settings, entry)
+        first = count + int(np.argmax(part["contact"]))
+        on = part["contacts"][part["contact"]]
+        last = first + len(on) - 1
+        length = float(np.linalg.norm(np.diff(on[:, :3, 3], axis=0), axis=1).sum())
+        passes.append({"first": first, "last": last, "level": stroke["level"], "length_mm": length})
+        count += len(part["contacts"])
+        parts.append(part)
+    names = ("contacts", "feeds", "forces", "rapid", "contact")
     joined = {name: np.concatenate([p[name] for p in parts]) if parts else [] for name in names}
-    joined["passes"] = passes
+    joined.update(passes=passes, cuts=cuts, beside=beside)
     if not parts:
         return joined
     joined["frames"] = frames.base_from_tcp(joined["contacts"], **cell)
     joined["feeds"] = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
-    joined["forces"] = np.full(count, settings["force_N"] or -1.0)
     joined["lines"] = np.zeros(count, dtype=int)
     joined["zones"] = np.full(count, -1.0)  # the job's default
     return joined
@@ -75,8 +83,8 @@ def tcp_feeds(path, most):
 
 
 def _strokes(pieces, backwards, end, settings):
-    """The pieces of a level in the order of travel, neighbours across short gaps joined, borders
-    extended or kept clear of, what is too short left out.
+    """(the pieces of a level in the order of travel, neighbours across short gaps joined, borders extended
+    or kept clear of, what is too short left out; how often a piece ends at a limit of its turn).
     """
     left = [_turned(piece) if backwards else dict(piece) for piece in pieces]
     if end is not None:
@@ -92,12 +100,18 @@ def _strokes(pieces, backwards, end, settings):
             joined[-1] = _joined(joined[-1], piece)
         else:
             joined.append(piece)
-    result = []
+    result, cuts = [], 0
     for piece in joined:
         piece = piece if piece["closed"] else _run_out(piece, settings["run_out_mm"])
-        if piece is not None and _length(piece["points"]) >= max(settings["min_length_mm"], 1e-9):
-            result.append(piece)
-    return result
+        if piece is None:
+            continue
+        sense = piece.get("sense", 1.0)
+        left = turn_limits.limited(piece, settings)
+        cuts += max(len(left) - 1, not left)
+        for one in left:
+            if _length(one["points"]) >= max(settings["min_length_mm"], 1e-9):
+                result.append({**one, "sense": sense})
+    return result, cuts
 
 
 def _turned(piece):
@@ -133,11 +147,24 @@ def _nearest(pieces, place):
 
 
 def _joins(before, piece, settings):
+    """Whether the pass goes on across the gap: it is short, and the way over it leads on as both ends do."""
     if before["closed"] or piece["closed"]:
         return False
-    gap = np.linalg.norm(piece["points"][0] - before["points"][-1])
-    turn = math.acos(np.clip(before["normals"][-1] @ piece["normals"][0], -1.0, 1.0))
-    return gap <= settings["bridge_mm"] and math.degrees(turn) <= settings["edge_turn_deg"]
+    over = piece["points"][0] - before["points"][-1]
+    gap = np.linalg.norm(over)
+    most = settings["edge_turn_deg"]
+    if gap > settings["bridge_mm"] or _degrees(before["normals"][-1], piece["normals"][0]) > most:
+        return False
+    leaves = before.get("sense", 1.0) * before["tangents"][-1]
+    arrives = piece.get("sense", 1.0) * piece["tangents"][0]
+    if _degrees(leaves, arrives) > most:
+        return False
+    return gap <= STILL or max(_degrees(leaves, over / gap), _degrees(over / gap, arrives)) <= most
+
+
+def _degrees(a, b):
+    """Between unit vectors."""
+    return math.degrees(math.acos(np.clip(a @ b, -1.0, 1.0)))
 
 
 def _joined(before, piece):
@@ -186,17 +213,109 @@ def contact_frames(points, normals, tangents, angle=0.0):
     return result
 
 
-def _stroke(piece, settings):
-    """dict(contacts, feeds, rapid, contact) of one pass with its approach and retract."""
+def _lead_in(strokes, settings, entry):
+    """Runs the strokes on beyond their ends, where there is room; rings overlap. How many ends have none."""
+    for stroke in strokes:
+        if stroke["closed"] and entry.ramp > 0.0:
+            stroke.update(_overlapping(stroke, entry.ramp))
+    if not entry.lead > LEAST_LEAD:
+        return 0
+    ends = [(k, at) for k, stroke in enumerate(strokes) if not stroke["closed"] for at in (0, -1)]
+    if not ends:
+        return 0
+    angle = math.radians(settings["belt_angle_deg"])
+    places, outwards, turned = [], [], []
+    for k, at in ends:
+        one = strokes[k]
+        frame = contact_frames(
+            one["points"][[at]], one["normals"][[at]], one["tangents"][[at]], angle
+        )
+        places.append(one["points"][at])
+        outwards.append((1.0 if at else -1.0) * one["sense"] * one["tangents"][at])
+        turned.append(frame[0])
+    places, outwards, turned = (np.array(a) for a in (places, outwards, turned))
+    turned[:, :3, 3] += settings["offset_mm"] * -turned[:, :3, 2]
+    most = _to_neighbours(places, outwards, [strokes[k]["level"] for k, _ in ends], entry.lead)
+    leads = entry.leads(turned, outwards, most)
+    for (k, at), lead, outward in zip(ends, leads, outwards):
+        if lead > 0.0:
+            strokes[k].update(_run_on(strokes[k], at, lead * outward))
+    return int((leads <= 0.0).sum())
+
+
+def _to_neighbours(places, outwards, levels, lead):
+    """mm, how far each end may run on: halfway over a gap, beyond which its own level line goes on."""
+    most, levels = np.full(len(places), lead), np.array(levels)
+    for level in np.unique(levels):
+        mine = np.flatnonzero(levels == level)
+        over = places[mine][None] - places[mine][:, None]
+        gap = np.linalg.norm(over, axis=2)
+        ahead = (over * outwards[mine][:, None]).sum(axis=2) > AHEAD * gap
+        gap[~ahead | (gap <= STILL)] = np.inf
+        most[mine] = np.minimum(most[mine], 0.5 * gap.min(axis=1))
+    return most
+
+
+def _run_on(piece, at, shift):
+    """The piece with one more point beyond its first (0) or last (-1)."""
+    order = slice(None, None, 1 if at else -1)
+    grown = {name: piece[name][order] for name in ("points", "normals", "tangents")}
+    grown = {name: np.vstack([a, a[-1:]]) for name, a in grown.items()}
+    grown["points"][-1] += shift
+    return {name: a[order] for name, a in grown.items()}
+
+
+def _overlapping(piece, length):
+    """A ring that goes on over its beginning for ``length`` mm, at most once round."""
+    s = _places(piece["points"])
+    more = (s > 0.0) & (s < length)
+    names = ("points", "normals", "tangents")
+    return {name: np.vstack([piece[name], piece[name][more]]) for name in names}
+
+
+def _places(points):
+    """mm along the piece (n,)."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+def _with_ramps(piece, ramp):
+    """The piece with poses in its ramps, between which the force changes."""
+    s = _places(piece["points"])
+    ramp = min(ramp, 0.5 * s[-1])
+    if ramp <= 0.0:
+        return piece
+    more = ramp * np.arange(1, RAMP_STEPS + 1) / RAMP_STEPS
+    more = np.concatenate([more, s[-1] - more])
+    more = more[abs(more[:, None] - s[None]).min(axis=1) > LEAST_LEAD / RAMP_STEPS]
+    at = np.concatenate([s, more])
+    order = np.argsort(at, kind="stable")
+    grown = {}
+    for name in ("points", "normals", "tangents"):
+        rows = np.column_stack([np.interp(more, s, piece[name][:, k]) for k in range(3)])
+        if name != "points":
+            rows /= np.linalg.norm(rows, axis=1)[:, None]
+        grown[name] = np.vstack([piece[name], rows])[order]
+    return {**piece, **grown}
+
+
+def _stroke(piece, settings, entry):
+    """dict(contacts, feeds, forces, rapid, contact) of one pass with its approach and retract."""
+    piece = _with_ramps(piece, entry.ramp)
     points = piece["points"] + settings["offset_mm"] * piece["normals"]
     angle = math.radians(settings["belt_angle_deg"])
     on = contact_frames(points, piece["normals"], piece["tangents"], angle)
-    sense = piece.get("sense", 1.0)
+    sense = piece["sense"]
     before = _approach(on[0], -sense * piece["tangents"][0], settings)
     after = _approach(on[-1], sense * piece["tangents"][-1], settings)[::-1]
     contacts = np.concatenate([before, on, after])
     count, lead = len(on), len(before)
+    s = _places(piece["points"])
+    share = entry.shares(
+        0.5 * (s[1:] + s[:-1]), s[-1]
+    )  # of the force, on the way to all but the first
     feeds = np.full(len(contacts), float(settings["feed_mm_s"]))
+    if settings["entry_feed_mm_s"] > 0.0:
+        feeds[lead + 1 : lead + count][share < 1.0] = settings["entry_feed_mm_s"]
     feeds[: lead + 1] = feeds[lead + count :] = settings["approach_feed_mm_s"]
     rapid = np.zeros(len(contacts), dtype=bool)
     # Between the pass's height of clearance and the beginning of the approach nothing is ground.
@@ -204,7 +323,19 @@ def _stroke(piece, settings):
     rapid[-1] = lead > 1
     contact = np.zeros(len(contacts), dtype=bool)
     contact[lead : lead + count] = True
-    return {"contacts": contacts, "feeds": feeds, "rapid": rapid, "contact": contact}
+    touch = settings["touch_force_share"] if settings["entry"] != "direct" else 1.0
+    shares = np.full(len(contacts), touch)
+    shares[lead + 1 : lead + count] = share
+    forces = np.full(len(contacts), settings["force_N"] or -1.0)
+    if entry.force is not None:
+        forces[shares < 1.0] = entry.force * shares[shares < 1.0]
+    return {
+        "contacts": contacts,
+        "feeds": feeds,
+        "forces": forces,
+        "rapid": rapid,
+        "contact": contact,
+    }
 
 
 def _approach(frame, away, settings):

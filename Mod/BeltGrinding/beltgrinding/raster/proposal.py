@@ -223,11 +223,21 @@ def _feed(job, settings, laid, allowance):
         return None
     machine, law = job["belt_machine"], job["law"]
     rate = law["coefficient_mm2_per_N"] * machine["belt_wear"] * 1000.0 * machine["belt_speed_m_s"]
-    length = sum(one["length_mm"] for one in laid["passes"])
+    length = _loaded(laid, settings["force_N"] or machine["force_N"])
     plunge = min(machine["force_travel_mm"], settings["approach_mm"])
     ends = 2.0 * len(laid["passes"]) * plunge / settings["approach_feed_mm_s"]
+    if settings["entry"] != "direct":
+        ends *= settings["touch_force_share"]
     time = allowance * laid["area_mm2"] / (rate * machine["force_N"]) - ends
     return length / time if time > 0 else math.inf
+
+
+def _loaded(laid, force):
+    """mm of the passes under their full force; where that grows and falls, by its share of it."""
+    way = np.linalg.norm(np.diff(laid["contacts"][:, :3, 3], axis=0), axis=1)
+    share = np.where(laid["forces"] < 0.0, 1.0, laid["forces"] / force)[1:]
+    on = laid["contact"][1:] & laid["contact"][:-1]
+    return float((way * share)[on].sum())
 
 
 def _spacing(area, contact_width, notes):

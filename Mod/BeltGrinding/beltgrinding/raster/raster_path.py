@@ -14,7 +14,8 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import passes
+from . import passes, path_check
+from .entry import Entry
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
 LEAST_SAMPLES = 400
@@ -57,7 +58,7 @@ def raster(job, settings, context=None):
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
     work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
-    mm how deep the undeformed wheel reaches into the faces, step_over_mm, contact_width_mm (None
+    mm how deep the undeformed wheel reaches into the faces, cuts, beside (as ``passes.assemble``), step_over_mm, contact_width_mm (None
     if the step-over was given), contact_length_mm, area_mm2, warnings). Raises InputError, Cancelled.
     """
     settings = validate(settings)
@@ -81,17 +82,34 @@ def raster(job, settings, context=None):
     cell = passes.cell_of(job)
     lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
     found = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
-    result = passes.assemble(found, settings, cell)
+    entry = Entry(job, shape, faces, settings, context)
+    result = passes.assemble(found, settings, cell, entry)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
             "no pass is left on the faces; lower min_length_mm, or give another direction",
         )
+    _tell_ends(result, settings, warnings)
     result["fit"] = _fit(job, settings, sheets, result, warnings, context)
     result.update(
         step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
     )
+    result["check"] = path_check.check(job, settings, result, context)
+    warnings += result["check"]["problems"]
     return result
+
+
+def _tell_ends(result, settings, warnings):
+    if result["cuts"]:
+        warnings.append(
+            core.Fact(
+                "raster.passes_end",
+                "at {count} places a pass ends, where the wheel would turn by more than {rate:.4g} degrees per "
+                "mm or go back in contact; what lies there may stay without a pass",
+                count=result["cuts"],
+                rate=settings["max_turn_deg_per_mm"],
+            )
+        )
 
 
 def _check_size(job, shape, faces, settings, warnings, context):
@@ -375,5 +393,7 @@ def summary(result):
         "step_over_mm": result["step_over_mm"],
         "contact_width_mm": result["contact_width_mm"],
         "area_mm2": result["area_mm2"],
+        "ends_without_room": result["beside"],
+        "check": {k: v for k, v in result["check"].items() if k != "problems"},
         "warnings": result["warnings"],
     }

@@ -26,7 +26,8 @@ class RasterPanel(Panel):
         self.body.addWidget(self._faces())
         self.passes = self._passes()
         self.body.addWidget(self.passes)
-        self.body.addWidget(self._process())
+        self.process = self._process()
+        self.body.addWidget(self.process)
         self.body.addWidget(self._posing())
         self.warnings = QtGui.QListWidget()
         self.warnings.setObjectName("rasterWarnings")
@@ -86,8 +87,18 @@ class RasterPanel(Panel):
             "plunge": translate("BeltGrinding", "Along the normal"),
             "arc": translate("BeltGrinding", "Tangential arc"),
         }
+        entries = {
+            "run_on": translate("BeltGrinding", "From outside, force grows"),
+            "inside": translate("BeltGrinding", "On the border, force grows"),
+            "direct": translate("BeltGrinding", "Full force at once"),
+        }
         form.add("Feed", translate("BeltGrinding", "Feed"))
         form.add("Force", translate("BeltGrinding", "Force (0: machine's)"))
+        form.add("Entry", translate("BeltGrinding", "Entry and exit"), entries)
+        form.add("Lead", translate("BeltGrinding", "Outside by (0: by contact)"))
+        form.add("Ramp", translate("BeltGrinding", "Force grows over (0: by contact)"))
+        form.add("TouchForceShare", translate("BeltGrinding", "Share of force at touch"))
+        form.add("EntryFeed", translate("BeltGrinding", "Entry feed (0: feed)"))
         form.add("Approach", translate("BeltGrinding", "Approach"), ways)
         form.add("ApproachLength", translate("BeltGrinding", "Approach length"))
         form.add("ApproachFeed", translate("BeltGrinding", "Approach feed"))
@@ -102,6 +113,7 @@ class RasterPanel(Panel):
         form.add("ChordError", translate("BeltGrinding", "Chord error"))
         form.add("MaxDistance", translate("BeltGrinding", "Distance at most"))
         form.add("MaxTurn", translate("BeltGrinding", "Turn at most"))
+        form.add("TurnRate", translate("BeltGrinding", "Turn per mm at most (degrees)"))
         form.changed = self.changed
         return form
 
@@ -136,6 +148,12 @@ class RasterPanel(Panel):
         if self.obj.StepOver.Value > 0:
             hidden.add("StepOverShare")
         self.passes.show_rows(set(self.passes.rows) - hidden)
+        unused = {
+            "run_on": set(),
+            "inside": {"Lead"},
+            "direct": {"Lead", "Ramp", "TouchForceShare", "EntryFeed"},
+        }
+        self.process.show_rows(set(self.process.rows) - unused[self.obj.Entry])
 
     def changed(self):
         self.arrange()
@@ -163,6 +181,12 @@ class RasterPanel(Panel):
         if obj.ContactWidth.Value > 0:
             width = translate("BeltGrinding", "Contact across the pass: {:.1f} mm")
             text += "\n" + width.format(obj.ContactWidth.Value)
+        text += "\n" + translate(
+            "BeltGrinding", "Turn in contact: {:.1f}\u00b0 from pose to pose, {:.1f}\u00b0 per mm"
+        ).format(obj.LargestTurn.getValueAs("deg").Value, obj.FastestTurn)
+        if obj.PlungeShare >= 0.0:
+            share = translate("BeltGrinding", "Removed while plunging: {:.1f} %")
+            text += "\n" + share.format(obj.PlungeShare)
         self.tell(text)
         self.warnings.clear()
         self.warnings.addItems(stored_facts.sentences(obj, "Warnings", language(), SHOWN_WARNINGS))

@@ -1,0 +1,122 @@
+"""How the wheel comes onto a pass and leaves it: from outside the border where there is room, under a force
+that grows from little to full along the pass.
+
+A wheel that comes down under its full force grinds where it comes down. Here it comes down and lifts off with
+touch_force_share of the force, outside the border, and the force grows over the length of the contact while
+that rolls over the border: as much of the force as of the contact is on the face, so that the pressure stays.
+"""
+
+import math
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job import engine_input
+
+TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
+SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for room
+CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
+OWN = 0.05  # mm that it may reach deeper into the faces that are ground
+TRIES = 1.0, 0.5  # of the way beyond the border
+SHORTEST = 0.2  # mm; a shorter one is none
+
+
+class Entry:
+    """What the ends of passes need: ``lead`` and ``ramp``, mm; ``force``, N, full, None under position
+    control."""
+
+    def __init__(self, job, shape, faces, settings, context):
+        """``faces``: those that are ground, from 0. Raises InputError, Cancelled."""
+        self.settings, self.context = settings, context
+        machine = job["belt_machine"]
+        self.wheel = engine_input.engine_arguments(job)[0]
+        under_force = machine["control"] == "force"
+        self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
+        length = 0.0
+        if settings["entry"] != "direct":
+            length = contact_length(job, settings)
+        self.ramp = (settings["ramp_mm"] or length) if settings["entry"] != "direct" else 0.0
+        self.lead = 0.0
+        if settings["entry"] == "run_on":
+            self.lead = settings["lead_mm"] or 0.5 * length
+        # A run-out of the user's own is a part of it.
+        self.lead = max(self.lead - max(settings["run_out_mm"], 0.0), 0.0)
+        if settings["run_out_mm"] < 0.0:  # the border is to be spared
+            self.lead = 0.0
+        self._own = self._others = None
+        if self.lead > 0.0:
+            self._own, self._others = (
+                self._samples(shape, some)
+                for some in (faces, [k for k in range(shape.face_count) if k not in set(faces)])
+            )
+
+    def _samples(self, shape, faces):
+        """(points, normals) of faces; None: they cannot be sampled."""
+        if not faces:
+            return np.zeros((0, 3)), np.zeros((0, 3))
+        try:
+            spacing = math.sqrt(sum(shape.face_area(k) for k in faces) / SAMPLES)
+            field, _ = core.sample_faces(shape, faces, spacing, context=self.context)
+        except InputError:
+            return None
+        # Both ways: beyond a wall the wheel's centre is behind it, and would see its back only.
+        normals = field.normals.astype(float)
+        return np.vstack([field.points] * 2), np.vstack([normals, -normals])
+
+    def leads(self, frames, outwards, most):
+        """mm that the wheel may stand beyond the ends of passes at ``frames`` (n, 4, 4) along ``outwards``
+        (n, 3), ``most`` (n,) at most; 0: no room. There it must stand off the faces that are not ground, and
+        reach no deeper into those that are than it does at the end, and than fit_mm.
+        """
+        found = np.zeros(len(frames))
+        if self._own is None or self._others is None:
+            return found
+        here = np.minimum(self._depth(frames, self._own), self.settings["fit_mm"])
+        for share in TRIES:
+            lead = share * most
+            left = np.flatnonzero((found == 0.0) & (lead > SHORTEST))
+            out = frames[left].copy()
+            out[:, :3, 3] += lead[left, None] * outwards[left]
+            fits = self._depth(out, self._own) <= here[left] + OWN
+            # In a plane the wheel stands over the border by four times what it is let down here.
+            down = CLEAR * lead[left] ** 2 / (2.0 * self.wheel["radius"])
+            out[:, :3, 3] += down[:, None] * out[:, :3, 2]
+            fits &= self._depth(out, self._others) <= 0.0
+            found[left[fits]] = lead[left[fits]]
+        return found
+
+    def _depth(self, frames, samples):
+        points, normals = samples
+        if not len(points) or not len(frames):
+            return np.zeros(len(frames))
+        return np.array(core.wheel_fit(self.wheel, frames, points, normals, self.context))
+
+    def shares(self, places, length):
+        """Of the full force, at ``places`` (n,) mm from where the wheel comes down, ``length`` mm before
+        it lifts off."""
+        touch, ramp = self.settings["touch_force_share"], min(self.ramp, 0.5 * length)
+        if ramp <= 0.0:
+            return np.ones(len(places))
+        near = np.minimum(places, length - places)
+        return touch + (1.0 - touch) * np.clip(near / ramp, 0.0, 1.0)
+
+
+def contact_length(job, settings):
+    """Length of the contact along the pass, mm: on a plane, of the job's wheel under the force. Under
+    position control, the wheel's chord at the depth of the allowance, and a little more."""
+    wheel, compliance, _, options = engine_input.engine_arguments(job)
+    machine = job["belt_machine"]
+    if machine["control"] != "force" or compliance["model"] == "geometric":
+        depth = max(job["stock"].get("allowance_mm", 0.0), 0.1)
+        return 2.0 * math.sqrt(2.0 * wheel["radius"] * 1.5 * depth)
+    force = settings["force_N"] or options["force"]
+    found = core.single_contact(
+        wheel, {"shape": "plane"}, compliance, force, None, options["contact_spacing"], 1e-3
+    )
+    x, y = np.meshgrid(found["x"], found["y"])
+    touched = found["pressure"] > TOUCHED * found["pressure"].max()
+    turn = math.radians(settings["belt_angle_deg"])
+    # The pass lies at -belt_angle to the belt's travel.
+    along = (x * math.cos(turn) - y * math.sin(turn))[touched]
+    cell = np.ptp(found["x"]) / max(len(found["x"]) - 1, 1)
+    return float(np.ptp(along) + cell)

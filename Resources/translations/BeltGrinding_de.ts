@@ -1157,7 +1157,7 @@
     </message>
     <message>
         <source>line from which on motions are left out before each pose; 0: none</source>
-        <translation type="unfinished"></translation>
+        <translation>Zeile, ab der vor jeder Pose Bewegungen ausgelassen sind; 0: keine</translation>
     </message>
     <message>
         <source>the roll that the poses have</source>

@@ -1132,8 +1132,8 @@
         <translation>wie die Kraft auf eine Bahn kommt und von ihr geht. run_on: das Rad setzt außerhalb des Rands auf, wo Platz ist, und die Kraft wächst, während es hinüberrollt; inside: es setzt auf dem Rand auf, die Kraft wächst längs der Bahn; direct: vom ersten Augenblick an unter voller Kraft</translation>
     </message>
     <message>
-        <source>length of pass over which the force grows to its full value, and falls at the end, mm; 0: the contact&apos;s length</source>
-        <translation>Länge der Bahn, über die die Kraft auf ihren vollen Wert wächst und am Ende fällt, mm; 0: die Länge des Kontakts</translation>
+        <source>length of pass over which the force grows to its full value, and falls at the end, mm; 0: until all of the contact is on the face</source>
+        <translation>Länge der Bahn, über die die Kraft auf ihren vollen Wert wächst und am Ende fällt, mm; 0: bis der ganze Kontakt auf der Fläche ist</translation>
     </message>
     <message>
         <source>of the wheel along a pass, degrees per mm</source>

@@ -109,7 +109,9 @@ def measure(design, shape, faces):
     job["programs"] = [{"poses": poses.list_poses(laid)}]
     ground = runs.run(jobs.validate(job))
     steps = ground.steps
-    volume = np.bincount(steps["pose"], steps["removal_rate"] * steps["duration"], len(laid["frames"]))
+    volume = np.bincount(
+        steps["pose"], steps["removal_rate"] * steps["duration"], len(laid["frames"])
+    )
     to = np.zeros(len(volume), dtype=bool)
     to[1:] = path_check.motion(laid)["within"]
     full = np.where(laid["forces"] < 0, FORCE, laid["forces"]) >= FORCE * (1 - 1e-9)
@@ -161,10 +163,15 @@ def main():
                 print(f"| {file.stem} | {label} |{' |' * len(HEAD)} {error} |", flush=True)
                 continue
             cells = " | ".join(
-                f"{found[key]}" if isinstance(found[key], int) else f"{found[key]:.1f}" for key in HEAD
+                f"{found[key]}" if isinstance(found[key], int) else f"{found[key]:.1f}"
+                for key in HEAD
             )
             print(f"| {file.stem} | {label} | {cells} | ok |", flush=True)
-            row = {"name": f"parts/{file.stem}/{name}", "real_time": found.pop("s"), "time_unit": "s"}
+            row = {
+                "name": f"parts/{file.stem}/{name}",
+                "real_time": found.pop("s"),
+                "time_unit": "s",
+            }
             benchmarks.append({**row, **{key: float(value) for key, value in found.items()}})
     if arguments.json:
         Path(arguments.json).write_text(json.dumps({"context": {}, "benchmarks": benchmarks}))

@@ -153,7 +153,9 @@ def ground(job, laid):
 def test_no_hole_is_bridged_by_a_turn_back():
     job = job_of(holed(8.0))
     for spacing in ("even", "lines"):
-        laid = raster_path.raster(job, {**X, "spacing": spacing, "step_over_mm": 2, "bridge_mm": 30})
+        laid = raster_path.raster(
+            job, {**X, "spacing": spacing, "step_over_mm": 2, "bridge_mm": 30}
+        )
         assert laid["check"]["reversals"] == 0 and laid["check"]["fast_turns"] == 0
         assert laid["check"]["turn_deg"] <= 5.0 + 1e-6
         for one in laid["passes"]:
@@ -191,9 +193,13 @@ def test_the_force_grows_over_the_border():
         assert forces[0] == 0.0 and (forces <= 30).all()
         full = np.flatnonzero(forces < 0)  # the machine's
         assert len(full) and (np.diff(full) == 1).all()
-        assert (np.diff(forces[: full[0]]) > 0).all() and (np.diff(forces[full[-1] + 1 :]) < 0).all()
+        assert (np.diff(forces[: full[0]]) > 0).all() and (
+            np.diff(forces[full[-1] + 1 :]) < 0
+        ).all()
     assert laid["beside"] == 0
-    short = raster_path.raster(job, {**X, "ramp_mm": 4, "lead_mm": 3, "entry_feed_mm_s": 10, "force_N": 20})
+    short = raster_path.raster(
+        job, {**X, "ramp_mm": 4, "lead_mm": 3, "entry_feed_mm_s": 10, "force_N": 20}
+    )
     one = short["passes"][0]
     on = slice(one["first"] + 1, one["last"] + 1)
     ramp = short["forces"][on] < 20
@@ -208,7 +214,11 @@ def test_beside_a_wall_the_wheel_comes_down_on_the_face():
     mesh = core.TriangleMesh(np.array(points, np.float32), np.array(triangles, np.uint32))
     brep = core.shape_from_mesh(mesh).write_brep()
     shape = core.Shape.from_brep(brep, "corner")
-    floor = [k + 1 for k in range(shape.face_count) if core.sample_faces(shape, [k], 5.0)[0].normals[0][2] > 0.5]
+    floor = [
+        k + 1
+        for k in range(shape.face_count)
+        if core.sample_faces(shape, [k], 5.0)[0].normals[0][2] > 0.5
+    ]
     job = job_of(brep, design={"brep": brep, "faces": floor})
     laid = raster_path.raster(job, {**X, "run_out_mm": 0})
     x = laid["contacts"][laid["contact"], 0, 3]

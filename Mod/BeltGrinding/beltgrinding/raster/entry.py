@@ -18,11 +18,13 @@ SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
 OWN = 0.05  # mm that it may reach deeper into the faces that are ground
 TRIES = 1.0, 0.5  # of the way beyond the border
+INSIDE = 0.1  # of half the contact's length: a ramp that begins on the border
+STILL = 1e-6  # mm; less is no way
 SHORTEST = 0.2  # mm; a shorter one is none
 
 
 class Entry:
-    """What the ends of passes need: ``lead`` and ``ramp``, mm; ``force``, N, full, None under position
+    """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
     control."""
 
     def __init__(self, job, shape, faces, settings, context):
@@ -32,13 +34,11 @@ class Entry:
         self.wheel = engine_input.engine_arguments(job)[0]
         under_force = machine["control"] == "force"
         self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
-        length = 0.0
-        if settings["entry"] != "direct":
-            length = contact_length(job, settings)
-        self.ramp = (settings["ramp_mm"] or length) if settings["entry"] != "direct" else 0.0
+        length = contact_length(job, settings) if settings["entry"] != "direct" else 0.0
+        self._half = 0.5 * length
         self.lead = 0.0
         if settings["entry"] == "run_on":
-            self.lead = settings["lead_mm"] or 0.5 * length
+            self.lead = settings["lead_mm"] or self._half
         # A run-out of the user's own is a part of it.
         self.lead = max(self.lead - max(settings["run_out_mm"], 0.0), 0.0)
         if settings["run_out_mm"] < 0.0:  # the border is to be spared
@@ -91,14 +91,27 @@ class Entry:
             return np.zeros(len(frames))
         return np.array(core.wheel_fit(self.wheel, frames, points, normals, self.context))
 
-    def shares(self, places, length):
-        """Of the full force, at ``places`` (n,) mm from where the wheel comes down, ``length`` mm before
-        it lifts off."""
-        touch, ramp = self.settings["touch_force_share"], min(self.ramp, 0.5 * length)
-        if ramp <= 0.0:
+    def ramp(self, lead=0.0):
+        """mm over which the force grows from where the wheel comes down, ``lead`` mm outside the border: to
+        where all of the contact is on the face. Without a lead it is on its border for half of its length at
+        once, and what that half does not remove there is missing: a short ramp."""
+        if self.settings["entry"] == "direct":
+            return 0.0
+        return self.settings["ramp_mm"] or lead + (1.0 if lead > 0.0 else INSIDE) * self._half
+
+    def ramps(self, leads, length):
+        """mm at both ends of ``length`` mm: shorter, where they do not fit in."""
+        ramps = np.array([self.ramp(lead) for lead in leads])
+        return ramps * min(1.0, length / max(ramps.sum(), STILL))
+
+    def shares(self, places, leads, length):
+        """Of the full force, at ``places`` (n,) mm from where the wheel comes down, ``length`` mm before it
+        lifts off; ``leads``: of both ends, mm."""
+        touch, (first, last) = self.settings["touch_force_share"], self.ramps(leads, length)
+        if first <= 0.0:
             return np.ones(len(places))
-        near = np.minimum(places, length - places)
-        return touch + (1.0 - touch) * np.clip(near / ramp, 0.0, 1.0)
+        near = np.minimum(places / first, (length - places) / last)
+        return touch + (1.0 - touch) * np.clip(near, 0.0, 1.0)
 
 
 def contact_length(job, settings):

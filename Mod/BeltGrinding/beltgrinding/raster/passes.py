@@ -216,8 +216,9 @@ def contact_frames(points, normals, tangents, angle=0.0):
 def _lead_in(strokes, settings, entry):
     """Runs the strokes on beyond their ends, where there is room; rings overlap. How many ends have none."""
     for stroke in strokes:
-        if stroke["closed"] and entry.ramp > 0.0:
-            stroke.update(_overlapping(stroke, entry.ramp))
+        stroke["leads"] = [0.0, 0.0]
+        if stroke["closed"] and entry.ramp() > 0.0:
+            stroke.update(_overlapping(stroke, entry.ramp()))
     if not entry.lead > LEAST_LEAD:
         return 0
     ends = [(k, at) for k, stroke in enumerate(strokes) if not stroke["closed"] for at in (0, -1)]
@@ -240,6 +241,7 @@ def _lead_in(strokes, settings, entry):
     for (k, at), lead, outward in zip(ends, leads, outwards):
         if lead > 0.0:
             strokes[k].update(_run_on(strokes[k], at, lead * outward))
+            strokes[k]["leads"][at] = float(lead)
     return int((leads <= 0.0).sum())
 
 
@@ -278,14 +280,16 @@ def _places(points):
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
-def _with_ramps(piece, ramp):
+def _with_ramps(piece, entry):
     """The piece with poses in its ramps, between which the force changes."""
     s = _places(piece["points"])
-    ramp = min(ramp, 0.5 * s[-1])
-    if ramp <= 0.0:
+    ramps = entry.ramps(piece["leads"], s[-1])
+    if ramps[0] <= 0.0:
         return piece
-    more = ramp * np.arange(1, RAMP_STEPS + 1) / RAMP_STEPS
-    more = np.concatenate([more, s[-1] - more])
+    steps = np.arange(1, RAMP_STEPS + 1) / RAMP_STEPS
+    more = np.concatenate([ramps[0] * steps, (s[-1] - ramps[1] * steps)[:-1]])
+    if ramps.sum() < s[-1] - LEAST_LEAD:
+        more = np.append(more, s[-1] - ramps[1])
     more = more[abs(more[:, None] - s[None]).min(axis=1) > LEAST_LEAD / RAMP_STEPS]
     at = np.concatenate([s, more])
     order = np.argsort(at, kind="stable")
@@ -300,7 +304,7 @@ def _with_ramps(piece, ramp):
 
 def _stroke(piece, settings, entry):
     """dict(contacts, feeds, forces, rapid, contact) of one pass with its approach and retract."""
-    piece = _with_ramps(piece, entry.ramp)
+    piece = _with_ramps(piece, entry)
     points = piece["points"] + settings["offset_mm"] * piece["normals"]
     angle = math.radians(settings["belt_angle_deg"])
     on = contact_frames(points, piece["normals"], piece["tangents"], angle)
@@ -311,7 +315,7 @@ def _stroke(piece, settings, entry):
     count, lead = len(on), len(before)
     s = _places(piece["points"])
     share = entry.shares(
-        0.5 * (s[1:] + s[:-1]), s[-1]
+        0.5 * (s[1:] + s[:-1]), piece["leads"], s[-1]
     )  # of the force, on the way to all but the first
     feeds = np.full(len(contacts), float(settings["feed_mm_s"]))
     if settings["entry_feed_mm_s"] > 0.0:

@@ -116,9 +116,7 @@ def _reach(job, result, context):
         return None
     steps = job["simulation"]
     path = tool_path({**job, "programs": [{"poses": poses.list_poses(result)}]}, 0, [])
-    found = reach.reach(
-        path, job["robot"], steps["max_travel_mm"], steps["max_angle_deg"], context
-    )
+    found = reach.reach(path, job["robot"], steps["max_travel_mm"], steps["max_angle_deg"], context)
     events = {}
     for event in found["events"]:
         events[event["kind"]] = events.get(event["kind"], 0) + 1

@@ -172,9 +172,7 @@ def _blended(points, turns, k, rate, largest):
 
 
 def _apart(last, first, rate):
-    way, turn = _steps(
-        np.stack([last[0][-1], first[0][0]]), np.stack([last[1][-1], first[1][0]])
-    )
+    way, turn = _steps(np.stack([last[0][-1], first[0][0]]), np.stack([last[1][-1], first[1][0]]))
     return way[0] > 10 * STILL or turn[0] > max(rate * way[0], 10 * NO_TURN)
 
 

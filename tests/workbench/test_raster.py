@@ -329,6 +329,7 @@ def test_a_real_blade_is_covered(along):
         }
     )
     settings = {"along": along, "direction": [0, 0, 1], "step_over_mm": 6, "entry": "direct"}
+    settings["chord_error_mm"] = 0.03  # poses that are put between others lie off by as much
     found = raster.raster(job, settings)
     # Plunges grind under full force; the leading edge is too sharp for some passes to go round.
     told = {fact.code for fact in found["warnings"]}
@@ -346,7 +347,9 @@ def test_a_real_blade_is_covered(along):
     at = found["contacts"][found["contact"]]
     samples = core.sample_faces(workpiece.read_design(job["design"]), [0], 0.15)[0]
     angles = []
-    for pose in at[:: max(len(at) // 100, 1)]:
+    # Evenly along the way: round the leading edge the poses are many.
+    gone = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(at[:, :3, 3], axis=0), axis=1))])
+    for pose in at[np.unique(np.searchsorted(gone, np.linspace(0, gone[-1], 200)))]:
         k = np.argmin(np.linalg.norm(samples.points - pose[:3, 3], axis=1))
         assert abs((samples.points[k] - pose[:3, 3]) @ samples.normals[k]) < 0.05
         angles.append(np.degrees(np.arccos(np.clip(-pose[:3, 2] @ samples.normals[k], -1, 1))))

@@ -314,3 +314,14 @@ def test_a_part_in_the_hand_is_told_where_the_cell_holds_the_tool(tmp_path):
             program_arrays({"file": str(tmp_path / "p.mod")}, "p", told, None, holding)
             expected = ["programs.part_in_hand"] if held and holding == "tool_in_hand" else []
             assert [fact.code for fact in told] == expected
+
+
+def test_the_summary_tells_of_frames_that_are_not_known(tmp_path):
+    from beltgrinding.programs import table
+
+    program = read(tmp_path, "p.src", krl_program(krl_by_number))
+    told = table.summary(program)
+    assert told["problems"] == 3 and told["read_in"]["poses"] == 3
+    assert sum("BASE_DATA[2]" in line for line in told["first_problems"]) >= 1
+    program.path_arrays(50.0)
+    assert table.summary(program)["problems"] == 3  # once

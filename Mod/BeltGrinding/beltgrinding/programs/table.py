@@ -9,6 +9,7 @@ from ..base.cells import cell
 from ..base.frames import to_quaternions
 from ..base.grouping import grouped
 from . import one_frame
+from .program import Problem
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
 SHOWN = 20  # problems in a summary, or kinds of them
@@ -38,14 +39,17 @@ def poses_csv(program):
 def summary(program, everything=False):
     """Language, motions by kind, frames, extents (mm) and problems, as a dict; problems of a kind as one,
     unless ``everything`` is asked for."""
-    problems = program.problems if everything else grouped(program.problems)[:SHOWN]
+    moved, others = one_frame.motions(program)
+    found = [*program.problems]
+    if not program.told:  # path_arrays has told them, else
+        found += [Problem(*one) for one in others]
+    problems = found if everything else grouped(found)[:SHOWN]
     kinds, gaps = {}, 0
     for motion in program.motions:
         if motion.kind == "GAP":
             gaps += 1
         else:
             kinds[motion.kind] = kinds.get(motion.kind, 0) + 1
-    moved, _ = one_frame.motions(program)
     known = sum(motion.pose is not None for motion in moved)
     base, tool = one_frame.reference(program)
     places = [m.pose[:3, 3] for m in program.motions if m.pose is not None]
@@ -64,6 +68,6 @@ def summary(program, everything=False):
         "tools": sorted({m.tool for m in program.motions if m.tool}),
         "read_in": {"base": base, "tool": tool, "poses": known},
         "extents_mm": extents,
-        "problems": len(program.problems),
+        "problems": len(found),
         "first_problems": [str(problem) for problem in problems],
     }

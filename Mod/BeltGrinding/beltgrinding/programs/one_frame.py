@@ -63,7 +63,7 @@ def motions(program):
         fact = Fact(
             "programs.other_frame",
             "{count} motions in the {what} {frame} are left out, the first here: the program is read in {reference}, "
-            "and how the two lie to each other is not in it",
+            "and how the two lie to each other is not in it; it can be given in a values file",
             count=count,
             what=what,
             frame=words or THE_CONTROLLERS,

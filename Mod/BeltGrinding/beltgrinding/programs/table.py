@@ -42,7 +42,7 @@ def summary(program, everything=False):
     moved, others = one_frame.motions(program)
     found = [*program.problems]
     if not program.told:  # path_arrays has told them, else
-        found += [Problem(*one) for one in others]
+        found += [Problem(file, line, fact) for file, line, fact in others]
     problems = found if everything else grouped(found)[:SHOWN]
     kinds, gaps = {}, 0
     for motion in program.motions:

@@ -150,6 +150,17 @@ class Program:
         if again or not self.motions or self.motions[-1].kind != "GAP":
             self.motions.append(Motion("GAP", None, line, file))
 
+    def in_one_frame(self):
+        """The motions with all poses in one frame (``one_frame``); what is left out becomes a problem, once."""
+        from . import one_frame
+
+        motions, problems = one_frame.motions(self)
+        for file, line, fact in problems:
+            if (file, line, fact) not in self.told:
+                self.told.add((file, line, fact))
+                self.problem(file, line, fact)
+        return motions
+
     def check_holding(self, holding):
         """Adds a problem where the cell holds part and tool otherwise than the program does."""
         from . import one_frame
@@ -172,13 +183,7 @@ class Program:
         With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees, joint targets are
         poses too, and there is joints (n, 6) in degrees, NaN where none are given.
         """
-        from . import one_frame
-
-        motions, problems = one_frame.motions(self)
-        for file, line, fact in problems:
-            if (file, line, fact) not in self.told:
-                self.told.add((file, line, fact))
-                self.problem(file, line, fact)
+        motions = self.in_one_frame()
         if pose_of is not None:
             motions = [
                 m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg))

@@ -9,7 +9,6 @@ from ..base.cells import cell
 from ..base.frames import to_quaternions
 from ..base.grouping import grouped
 from . import one_frame
-from .program import Problem
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
 SHOWN = 20  # problems in a summary, or kinds of them
@@ -39,10 +38,8 @@ def poses_csv(program):
 def summary(program, everything=False):
     """Language, motions by kind, frames, extents (mm) and problems, as a dict; problems of a kind as one,
     unless ``everything`` is asked for."""
-    moved, others = one_frame.motions(program)
-    found = [*program.problems]
-    if not program.told:  # path_arrays has told them, else
-        found += [Problem(file, line, fact) for file, line, fact in others]
+    moved = program.in_one_frame()
+    found = program.problems
     problems = found if everything else grouped(found)[:SHOWN]
     kinds, gaps = {}, 0
     for motion in program.motions:

@@ -1,6 +1,7 @@
 """Programs that change between bases and tools: every pose lies where the robot makes it, or is left out and
 named."""
 
+import json
 import math
 
 import numpy as np
@@ -325,3 +326,65 @@ def test_the_summary_tells_of_frames_that_are_not_known(tmp_path):
     assert sum("BASE_DATA[2]" in line for line in told["first_problems"]) >= 1
     program.path_arrays(50.0)
     assert table.summary(program)["problems"] == 3  # once
+
+
+def given(frame):
+    (x, y, z), (a, b, c) = frame
+    return dict(zip(("x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg"), (x, y, z, a, b, c)))
+
+
+def values_file(path, bases, tools):
+    kept = {"bases": {n: given(FRAMES[k]) for n, k in bases.items()}}
+    kept["tools"] = {n: given(FRAMES[k]) for n, k in tools.items()}
+    path.write_text(json.dumps(kept))
+
+
+USERS = {"TOP": 4, "SIDE": 5, "SHORT": 2, "LONG": 3}
+
+
+def fanuc_program():
+    rows, points = [], []
+    for n, (base, tool, k) in enumerate(PLAN, 1):
+        x, y, z = POINTS[k]
+        a, b, c = TURN  # R about Z, P about Y, W about X
+        rows += [f"UFRAME_NUM={USERS[base]}", f"UTOOL_NUM={USERS[tool]}", f"L P[{n}] 50mm/sec FINE"]
+        points.append(
+            f"P[{n}]{{\n GP1:\n UF : {USERS[base]}, UT : {USERS[tool]},\n X = {x} mm, Y = {y} mm, Z = {z} mm,\n"
+            f" W = {c} deg, P = {b} deg, R = {a} deg\n}};"
+        )
+    body = "\n".join(f"  {i}:{row} ;" for i, row in enumerate(rows, 1))
+    return "/PROG P\n/MN\n" + body + "\n/POS\n" + "\n".join(points) + "\n/END\n"
+
+
+def inform_program():
+    points, rows = [], []
+    for n, (base, tool, k) in enumerate(PLAN):
+        a, b, c = TURN
+        values = ",".join(str(v) for v in (*POINTS[k], c, b, a))
+        points.append(
+            f"///USER {USERS[base]}\n///TOOL {USERS[tool]}\n///POSTYPE USER\n///RECTAN\nC{n:05d}={values}\n"
+        )
+        rows.append(f"MOVL C{n:05d} V=50.0 PL=0\n")
+    return (
+        f"/JOB\n//NAME P\n//POS\n///NPOS {len(PLAN)},0,0,0,0,0\n{''.join(points)}//INST\n///DATE 2026/01/01 00:00\n"
+        f"///ATTR SC,RW\n///GROUP1 RB1\nNOP\n{''.join(rows)}END\n"
+    )
+
+
+@pytest.mark.parametrize(
+    "name, text, base, tool",
+    [("P.LS", fanuc_program(), "UFRAME", "UTOOL"), ("P.JBI", inform_program(), "USER", "TOOL")],
+)
+def test_frames_of_the_controller_that_a_person_gives(tmp_path, name, text, base, tool):
+    program = read(tmp_path, name, text)
+    assert len(program.path_arrays(50.0)["frames"]) == 3  # those of the first base and tool
+    left = {p.arguments["frame"] for p in program.problems if p.code == "programs.other_frame"}
+    assert left == {f"{base} 5", f"{tool} 3"}
+    values_file(
+        tmp_path / "P.values.json",
+        {f"{base} 4": "TOP", f"{base} 5": "SIDE"},
+        {f"{tool} 2": "SHORT", f"{tool} 3": "LONG"},
+    )
+    program = read_program(tmp_path / name)
+    assert not program.problems, program.problems
+    np.testing.assert_allclose(program.path_arrays(50.0)["frames"], expected(), atol=1e-6)

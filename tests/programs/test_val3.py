@@ -166,6 +166,17 @@ def test_frames_tools_and_speeds_are_named(tmp_path):
     assert [(m.file, m.line) for m in found.motions] == [("p.pgx", 5), ("p.pgx", 6), ("p.pgx", 7)]
     texts = [str(problem) for problem in found.problems]
     assert len(texts) == 1 and "tvel" in texts[0]
+    # Each where the robot makes it: in the first one's frame and with its tool.
+    home, belt = frames.from_abc((1000, 100, 50), (90, 0, 0)), frames.from_abc(
+        (0, 0, 200), (0, 0, 0)
+    )
+    path = found.path_arrays(100.0)["frames"]
+    into = np.linalg.inv(home)
+    assert second.base in (first.base, third.base)
+    moved = second.pose if second.base == first.base else into @ second.pose
+    np.testing.assert_allclose(path[0], first.pose, atol=1e-9)
+    np.testing.assert_allclose(path[1], moved @ belt, atol=1e-6)
+    np.testing.assert_allclose(path[2], into @ third.pose, atol=1e-6)
 
 
 def test_points_are_moved_composed_and_linked(tmp_path):

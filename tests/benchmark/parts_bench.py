@@ -29,7 +29,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.job import load as jobs, poses, workpiece  # noqa: E402
-from beltgrinding.raster import path_check, raster_path  # noqa: E402
+from beltgrinding.raster import path_check, raster_path, reachable  # noqa: E402
 from beltgrinding.simulation import run as runs  # noqa: E402
 
 PARTS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "cad"
@@ -39,10 +39,8 @@ UNITS = {"hammer_claw": 0.001}  # mm, of files that are not in mm and do not say
 FREE_FORM = {"plane", "cylinder", "cone"}  # and all but these
 SAMPLES = 15_000  # on the faces, at least
 COARSEST = 1.5  # mm from sample to sample: the contact is some 6 mm across
-PART_SAMPLES = 40_000  # of the whole part, for the reach
-PLACES = 1_500  # that are looked at for it
+PLACES = 1_500  # that are looked at for the reach
 DEPTH = 0.5  # mm that the rigid wheel may reach in, as fit_mm
-ANGLES = 4  # of the belt's travel, that are tried, over half a turn
 SMALLEST = 20.0  # mm2; a face below it is none that one grinds
 HEAD = "turn", "/mm", "fast", "back", "plunge", "ramp", "reach", "cover", "passes", "poses", "s"
 
@@ -71,24 +69,6 @@ def chosen(shape):
     return unique
 
 
-def reachable(shape, field, wheel):
-    """bool for PLACES samples of the field, and which they are: the rigid wheel, standing there with its
-    belt in any of ANGLES directions, reaches nowhere into the part deeper than DEPTH mm."""
-    whole = sum(shape.face_area(k) for k in range(shape.face_count))
-    spacing = math.sqrt(whole / PART_SAMPLES)
-    part, _ = core.sample_faces(shape, [], spacing)
-    places = np.unique(np.linspace(0, field.size - 1, PLACES).astype(int))
-    points, normals = field.points[places], field.normals[places].astype(float)
-    other = np.eye(3)[np.argmin(abs(normals), axis=1)]
-    tangents = np.cross(normals, other)
-    fits = np.zeros(len(places), dtype=bool)
-    for k in range(ANGLES):
-        frames = raster_path.passes.contact_frames(points, normals, tangents, math.pi * k / ANGLES)
-        depth = core.wheel_fit(wheel, frames, part.points, part.normals.astype(float))
-        fits |= depth <= DEPTH
-    return places, fits
-
-
 def measure(design, shape, faces):
     """The figures of one set of faces, as in HEAD."""
     start = time.perf_counter()
@@ -115,8 +95,9 @@ def measure(design, shape, faces):
     to = np.zeros(len(volume), dtype=bool)
     to[1:] = path_check.motion(laid)["within"]
     full = np.where(laid["forces"] < 0, FORCE, laid["forces"]) >= FORCE * (1 - 1e-9)
-    wheel = raster_path.engine_input.engine_arguments(job)[0]
-    places, fits = reachable(shape, ground.field, wheel)
+    places = np.unique(np.linspace(0, ground.field.size - 1, PLACES).astype(int))
+    points, normals = ground.field.points[places], ground.field.normals[places].astype(float)
+    fits = reachable.fits_at(job, shape, points, normals, DEPTH)
     touched = ground.field.trace["peak_pressure"][places] > 0
     areas = ground.field.areas[places]
     total = max(volume.sum(), 1e-12)

@@ -14,7 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import passes, path_check
+from . import passes, path_check, reachable
 from .entry import Entry
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
@@ -94,6 +94,7 @@ def raster(job, settings, context=None):
     result.update(
         step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
     )
+    result["reachable"] = reachable.told(job, shape, faces, settings, warnings, context)
     result["check"] = path_check.check(job, settings, result, context)
     warnings += result["check"]["problems"]
     return result
@@ -394,6 +395,7 @@ def summary(result):
         "contact_width_mm": result["contact_width_mm"],
         "area_mm2": result["area_mm2"],
         "ends_without_room": result["beside"],
+        "reachable": result["reachable"],
         "check": {k: v for k, v in result["check"].items() if k != "problems"},
         "warnings": result["warnings"],
     }

@@ -1,0 +1,78 @@
+"""Where the wheel gets to: all faces of the part may stand in its way."""
+
+import pytest
+
+from beltgrinding.job import load, workpiece
+from beltgrinding.raster import raster_path, reachable
+
+
+@pytest.fixture
+def parts(freecad, tmp_path):
+    """BREP files: a plate of 80 x 60 mm with a wall of 30 mm on its edge; a bore of 30 mm in a block."""
+    freecad.run(f"""
+import FreeCAD, Part
+from pathlib import Path
+folder = Path({str(tmp_path)!r})
+V = FreeCAD.Vector
+Part.makeBox(80, 60, 10).fuse(Part.makeBox(80, 10, 40, V(0, 60, 0))).removeSplitter().exportBrep(
+    str(folder / "wall.brep"))
+Part.makeBox(60, 60, 80, V(-30, -30, 0)).cut(Part.makeCylinder(15, 80)).exportBrep(str(folder / "bore.brep"))
+""")
+    return tmp_path
+
+
+def job_of(path, radius=20.0, width=10.0, faces=()):
+    return load.validate(
+        {
+            "schema": 1,
+            "design": {"file": str(path), "faces": list(faces)},
+            "belt_machine": {"wheel": {"radius_mm": radius, "width_mm": width}, "force_N": 20},
+            "programs": [{"poses": []}],
+        }
+    )
+
+
+def face_with(shape, area=None, kind=None):
+    for k in range(shape.face_count):
+        if (area is None or abs(shape.face_area(k) - area) < 1.0) and kind in (
+            None,
+            shape.surface_type(k),
+        ):
+            return k
+    raise AssertionError("no such face")
+
+
+def test_a_wall_beside_the_face_keeps_the_wheel_away(parts):
+    job = job_of(parts / "wall.brep")
+    shape = workpiece.read_design(job["design"])
+    floor = face_with(shape, 80 * 60)
+    found = reachable.reachable(job, shape, [floor])
+    away = 60.0 - found["points"][:, 1]
+    # With its axis across the wall half the width fits beside it, the other way round 0.5 mm deep of R 20.
+    assert found["fits"][away > 6.5].all() and not found["fits"][away < 3.5].any()
+    assert found["share"] == pytest.approx(1.0 - 5.0 / 60.0, abs=0.03)
+    assert found["by_face"] == {floor + 1: pytest.approx(found["share"])}
+
+
+def test_a_bore_takes_a_wheel_that_is_smaller_than_it(parts):
+    for radius, share in ((25.0, 0.0), (12.0, 1.0)):
+        job = job_of(parts / "bore.brep", radius=radius)
+        shape = workpiece.read_design(job["design"])
+        bore = face_with(shape, kind="cylinder")
+        assert reachable.reachable(job, shape, [bore])["share"] == pytest.approx(share, abs=0.02)
+
+
+def test_a_raster_tells_it(parts):
+    shape = workpiece.read_design(job_of(parts / "wall.brep")["design"])
+    floor = face_with(shape, 80 * 60) + 1
+    job = job_of(parts / "wall.brep", faces=[floor])
+    laid = raster_path.raster(job, {"along": "direction", "direction": [1, 0, 0]})
+    (told,) = [fact for fact in laid["warnings"] if fact.code == "raster.not_reachable"]
+    assert f"Face{floor}" in told and laid["reachable"]["share"] < 0.97
+    assert raster_path.summary(laid)["reachable"]["faces"] == laid["reachable"]["faces"]
+    top = [
+        k + 1 for k in range(shape.face_count) if abs(shape.face_area(k) - 80 * 10) < 1.0
+    ]
+    free = raster_path.raster(job_of(parts / "wall.brep", faces=top[:1]), {"along": "u"})
+    assert free["reachable"] == {"share": 1.0, "faces": {}}
+    assert not [fact for fact in free["warnings"] if fact.code == "raster.not_reachable"]

@@ -168,7 +168,7 @@ def warnings(job, seen, spacing):
                 wanted=seen["width"] / ACROSS_FACE,
             )
         )
-    chord = spacing**2 / (8.0 * seen["radius"])
+    chord = min(spacing / (8.0 * seen["radius"]) * spacing, seen["radius"])
     if chord > LEAST_CHORD * (upper - lower) > 0:
         found.append(
             core.Fact(

@@ -9,7 +9,8 @@ from beltgrinding.raster import raster_path, reachable
 @pytest.fixture
 def parts(freecad, tmp_path):
     """BREP files: a plate of 80 x 60 mm with a wall of 30 mm on its edge; a bore of 30 mm in a block."""
-    freecad.run(f"""
+    freecad.run(
+        f"""
 import FreeCAD, Part
 from pathlib import Path
 folder = Path({str(tmp_path)!r})
@@ -17,7 +18,8 @@ V = FreeCAD.Vector
 Part.makeBox(80, 60, 10).fuse(Part.makeBox(80, 10, 40, V(0, 60, 0))).removeSplitter().exportBrep(
     str(folder / "wall.brep"))
 Part.makeBox(60, 60, 80, V(-30, -30, 0)).cut(Part.makeCylinder(15, 80)).exportBrep(str(folder / "bore.brep"))
-""")
+"""
+    )
     return tmp_path
 
 
@@ -70,9 +72,7 @@ def test_a_raster_tells_it(parts):
     (told,) = [fact for fact in laid["warnings"] if fact.code == "raster.not_reachable"]
     assert f"Face{floor}" in told and laid["reachable"]["share"] < 0.97
     assert raster_path.summary(laid)["reachable"]["faces"] == laid["reachable"]["faces"]
-    top = [
-        k + 1 for k in range(shape.face_count) if abs(shape.face_area(k) - 80 * 10) < 1.0
-    ]
+    top = [k + 1 for k in range(shape.face_count) if abs(shape.face_area(k) - 80 * 10) < 1.0]
     free = raster_path.raster(job_of(parts / "wall.brep", faces=top[:1]), {"along": "u"})
     assert free["reachable"] == {"share": 1.0, "faces": {}}
     assert not [fact for fact in free["warnings"] if fact.code == "raster.not_reachable"]

@@ -22,6 +22,7 @@ LEAST_CHORD = 0.5  # more is warned of
 SHARE = 0.98  # of the area: what is more curved, or narrower, is a fillet or a sliver
 TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or larger
 CELLS, MOST_CELLS = 6, 80  # of the contact's grid, across and along the contact
+ALL_CELLS = 400  # across the wheel
 ROUNDS = 3  # of finer grids, until it has them
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
@@ -244,21 +245,22 @@ def _contact(job, curvature):
             workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
         try:
             found.append(_extents(wheel, workpiece, compliance, options))
-        except InputError:
-            continue  # the wheel does not fit, or the force is out of reach: the run tells
+        except ValueError:  # an InputError, or a wheel beyond all bounds: the run tells
+            continue
     if not found:
         return None
     return tuple(min(values) for values in zip(*found))
 
 
 def _extents(wheel, workpiece, compliance, options):
-    cell = options["contact_spacing"]
+    finest = wheel["width"] / ALL_CELLS
+    cell = min(max(options["contact_spacing"], finest), wheel["width"] / CELLS)
     for _ in range(ROUNDS):
         one = core.single_contact(wheel, workpiece, compliance, options["force"], None, cell, 1e-3)
         touched = one["pressure"] > 0.01 * one["pressure"].max()
         length = cell * np.count_nonzero(touched.any(axis=0))
         breadth = cell * np.count_nonzero(touched.any(axis=1))
-        finer = max(min(length, breadth) / CELLS / 1.5, max(length, breadth) / MOST_CELLS)
+        finer = max(min(length, breadth) / CELLS / 1.5, max(length, breadth) / MOST_CELLS, finest)
         if min(length, breadth) >= CELLS * cell or finer >= cell:
             break
         cell = finer

@@ -168,15 +168,16 @@ ToolPath path_from(const Doubles& frames, const Doubles& feeds, const Doubles& f
                    const Eigen::Matrix4d& base_from_work, const Eigen::Matrix4d& tcp_from_contact,
                    const Eigen::Matrix4d& tcp_from_work, const Eigen::Matrix4d& base_from_contact,
                    const std::optional<Doubles>& joints, const std::optional<Doubles>& zones,
-                   const py::dict& time_law) {
+                   const py::dict& time_law, const std::optional<Ints>& gaps) {
     const py::ssize_t n = frames.ndim() == 3 ? frames.shape(0) : -1;
     if (n < 0 || frames.shape(1) != 4 || frames.shape(2) != 4 || feeds.size() != n ||
         forces.size() != n || rapid.size() != n || lines.size() != n ||
-        (joints && joints->size() != 6 * n) || (zones && zones->size() != n)) {
+        (joints && joints->size() != 6 * n) || (zones && zones->size() != n) ||
+        (gaps && gaps->size() != n)) {
         throw InputError(
             "call.path",
             "a path needs frames of shape (n, 4, 4) and n feeds, forces, flags, lines, "
-            "joints, zones");
+            "joints, zones, gaps");
     }
     CellFrames cell;
     cell.holding = holding_named(holding);
@@ -212,13 +213,14 @@ void bind_simulation(py::module_& m) {
              py::arg("base_from_work") = identity, py::arg("tcp_from_contact") = identity,
              py::arg("tcp_from_work") = identity, py::arg("base_from_contact") = identity,
              py::arg("joints") = py::none(), py::arg("zones") = py::none(),
-             py::arg("time_law") = py::dict(),
+             py::arg("time_law") = py::dict(), py::arg("gaps") = py::none(),
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
              "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source; joints "
              "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, negative: the "
              "default; "
              "time_law: timing (constant_feed, trapezoidal), acceleration mm/s2, "
-             "angular_acceleration rad/s2, rotation_speed rad/s, default_zone mm.")
+             "angular_acceleration rad/s2, rotation_speed rad/s, default_zone mm; gaps: as "
+             "Program.path_arrays gives them, without effect here: behind a gap a pose is rapid.")
         .def("__len__", [](const ToolPath& path) { return path.poses().size(); })
         .def(
             "grinds",

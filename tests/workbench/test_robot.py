@@ -341,6 +341,7 @@ def test_a_wrong_frame_of_the_robot_is_named():
 
 PROGRAMS = {
     "p.src": """DEF p()
+$VEL.CP=0.1
 PTP {A1 10, A2 -80, A3 90, A4 20, A5 60, A6 30, E1 0}
 LIN {X 0, Y 0, Z 0, A 0, B 0, C 180}
 LIN {X 20, Y 0, Z 0, A 0, B 0, C 180}

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 from pathlib import Path
 
 from ..base.regular_files import open_regular
@@ -57,7 +58,7 @@ def _inputs(job):
 def _program_files(path, values=None):
     path = Path(path)
     values = Path(values) if values else path.with_name(path.stem + ".values.json")
-    given = [values] if values.is_file() else []
+    given = [values] if os.path.isfile(values) else []
     try:
         near = sorted(path.parent.iterdir())
     except OSError:

@@ -4,6 +4,7 @@
 
 import contextlib
 import gc
+import os
 from pathlib import Path
 
 from ..base.regular_files import open_regular, shown
@@ -142,7 +143,7 @@ def read_program(path, roll=None, roll_direction=None, values=None):
     except InputError as error:
         raise ProgramError.of(error) from None
     side = Path(values) if values else given.beside(path)
-    known = given.load(side) if values or side.is_file() else None
+    known = given.load(side) if values or os.path.isfile(side) else None
     with _no_collection():
         if known and reader in WITH_VARIABLES:
             program = reader(path, known["variables"])

@@ -7,6 +7,7 @@ named motions differ, by what was asked, or nothing is written.
 import csv
 import io
 import math
+import os
 import tempfile
 from bisect import bisect_right
 from collections import Counter
@@ -182,7 +183,7 @@ def patch(path, changes, output):
             (Path(folder) / other.name).write_bytes(other.read_bytes())
         copy = Path(folder) / path.name
         values = values_beside(path)
-        values = values if values.is_file() else None
+        values = values if os.path.isfile(values) else None
         copy.write_bytes(written)
         again = read_program(copy, values=values)
     report = _verify(program, again, work, source, module)

@@ -80,7 +80,10 @@ class RasterPath(RobotPath):
         if "Proposed" not in obj.PropertiesList:
             text = "laid as a first proposal, and nobody has looked at it since"
             obj.addProperty("App::PropertyBool", "Proposed", "Passes", text, 4)
+        older = "Approach" in obj.PropertiesList and "Entry" not in obj.PropertiesList
         add_keys(obj, KEYS)
+        if older:  # its passes go on coming down as they did, so that what it grinds stays
+            obj.Entry = "direct"
         add_outputs(obj, OUTPUTS)
         for name in ("Source", "SourceObject"):
             obj.setEditorMode(name, 2)

@@ -70,7 +70,7 @@ class Cells {
 std::vector<double> wheel_fit(const ContactWheel& wheel,
                               const std::vector<Frame>& work_from_contact,
                               const std::vector<Vec3>& point, const std::vector<Vec3>& normal,
-                              const RunContext& context) {
+                              const RunContext& context, bool whole) {
     wheel.validate();
     if (point.size() != normal.size())
         throw InputError("contact.wheel_fit", "wheel_fit needs a normal for every point");
@@ -83,16 +83,16 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
             const Vec3 x = frame.linear().col(0), y = frame.linear().col(1),
                        z = frame.linear().col(2);
             const Vec3 centre = frame.translation() - wheel.radius * z;
-            Box box;  // of the half wheel that faces the work
+            Box box;  // of the wheel, or of its half that faces the work
             for (const double a : {-1.0, 1.0})
                 for (const double b : {-0.5, 0.5})
-                    for (const double c : {0.0, 1.0})
+                    for (const double c : {whole ? -1.0 : 0.0, 1.0})
                         box.extend(centre + a * wheel.radius * x + b * wheel.width * y +
                                    c * wheel.radius * z);
             cells.in(box, [&](std::size_t k) {
                 const Vec3 d = point[k] - centre;
                 const double along = d.dot(y), down = d.dot(z);
-                if (std::abs(along) > 0.5 * wheel.width || down <= 0) return;
+                if (std::abs(along) > 0.5 * wheel.width || (down <= 0 && !whole)) return;
                 const Vec3 radial = d - along * y;
                 const double room = radial.norm() - (wheel.radius - wheel.drop(along));
                 if (room >= -depth[i] || normal[k].dot(radial) >= 0) return;

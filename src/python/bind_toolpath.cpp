@@ -108,7 +108,7 @@ void bind_toolpath(py::module_& m) {
     m.def(
         "wheel_fit",
         [](const py::dict& wheel, const Doubles& frames, const Doubles& points,
-           const Doubles& normals, const RunContext* context) {
+           const Doubles& normals, const RunContext* context, bool whole) {
             const ContactWheel shape = wheel_from(wheel);
             if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
                 throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
@@ -122,13 +122,14 @@ void bind_toolpath(py::module_& m) {
             {
                 const py::gil_scoped_release release;
                 depth = wheel_fit(shape, poses, point, normal,
-                                  context != nullptr ? *context : RunContext());
+                                  context != nullptr ? *context : RunContext(), whole);
             }
             return own(std::move(depth));
         },
         py::arg("wheel"), py::arg("work_from_contact"), py::arg("points"), py::arg("normals"),
-        py::arg("context") = nullptr,
-        "How deep the undeformed wheel reaches into a surface at each pose, mm (n,).");
+        py::arg("context") = nullptr, py::arg("whole") = false,
+        "How deep the undeformed wheel, or with whole=False its half that faces the work, reaches "
+        "into a surface at each pose, mm (n,).");
 }
 
 }  // namespace beltgrinding::python

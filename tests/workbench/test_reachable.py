@@ -64,6 +64,30 @@ def test_a_bore_takes_a_wheel_that_is_smaller_than_it(parts):
         assert reachable.reachable(job, shape, [bore])["share"] == pytest.approx(share, abs=0.02)
 
 
+def test_what_stands_over_the_axis_is_in_the_way_too(freecad, tmp_path):
+    freecad.run(
+        f"""
+import FreeCAD, Part
+from pathlib import Path
+V = FreeCAD.Vector
+for height in (30, 45):
+    floor, lid = Part.makeBox(120, 100, 5, V(0, 0, -5)), Part.makeBox(120, 100, 5, V(0, 0, height))
+    post = Part.makeBox(2, 100, height, V(118, 0, 0))
+    floor.fuse(lid).fuse(post).removeSplitter().exportBrep(str(Path({str(tmp_path)!r}) / f"lid{{height}}.brep"))
+"""
+    )
+    for height, share in ((30, 0.0), (45, 0.97)):
+        job = job_of(tmp_path / f"lid{height}.brep")
+        shape = workpiece.read_design(job["design"])
+        floor = next(
+            face
+            for face in range(shape.face_count)
+            if abs(shape.face_area(face) - 118 * 100) < 1.0
+            and reachable.reachable(job, shape, [face])["normals"][0][2] > 0.9
+        )
+        assert reachable.reachable(job, shape, [floor])["share"] == pytest.approx(share, abs=0.03)
+
+
 def test_a_raster_tells_it(parts):
     shape = workpiece.read_design(job_of(parts / "wall.brep")["design"])
     floor = face_with(shape, 80 * 60) + 1

@@ -59,7 +59,7 @@ def fits_at(job, shape, points, normals, fit_mm, context=None):
     fits = np.zeros(len(points), dtype=bool)
     for k in range(ANGLES):
         frames = passes.contact_frames(points, normals, tangents, math.pi * k / ANGLES)
-        depth = core.wheel_fit(wheel, frames, inside, looks, context)
+        depth = core.wheel_fit(wheel, frames, inside, looks, context, True)
         fits |= np.asarray(depth) <= fit_mm
     return fits
 

@@ -3426,7 +3426,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>Force grows over (0: by contact)</source>
-        <translation>Kraft wächst über (0: nach Kontakt)</translation>
+        <translation>Kraftanstieg (0: nach Kontakt)</translation>
     </message>
     <message>
         <source>From outside, force grows</source>
@@ -3458,7 +3458,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>Turn per mm at most (degrees)</source>
-        <translation>Drehung je mm höchstens (Grad)</translation>
+        <translation>Drehung je mm (Grad)</translation>
     </message>
     <message>
         <source>Each place in a line of its own</source>

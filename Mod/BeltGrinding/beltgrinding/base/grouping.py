@@ -1,7 +1,5 @@
 """Warnings that say the same of many places, as one with a count."""
 
-from ..engine import Fact
-
 LEAST = 3  # of a kind that become one
 
 
@@ -25,6 +23,8 @@ def grouped(told, least=LEAST):
 
 
 def _one(members):
+    from ..engine import Fact  # not above: that the core is missing must be said, too
+
     first, last = members[0], _place(members[-1]).get("line")
     arguments = {"first": first, "more": len(members) - 1}
     if last is None or last == _place(first).get("line"):

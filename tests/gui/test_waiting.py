@@ -15,7 +15,7 @@ doc = job.Document
 read, ended = robot_path.read_program, []
 
 
-def slow(path):
+def slow(path, *roll):
     end = time.monotonic() + 30
     try:
         while time.monotonic() < end:
@@ -27,7 +27,7 @@ def slow(path):
     return read(path)
 
 
-def deaf(path):
+def deaf(path, *roll):
     time.sleep(3)  # as a library that looks at nothing
     ended.append("deaf")
     return read(path)
@@ -122,8 +122,8 @@ timer.start(20)
 done = []
 
 
-def measured(path):
-    program = read(path)
+def measured(path, *roll):
+    program = read(path, *roll)
     done.append(time.monotonic())
     return program
 

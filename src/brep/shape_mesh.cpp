@@ -179,13 +179,14 @@ TriangleMesh triangulate(const Shape& shape, double deflection, const RunContext
         }
         whole = some;
     }
-    const std::vector<char> reversed = shape.reversed(context);
     TopTools_IndexedMapOfShape used;
     TopExp::MapShapes(whole, TopAbs_FACE, used);
-    std::vector<char> turned;
+    std::vector<char> turned, reversed;
     for (int i = 1; i <= used.Extent(); ++i) {
         const auto face = static_cast<std::size_t>(impl.faces.FindIndex(used(i)) - 1);
-        turned.push_back(!shape.bounds_solid(face) && reversed[face] != 0 ? 1 : 0);
+        const bool loose = !shape.bounds_solid(face);
+        if (loose && reversed.empty()) reversed = shape.reversed(context);
+        turned.push_back(loose && reversed[face] != 0 ? 1 : 0);
     }
     TriangleMesh mesh;
     try {

@@ -10,17 +10,20 @@ from .events import kinds
 def events(path, gaps):
     """Events of the core.ToolPath of a program, as the core gives them; ``gaps`` (n,): as
     ``Program.path_arrays`` has them."""
-    kind = kinds()["program_gap"]
-    found = []
-    for pose in np.flatnonzero(gaps).tolist():
-        line, first = int(path.lines()[pose]), int(gaps[pose])
+    places = np.flatnonzero(gaps).tolist()
+    if not places:
+        return []
+    kind, found = kinds()["program_gap"], []
+    lines, times, contacts = path.lines(), path.times(), path.work_from_contact()
+    for pose in places:
+        line, first = int(lines[pose]), int(gaps[pose])
         fact = core.Fact(
             "event.program_gap",
             "motions from line {first} to line {last} are left out; nothing is ground on the way to this pose",
             first=first,
             last=line,
         )
-        time = float(path.times()[pose])
+        time = float(times[pose])
         found.append(
             {
                 "kind": "program_gap",
@@ -33,7 +36,7 @@ def events(path, gaps):
                 "value": 0.0,
                 "limit": None,
                 "unit": kind["unit"],
-                "point": path.work_from_contact()[pose, :3, 3].tolist(),
+                "point": contacts[pose, :3, 3].tolist(),
                 "face": None,
                 "bodies": [],
                 "message": str(fact),

@@ -56,8 +56,10 @@ def _inputs(job):
 
 
 def _program_files(path, values=None):
+    from ..programs.registry import values_beside
+
     path = Path(path)
-    values = Path(values) if values else path.with_name(path.stem + ".values.json")
+    values = Path(values) if values else values_beside(path)
     given = [values] if os.path.isfile(values) else []
     try:
         near = sorted(path.parent.iterdir())

@@ -73,6 +73,13 @@ def motions(program):
     return found, problems
 
 
+def turn_of(program, motion):
+    """Rotation (3, 3) from a motion's base to the reference's; the identity where it is not known."""
+    chosen = reference(program)
+    way, _ = _way(program, chosen, (motion.base, chosen[1]))
+    return np.eye(3) if way is None else way[0][:3, :3]
+
+
 def holding_problems(program, holding):
     """[(file, line, Fact)] where the program moves the part in the robot and the cell (tool_in_hand,
     part_in_hand) the tool; else []."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from ..base.regular_files import open_regular, shown
 from ..engine import InputError
 from . import given
+from .given import beside as values_beside  # noqa: F401
 from .program import MAX_FILE, ProgramError
 from .readers.roll import lay
 from .readers.speeds import told as told_problems  # noqa: F401

@@ -81,15 +81,15 @@ class Entry:
             # In a plane the wheel stands over the border by four times what it is let down here.
             down = CLEAR * lead[left] ** 2 / (2.0 * self.wheel["radius"])
             out[:, :3, 3] += down[:, None] * out[:, :3, 2]
-            fits &= self._depth(out, self._others) <= 0.0
+            fits &= self._depth(out, self._others, whole=True) <= 0.0
             found[left[fits]] = lead[left[fits]]
         return found
 
-    def _depth(self, frames, samples):
+    def _depth(self, frames, samples, whole=False):
         points, normals = samples
         if not len(points) or not len(frames):
             return np.zeros(len(frames))
-        return np.array(core.wheel_fit(self.wheel, frames, points, normals, self.context))
+        return np.array(core.wheel_fit(self.wheel, frames, points, normals, self.context, whole))
 
     def ramp(self, lead=0.0):
         """mm over which the force grows from where the wheel comes down, ``lead`` mm outside the border: to

@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from ...base.stopping import check
+from .. import one_frame
 from ..program import ProgramError
 from .roll_along import followed, posed, with_chords
 
@@ -74,7 +75,7 @@ def lay(program, rule=None, direction=None):
         program.motions = with_chords(program.motions)
     way = _Way(program.motions)
     if rule == "fixed":
-        angles, parallel = way.towards(direction)
+        angles, parallel = way.towards(_in_own_bases(program, way.motions, direction))
         if parallel:
             program.problem(
                 program.file,
@@ -90,6 +91,15 @@ def lay(program, rule=None, direction=None):
         program.motions = followed(program.motions, way, angles)
     else:
         way.turn(angles)
+
+
+def _in_own_bases(program, motions, direction):
+    """(n, 3): a direction in the program's reference base, in the bases of the motions."""
+    turns = {}
+    for motion in motions:
+        if motion.base not in turns:
+            turns[motion.base] = direction @ one_frame.turn_of(program, motion)
+    return np.array([turns[motion.base] for motion in motions])
 
 
 def _wrong(program, code, text, /, **arguments):
@@ -122,6 +132,9 @@ class _Way:
         self.steps = across_u + 1j * across_v
         follows = np.diff(np.array(places), prepend=-2) == 1
         self.rapid = np.array([m.kind == "PTP" for m in self.motions]) | ~follows
+        # From one frame to another the step is none, and the roll begins anew.
+        frames = [(m.base, m.tool) for m in self.motions]
+        self.rapid |= np.array([True] + [a != b for a, b in zip(frames, frames[1:])])
         self.rapid |= self._crossing(-along)
         self.passes = _runs(~self.rapid)
 
@@ -170,8 +183,8 @@ class _Way:
         return angles
 
     def towards(self, direction):
-        """((n,) angles of a fixed direction, the poses whose axis is along it)."""
-        across = self.u @ direction + 1j * (self.v @ direction)
+        """((n,) angles of a fixed direction (n, 3), the poses whose axis is along it)."""
+        across = (self.u * direction).sum(axis=1) + 1j * (self.v * direction).sum(axis=1)
         parallel = np.flatnonzero(np.abs(across) < PARALLEL)
         angles = np.angle(across)
         good = np.flatnonzero(np.abs(across) >= PARALLEL)

@@ -8,8 +8,9 @@ import math
 
 import numpy as np
 
+from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
-from . import engine_input
+from . import contact_extents, engine_input
 
 LOOK, GLANCE = 4000, 400  # samples of a first look at the faces, and of one at their size
 MOST = 400_000  # samples, of a spacing that is chosen
@@ -21,9 +22,6 @@ CHORD = 0.1  # of the tolerance's band: between the surface and the chord from s
 LEAST_CHORD = 0.5  # more is warned of
 SHARE = 0.98  # of the area: what is more curved, or narrower, is a fillet or a sliver
 TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or larger
-CELLS, MOST_CELLS = 6, 80  # of the contact's grid, across and along the contact
-ALL_CELLS = 400  # across the wheel
-ROUNDS = 3  # of finer grids, until it has them
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
 
@@ -49,12 +47,12 @@ def look(job, shape, faces, context=None):
     spacing = math.sqrt(area / LOOK)
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
     bend, weights = curvatures(field)
-    most = _quantile(np.abs(bend).max(axis=1), weights)
+    most = weighted_quantile(np.abs(bend).max(axis=1), weights, SHARE)
     widths = _widths(field)
     order = sorted(widths, key=lambda face: -widths[face][0])
     counted = np.searchsorted(np.cumsum([widths[face][1] for face in order]), SHARE * area)
     narrow = order[min(counted, len(order) - 1)]
-    convex = _quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)
+    convex = weighted_quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)
     length, breadth = _contact(job, convex) or (None, None)
     plane = _contact(job, 0.0)
     return {
@@ -244,33 +242,13 @@ def _contact(job, curvature):
         if curved:
             workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
         try:
-            found.append(_extents(wheel, workpiece, compliance, options))
+            found.append(
+                contact_extents.single(
+                    wheel, workpiece, compliance, options["force"], options["contact_spacing"]
+                )
+            )
         except ValueError:  # an InputError, or a wheel beyond all bounds: the run tells
             continue
     if not found:
         return None
     return tuple(min(values) for values in zip(*found))
-
-
-def _extents(wheel, workpiece, compliance, options):
-    finest = wheel["width"] / ALL_CELLS
-    cell = min(max(options["contact_spacing"], finest), wheel["width"] / CELLS)
-    for _ in range(ROUNDS):
-        one = core.single_contact(wheel, workpiece, compliance, options["force"], None, cell, 1e-3)
-        touched = one["pressure"] > 0.01 * one["pressure"].max()
-        length = cell * np.count_nonzero(touched.any(axis=0))
-        breadth = cell * np.count_nonzero(touched.any(axis=1))
-        finer = max(min(length, breadth) / CELLS / 1.5, max(length, breadth) / MOST_CELLS, finest)
-        if min(length, breadth) >= CELLS * cell or finer >= cell:
-            break
-        cell = finer
-    return float(length), float(breadth)
-
-
-def _quantile(values, weights, share=SHARE):
-    """The value that the share of the weight does not exceed."""
-    if not len(values):
-        return 0.0
-    order = np.argsort(values)
-    summed = np.cumsum(weights[order])
-    return float(values[order][min(np.searchsorted(summed, share * summed[-1]), len(values) - 1)])

@@ -11,9 +11,8 @@ import math
 import numpy as np
 
 from ..engine import InputError, core
-from ..job import engine_input
+from ..job import contact_extents, engine_input
 
-TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
 SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for room
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
 OWN = 0.05  # mm that it may reach deeper into the faces that are ground
@@ -123,13 +122,7 @@ def contact_length(job, settings):
         depth = max(job["stock"].get("allowance_mm", 0.0), 0.1)
         return 2.0 * math.sqrt(2.0 * wheel["radius"] * 1.5 * depth)
     force = settings["force_N"] or options["force"]
-    found = core.single_contact(
-        wheel, {"shape": "plane"}, compliance, force, None, options["contact_spacing"], 1e-3
-    )
-    x, y = np.meshgrid(found["x"], found["y"])
-    touched = found["pressure"] > TOUCHED * found["pressure"].max()
-    turn = math.radians(settings["belt_angle_deg"])
     # The pass lies at -belt_angle to the belt's travel.
-    along = (x * math.cos(turn) - y * math.sin(turn))[touched]
-    cell = np.ptp(found["x"]) / max(len(found["x"]) - 1, 1)
-    return float(np.ptp(along) + cell)
+    angle = -math.radians(settings["belt_angle_deg"])
+    spacing = options["contact_spacing"]
+    return contact_extents.single(wheel, {"shape": "plane"}, compliance, force, spacing, angle)[0]

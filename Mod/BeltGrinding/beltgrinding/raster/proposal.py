@@ -9,9 +9,11 @@ import math
 
 import numpy as np
 
+from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job.workpiece import apply_stock, make_field, read_design
-from .raster_path import curvature_along_and_across, planes_across, raster, surfaces, validate
+from .raster_path import raster, validate
+from .sheets import curvature_along_and_across, planes_across, surfaces
 
 # ISO 3, R10: radii of wheels and their widths, mm.
 RADII = (10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0)
@@ -138,7 +140,7 @@ def _wheel(job, shape, field, settings, area, extent, notes, context):
     along, across, weights = map(
         np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))
     )
-    hollow_along, hollow_across = (_quantile(np.maximum(-k, 0.0), weights) for k in (along, across))
+    hollow_along, hollow_across = (weighted_quantile(np.maximum(-k, 0.0), weights, HOLLOW) for k in (along, across))
     most = min(FIT / hollow_along if hollow_along > 0 else math.inf, max(0.5 * extent, RADII[0]))
     radius = max((r for r in RADII if r <= most), default=RADII[0])
     if most < RADII[0]:
@@ -258,13 +260,6 @@ def _spacing(area, contact_width, notes):
         )
     spacing = _round(max(wanted, most))
     return spacing, int(area / spacing**2)
-
-
-def _quantile(values, weights):
-    """The value that the share HOLLOW of the weight does not exceed."""
-    order = np.argsort(values)
-    summed = np.cumsum(weights[order])
-    return float(values[order][min(np.searchsorted(summed, HOLLOW * summed[-1]), len(values) - 1)])
 
 
 def _round(value):

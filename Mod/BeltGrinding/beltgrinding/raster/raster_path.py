@@ -16,6 +16,8 @@ from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
 from . import passes, path_check, reachable
 from .entry import Entry
+from .footprint import contact_width
+from .sheets import surfaces
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
 LEAST_SAMPLES = 400
@@ -23,9 +25,6 @@ MOST_SAMPLES = 400_000
 STEP_SAMPLES = 4  # between neighbouring passes, at least
 POSE_SAMPLES = 3  # between neighbouring poses, at least
 WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
-PARALLEL = 0.05  # sine of an angle below which two directions count as one
-TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
-FLAT = 1e4  # mm; a larger radius of curvature is a plane
 MOST_POSES = 300_000
 UNCOVERED = 0.01  # of the area; more is warned of
 
@@ -159,152 +158,7 @@ def _finer(area, step_over):
     return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
-def surfaces(job, shape, faces, spacing, settings, warnings, context):
-    """What passes are laid on: each face by itself for u and v, all together for a direction. List
-    of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
-    """
-    field, report = core.sample_faces(
-        shape, faces, spacing, 1.0, 0, context, settings["along"] != "direction"
-    )
-    warnings += report["warnings"]
-    points, normals, triangles = field.points, field.normals.astype(float), field.triangles
-    if len(triangles) == 0:
-        raise InputError(
-            "raster.faces_too_small", "the faces are too small for the sampling; lower sampling_mm"
-        )
-    if settings["along"] == "direction":
-        scalars = points @ planes_across(settings["direction"], points, normals, field.areas)
-        whole = {"points": points, "normals": normals, "triangles": triangles}
-        return [{**whole, "scalars": scalars[triangles], "period": 0.0, "name": ""}]
-    axis = 1 if settings["along"] == "u" else 0  # what does not change along a pass
-    scalars = report["parameters"][:, axis].copy()
-    scalars[(field.flags & core.DEGENERATE) > 0] = np.nan  # a pole
-    owner, result = field.faces[triangles[:, 0]], []
-    for k, face in enumerate(faces):
-        mine = triangles[owner == face]
-        if len(mine) == 0:
-            warnings.append(
-                core.Fact(
-                    "raster.face_too_small",
-                    "Face{face} is too small for samples of {spacing:.3g} mm: no pass",
-                    face=face + 1,
-                    spacing=spacing,
-                )
-            )
-            continue
-        used, local = np.unique(mine, return_inverse=True)
-        local = local.reshape(-1, 3)
-        surface = {"points": points[used], "normals": normals[used], "triangles": local}
-        period = report["period"][k][axis]
-        values = scalars[used][local]
-        result.append({**surface, "scalars": values, "period": period, "name": f"Face{face + 1}"})
-    return result
 
-
-def planes_across(direction, points, normals, areas):
-    """Unit vector across the passes: the normal of the planes that cut them."""
-    along = np.asarray(direction, dtype=float)
-    length = np.linalg.norm(along)
-    if length == 0:
-        raise InputError(
-            "raster.no_direction",
-            "{key}: give a direction that is not 0, 0, 0",
-            key="raster.direction",
-        )
-    along = along / length
-    weights = areas[:, None].astype(float)
-    mean = (normals * weights).sum(axis=0) / weights.sum()
-    across = np.cross(mean, along)
-    if np.linalg.norm(mean) > PARALLEL:
-        if np.linalg.norm(across) < PARALLEL * np.linalg.norm(mean):
-            raise InputError(
-                "raster.direction_along_normal",
-                "{key}: the faces look in this very direction; give one along them",
-                key="raster.direction",
-            )
-    else:  # a closed surface looks everywhere: planes across its longer side
-        middle = points - (points * weights).sum(axis=0) / weights.sum()
-        spread = (middle * weights).T @ middle
-        project = np.eye(3) - np.outer(along, along)
-        across = np.linalg.eigh(project @ spread @ project)[1][:, -1]
-    return across / np.linalg.norm(across)
-
-
-def curvature_along_and_across(surface):
-    """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
-    surface is convex, and the triangles' areas: from how the normals change along the edges.
-    """
-    corners = surface["triangles"]
-    p, n, c = surface["points"][corners], surface["normals"][corners], surface["scalars"]
-    c = (
-        c - surface["period"] * np.round((c - c[:, :1]) / surface["period"])
-        if (surface["period"] > 0)
-        else c
-    )
-    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    cross = np.cross(u, v)
-    size = np.linalg.norm(cross, axis=1)
-    along = (c[:, 2] - c[:, 0])[:, None] * u - (c[:, 1] - c[:, 0])[:, None] * v
-    length = np.linalg.norm(along, axis=1)
-    sound = np.isfinite(length) & (length > 0) & (size > 1e-12)
-    u, v, n, cross, size, along = (a[sound] for a in (u, v, n, cross, size, along))
-    along = along / length[sound, None]
-    across = np.cross(cross / size[:, None], along)
-    edges = np.stack([np.stack([(e * d).sum(1) for e in (u, v)], 1) for d in (along, across)], 1)
-    turns = [n[:, 1] - n[:, 0], n[:, 2] - n[:, 0]]
-    turned = np.stack([np.stack([(e * d).sum(1) for e in turns], 1) for d in (along, across)], 1)
-    shape = turned @ np.linalg.inv(edges)  # the shape operator in these two directions
-    return shape[:, 0, 0], shape[:, 1, 1], 0.5 * size
-
-
-def _median(values, weights):
-    order = np.argsort(values)
-    at = np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())
-    return float(values[order][min(at, len(values) - 1)])
-
-
-def contact_width(job, settings, surfaces, warnings):
-    """Width of the contact across the pass, mm: the job's wheel under the force, by the job's model
-    of elasticity, on a cylinder with the faces' median curvature across the passes.
-    """
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    if compliance["model"] == "geometric":
-        raise InputError(
-            "raster.rigid_step_over",
-            "{key}: a rigid tool has no contact width; give a step-over in mm",
-            key="raster.step_over_mm",
-        )
-    across, areas = zip(*(curvature_along_and_across(s)[1:] for s in surfaces))
-    curvature = _median(np.concatenate(across), np.concatenate(areas))
-    force = settings["force_N"] or options["force"]
-    angle = -settings["belt_angle_deg"]  # of the pass against the belt
-    workpiece = {"shape": "plane"}
-    if abs(curvature) * FLAT > 1:
-        workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
-    arguments = (compliance, force, None, options["contact_spacing"], 1e-3)
-    try:
-        found = core.single_contact(wheel, workpiece, *arguments)
-    except InputError as error:
-        if workpiece["shape"] == "plane":  # it is not the surface's curvature
-            raise
-        warnings.append(
-            core.Fact(
-                "raster.width_on_a_plane",
-                "the contact's width is that on a plane: on a cylinder of {radius:.4g} mm radius "
-                "it cannot be found ({reason})",
-                radius=1.0 / curvature,
-                reason=error,
-            )
-        )
-        found = core.single_contact(wheel, {"shape": "plane"}, *arguments)
-    x, y = np.meshgrid(found["x"], found["y"])
-    touched = found["pressure"] > TOUCHED * found["pressure"].max()
-    turn = math.radians(angle)
-    place = (y * math.cos(turn) - x * math.sin(turn))[touched]
-    cell = abs(math.cos(turn)) * np.ptp(found["y"]) / max(len(found["y"]) - 1, 1) + abs(
-        math.sin(turn)
-    ) * np.ptp(found["x"]) / max(len(found["x"]) - 1, 1)
-    return float(np.ptp(place) + cell)
 
 
 def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):

@@ -288,10 +288,6 @@
         <translation>Höhe über der Oberfläche, in der der Roboter von Bahn zu Bahn geht, längs der Normalen, mm</translation>
     </message>
     <message>
-        <source>how deep the undeformed wheel may reach into the faces beside the contact before it is warned of, mm</source>
-        <translation>wie tief die unverformte Scheibe neben dem Kontakt in die Flächen reichen darf, bevor davor gewarnt wird, mm</translation>
-    </message>
-    <message>
         <source>how far above the design surface the contact is programmed, mm; for position control</source>
         <translation>wie weit über der Solloberfläche der Kontakt programmiert wird, mm; für Positionsregelung</translation>
     </message>
@@ -1164,8 +1160,40 @@
         <translation>die Drehung, die die Posen haben</translation>
     </message>
     <message>
-        <source>line from which on motions are left out before each pose; 0: none</source>
-        <translation>Zeile, ab der vor jeder Pose Bewegungen fehlen; 0: keine</translation>
+        <source>corners of what is left out</source>
+        <translation>Ecken dessen, was ausgelassen ist</translation>
+    </message>
+    <message>
+        <source>how deep the undeformed wheel may reach into the part beside the contact before that counts as standing in the part, mm</source>
+        <translation>wie tief die unverformte Scheibe neben dem Kontakt in das Teil reichen darf, ehe sie als im Teil stehend gilt, mm</translation>
+    </message>
+    <message>
+        <source>of the area, where it fits and no pass lies, percent</source>
+        <translation>der Fläche, wo sie passt und keine Bahn liegt, Prozent</translation>
+    </message>
+    <message>
+        <source>of the area, where the wheel does not fit and no pass lies, percent</source>
+        <translation>der Fläche, wo die Scheibe nicht passt und keine Bahn liegt, Prozent</translation>
+    </message>
+    <message>
+        <source>of the corners: 1 no room, 2 no pass</source>
+        <translation>der Ecken: 1 kein Platz, 2 keine Bahn</translation>
+    </message>
+    <message>
+        <source>three of them each</source>
+        <translation>je drei davon</translation>
+    </message>
+    <message>
+        <source>tilt: lean of the wheel about the belt&apos;s travel, at most, degrees</source>
+        <translation>tilt: Neigung der Scheibe um den Bandlauf, höchstens, Grad</translation>
+    </message>
+    <message>
+        <source>where the contact&apos;s width comes from. solved: from contacts that are solved at 50 places along the passes, on the faces as they are, the narrower ones; cylinder: from one on a cylinder with the faces&apos; median curvature across the passes</source>
+        <translation>woher die Kontaktbreite kommt. solved: aus Kontakten, die an 50 Stellen längs der Bahnen auf den Flächen, wie sie sind, gelöst werden, den schmaleren; cylinder: aus einem auf einem Zylinder mit der mittleren Krümmung der Flächen quer zu den Bahnen</translation>
+    </message>
+    <message>
+        <source>where the wheel would stand in the part, or in a body fixed to it. tilt: it leans about the belt&apos;s travel as far as it must, up to max_tilt_deg, and the place is left out where that is not enough; leave_out: without leaning; warn: the pass is laid all the same</source>
+        <translation>wo die Scheibe im Teil stünde oder in einem Körper, der fest mit ihm ist. tilt: sie neigt sich um den Bandlauf so weit wie nötig, bis max_tilt_deg, und die Stelle bleibt aus, wo das nicht reicht; leave_out: ohne Neigung; warn: die Bahn wird trotzdem gelegt</translation>
     </message>
 </context>
 <context>
@@ -3463,6 +3491,50 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Each place in a line of its own</source>
         <translation>Jede Stelle in eigener Zeile</translation>
+    </message>
+    <message>
+        <source>Contact width</source>
+        <translation>Kontaktbreite</translation>
+    </message>
+    <message>
+        <source>Leave out</source>
+        <translation>Auslassen</translation>
+    </message>
+    <message>
+        <source>On a cylinder</source>
+        <translation>Auf einem Zylinder</translation>
+    </message>
+    <message>
+        <source>Only warn</source>
+        <translation>Nur warnen</translation>
+    </message>
+    <message>
+        <source>Rim in the part at most</source>
+        <translation>Belag im Teil bis zu</translation>
+    </message>
+    <message>
+        <source>Solved along the passes</source>
+        <translation>Längs der Bahnen gelöst</translation>
+    </message>
+    <message>
+        <source>Tilt at most</source>
+        <translation>Neigung höchstens</translation>
+    </message>
+    <message>
+        <source>Tilt, else leave out</source>
+        <translation>Neigen, sonst auslassen</translation>
+    </message>
+    <message>
+        <source>Wheel in the part</source>
+        <translation>Scheibe im Teil</translation>
+    </message>
+    <message>
+        <source>the wheel does not fit</source>
+        <translation>die Scheibe passt nicht</translation>
+    </message>
+    <message>
+        <source>without a pass</source>
+        <translation>ohne Bahn</translation>
     </message>
 </context>
 <context>

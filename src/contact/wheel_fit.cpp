@@ -95,7 +95,7 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
                 if (std::abs(along) > 0.5 * wheel.width || (down <= 0 && !whole)) return;
                 const Vec3 radial = d - along * y;
                 const double room = radial.norm() - (wheel.radius - wheel.drop(along));
-                if (room >= -depth[i] || normal[k].dot(radial) >= 0) return;
+                if (room >= -depth[i] || (!whole && normal[k].dot(radial) >= 0)) return;
                 depth[i] = -room;
             });
         }

@@ -10,7 +10,8 @@ fast    pairs of poses above max_turn_deg or max_turn_deg_per_mm
 back    reversals in contact
 plunge  of the simulated removed volume, on the way down to passes and off them, %
 ramp    of it, where the force has not its full value yet or no more, along the pass, %
-reach   of the area that the rigid wheel gets to, %
+left    of the area, left out because the wheel would stand in the part, %
+reach   of the area that the wheel gets to, leaned if it must be, its belt as the passes want it, %
 cover   of that area that the simulated contact touched, %
 """
 
@@ -39,10 +40,8 @@ UNITS = {"hammer_claw": 0.001}  # mm, of files that are not in mm and do not say
 FREE_FORM = {"plane", "cylinder", "cone"}  # and all but these
 SAMPLES = 15_000  # on the faces, at least
 COARSEST = 1.5  # mm from sample to sample: the contact is some 6 mm across
-PLACES = 1_500  # that are looked at for the reach
-DEPTH = 0.5  # mm that the rigid wheel may reach in, as fit_mm
 SMALLEST = 20.0  # mm2; a face below it is none that one grinds
-HEAD = "turn", "/mm", "fast", "back", "plunge", "ramp", "reach", "cover", "passes", "poses", "s"
+HEAD = "turn", "/mm", "fast", "back", "plunge", "ramp", "left", "reach", "cover", "passes", "poses", "s"
 
 
 def chosen(shape):
@@ -95,11 +94,10 @@ def measure(design, shape, faces):
     to = np.zeros(len(volume), dtype=bool)
     to[1:] = path_check.motion(laid)["within"]
     full = np.where(laid["forces"] < 0, FORCE, laid["forces"]) >= FORCE * (1 - 1e-9)
-    places = np.unique(np.linspace(0, ground.field.size - 1, PLACES).astype(int))
-    points, normals = ground.field.points[places], ground.field.normals[places].astype(float)
-    fits = reachable.fits_at(job, shape, points, normals, DEPTH)
-    touched = ground.field.trace["peak_pressure"][places] > 0
-    areas = ground.field.areas[places]
+    seen = laid["places"]
+    fits, areas = seen["fits"], seen["areas"]
+    touched = ground.field.trace["peak_pressure"] > 0
+    touched = touched[reachable.nearest(seen["points"], ground.field.points)]
     total = max(volume.sum(), 1e-12)
     return {
         "turn": found["turn_deg"],
@@ -108,6 +106,7 @@ def measure(design, shape, faces):
         "back": found["reversals"],
         "plunge": 100.0 * volume[~to].sum() / total,
         "ramp": 100.0 * volume[to & ~full].sum() / total,
+        "left": 100.0 * areas[seen["state"] == reachable.NO_ROOM].sum() / areas.sum(),
         "reach": 100.0 * areas[fits].sum() / areas.sum(),
         "cover": 100.0 * areas[fits & touched].sum() / max(areas[fits].sum(), 1e-12),
         "passes": found["passes"],

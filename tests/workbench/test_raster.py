@@ -220,7 +220,7 @@ def test_a_wheel_that_does_not_fit_is_warned_of():
     def bend(x):
         return 30.0 - math.sqrt(30.0**2 - min(abs(x - 50.0), 25.0) ** 2)
 
-    settings = {"along": "direction", "direction": [1, 0, 0], "step_over_mm": 10}
+    settings = {**X, "step_over_mm": 10, "where_it_collides": "warn"}
     tight = raster.raster(job_of(plate(bend=bend)), settings)
     assert any("does not fit" in text for text in tight["warnings"])
     assert tight["fit"].max() > 1.0 and (tight["fit"][~tight["contact"]] == 0).all()

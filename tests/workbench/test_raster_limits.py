@@ -220,10 +220,13 @@ def test_beside_a_wall_the_wheel_comes_down_on_the_face():
         if core.sample_faces(shape, [k], 5.0)[0].normals[0][2] > 0.5
     ]
     job = job_of(brep, design={"brep": brep, "faces": floor})
-    laid = raster_path.raster(job, {**X, "run_out_mm": 0})
+    laid = raster_path.raster(job, {**X, "run_out_mm": 0, "where_it_collides": "warn"})
     x = laid["contacts"][laid["contact"], 0, 3]
     assert x.min() < -2 and x.max() == pytest.approx(60, abs=1e-3)
     assert laid["beside"] == len(laid["passes"])
+    # By default it keeps clear of the wall: its axis stays a radius of 20 mm away.
+    x = raster_path.raster(job, X)["contacts"][:, 0, 3]
+    assert 60 - 20 - 3 < x.max() <= 60 - 20 + 0.5
 
 
 def test_position_control_and_rigid_wheels_take_no_force():

@@ -3,10 +3,13 @@
 import hashlib
 import json
 
+import numpy as np
+
 from ..engine import InputError
 from ..job import load as jobs
 from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster
+from ..raster.reachable import GROUND, NO_PASS, NO_ROOM  # noqa: F401 (the window takes its words from here)
 from . import job_data, job_object, stored_facts
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
@@ -20,6 +23,7 @@ KEYS = (
     Key("PassSpacing", "Enumeration", "Passes", "raster.spacing"),
     Key("StepOver", "Length", "Passes", "raster.step_over_mm"),
     Key("StepOverShare", "Float", "Passes", "raster.step_over_share"),
+    Key("Footprint", "Enumeration", "Passes", "raster.footprint"),
     Key("Order", "Enumeration", "Passes", "raster.order"),
     Key("RunOut", "Distance", "Passes", "raster.run_out_mm"),
     Key("Bridge", "Length", "Passes", "raster.bridge_mm"),
@@ -34,6 +38,8 @@ KEYS = (
     Key("TurnRate", "Float", "Posing", "raster.max_turn_deg_per_mm"),
     Key("Sampling", "Length", "Posing", "raster.sampling_mm"),
     Key("FitLimit", "Length", "Posing", "raster.fit_mm"),
+    Key("WhereItCollides", "Enumeration", "Posing", "raster.where_it_collides"),
+    Key("MaxTilt", "Angle", "Posing", "raster.max_tilt_deg"),
     Key("Feed", "Speed", "Process", "raster.feed_mm_s"),
     Key("MaxTcpFeed", "Speed", "Process", "raster.max_tcp_feed_mm_s"),
     Key("Force", "Force", "Process", "raster.force_N"),
@@ -60,6 +66,16 @@ OUTPUTS = (
         "Result",
         "removed while the wheel comes down and lifts off, percent, by force and time; -1: not known",
     ),
+    Output(
+        "LeftOut",
+        "Float",
+        "Result",
+        "of the area, where the wheel does not fit and no pass lies, percent",
+    ),
+    Output("NoPass", "Float", "Result", "of the area, where it fits and no pass lies, percent"),
+    Output("LeftPoints", "VectorList", "Result", "corners of what is left out", True),
+    Output("LeftTriangles", "IntegerList", "Result", "three of them each", True),
+    Output("LeftStates", "IntegerList", "Result", "of the corners: 1 no room, 2 no pass", True),
     Output("Warnings", "StringList", "Result", "what the user should know of the passes"),
     stored_facts.output("Warnings", "Result"),
     Output("Inputs", "String", "Result", "hash of what the passes were laid from", True),
@@ -80,10 +96,16 @@ class RasterPath(RobotPath):
         if "Proposed" not in obj.PropertiesList:
             text = "laid as a first proposal, and nobody has looked at it since"
             obj.addProperty("App::PropertyBool", "Proposed", "Passes", text, 4)
-        older = "Approach" in obj.PropertiesList and "Entry" not in obj.PropertiesList
+        older = "Approach" in obj.PropertiesList
+        added = {"Entry", "WhereItCollides", "Footprint"} - set(obj.PropertiesList) if older else ()
         add_keys(obj, KEYS)
-        if older:  # its passes go on coming down as they did, so that what it grinds stays
+        # The passes of an older document go on as they were, so that what it grinds stays.
+        if "Entry" in added:
             obj.Entry = "direct"
+        if "WhereItCollides" in added:
+            obj.WhereItCollides = "warn"
+        if "Footprint" in added:
+            obj.Footprint = "cylinder"
         add_outputs(obj, OUTPUTS)
         for name in ("Source", "SourceObject"):
             obj.setEditorMode(name, 2)
@@ -114,8 +136,24 @@ def generate(obj):
     per_mm = seen["turn_deg_per_mm"]
     obj.FastestTurn = 1e9 if per_mm is None else per_mm  # on the spot
     obj.PlungeShare = -1.0 if seen["plunge_share"] is None else 100.0 * seen["plunge_share"]
+    obj.LeftOut = 100.0 * found["reachable"]["left_out"]
+    obj.NoPass = 100.0 * found["reachable"]["no_pass"]
+    points, triangles, states = _left(found["places"])
+    obj.LeftPoints = [tuple(point) for point in points.tolist()]
+    obj.LeftTriangles = triangles.ravel().tolist()
+    obj.LeftStates = states.tolist()
     stored_facts.store(obj, "Warnings", found["warnings"])
     obj.Inputs = digest
+
+
+def _left(places):
+    """(points (n, 3), triangles (m, 3), states (n,)) of ``reachable.look``'s places that no pass touches: triangles
+    with two such corners at least."""
+    states = places["state"]
+    triangles = places["triangles"]
+    left = triangles[(states[triangles] != GROUND).sum(axis=1) > 1]
+    used, numbers = np.unique(left, return_inverse=True)
+    return places["points"][used], numbers.reshape(-1, 3), states[used]
 
 
 def _inputs(obj):

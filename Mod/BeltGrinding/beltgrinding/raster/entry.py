@@ -26,14 +26,17 @@ class Entry:
     """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
     control."""
 
-    def __init__(self, job, shape, faces, settings, context):
-        """``faces``: those that are ground, from 0. Raises InputError, Cancelled."""
+    def __init__(self, job, shape, faces, settings, context, length=None):
+        """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes, if that is
+        known. Raises InputError, Cancelled."""
         self.settings, self.context = settings, context
         machine = job["belt_machine"]
         self.wheel = engine_input.engine_arguments(job)[0]
         under_force = machine["control"] == "force"
         self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
-        length = contact_length(job, settings) if settings["entry"] != "direct" else 0.0
+        length = length or contact_length(job, settings)
+        if settings["entry"] == "direct":
+            length = 0.0
         self._half = 0.5 * length
         self.lead = 0.0
         if settings["entry"] == "run_on":
@@ -62,10 +65,11 @@ class Entry:
         normals = field.normals.astype(float)
         return np.vstack([field.points] * 2), np.vstack([normals, -normals])
 
-    def leads(self, frames, outwards, most):
+    def leads(self, frames, outwards, most, clearing):
         """mm that the wheel may stand beyond the ends of passes at ``frames`` (n, 4, 4) along ``outwards``
         (n, 3), ``most`` (n,) at most; 0: no room. There it must stand off the faces that are not ground, and
-        reach no deeper into those that are than it does at the end, and than fit_mm.
+        reach no deeper into those that are than it does at the end, and than fit_mm; ``clearing``: clearing.Clearing,
+        by which it must fit.
         """
         found = np.zeros(len(frames))
         if self._own is None or self._others is None:
@@ -77,6 +81,7 @@ class Entry:
             out = frames[left].copy()
             out[:, :3, 3] += lead[left, None] * outwards[left]
             fits = self._depth(out, self._own) <= here[left] + OWN
+            fits &= clearing.fits_upright(out)
             # In a plane the wheel stands over the border by four times what it is let down here.
             down = CLEAR * lead[left] ** 2 / (2.0 * self.wheel["radius"])
             out[:, :3, 3] += down[:, None] * out[:, :3, 2]

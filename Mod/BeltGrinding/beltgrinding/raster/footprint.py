@@ -1,4 +1,4 @@
-"""How wide the contact is across the passes."""
+"""How large the contact is across and along the passes: solved where they lie, or on a cylinder."""
 
 import math
 
@@ -7,9 +7,18 @@ import numpy as np
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job import contact_extents, engine_input
+from . import passes
 from .sheets import curvature_along_and_across
 
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
+PLACES = 50  # along the passes, at which the contact is solved
+FEWEST = 8  # of them that have a whole contact: from fewer nothing is said
+ACROSS = 30  # samples across the contact
+SAMPLES = 100_000  # on the faces, at most
+NARROW = 0.2  # of the places have a contact that is narrower than is said
+LONG = 0.8  # of the places have one that is shorter
+MOST_CELLS = 100  # across the wheel
+COVERED = 0.5  # of a cell that is on the faces
 
 
 def contact_width(job, settings, surfaces, warnings):
@@ -51,3 +60,82 @@ def contact_width(job, settings, surfaces, warnings):
             )
         )
         return width_on({"shape": "plane"})
+
+
+def solved(job, shape, faces, levels, settings, plain, context=None):
+    """The contact at ``PLACES`` places along passes, solved by the simulator's own contact on the design as it is
+    sampled, without stock.
+
+    ``levels``: the passes, lists of dict(points, normals, tangents (n, 3)); ``plain``: mm, of its width, about.
+    Returns dict(width_mm: across the pass, that of all but the narrowest share ``NARROW``; length_mm: along it, of
+    all but the longest; widths, lengths (k,) mm), or None where fewer than ``FEWEST`` places have a contact that is
+    whole on the faces. Raises InputError, Cancelled.
+    """
+    wheel, compliance, _, options = engine_input.engine_arguments(job)
+    frames = _places(levels, settings)
+    area = sum(shape.face_area(face) for face in faces)
+    spacing = max(plain / ACROSS, math.sqrt(area / SAMPLES))
+    field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
+    force = settings["force_N"] or options["force"]
+    fine = min(options["contact_spacing"], max(plain / ACROSS, wheel["width"] / MOST_CELLS))
+    options = {**options, "force": force, "contact_spacing": fine, "must_touch": False}
+    path = core.ToolPath(
+        frames=frames,
+        feeds=np.ones(len(frames)),
+        forces=np.full(len(frames), force),
+        rapid=np.zeros(len(frames), dtype=bool),
+        lines=np.zeros(len(frames), dtype=int),
+        zones=np.full(len(frames), -1.0),
+    )
+    angle = -math.radians(settings["belt_angle_deg"])
+    sizes = []
+    for pose in range(len(frames)):
+        try:
+            found = core.contact_at(field, path, pose, wheel, compliance, options)
+        except InputError:
+            continue  # the wheel touches nothing there
+        if _whole(found):
+            sizes.append(contact_extents.extents(found, angle))
+    if len(sizes) < FEWEST:
+        return None
+    lengths, widths = np.array(sizes).T
+    even = np.ones(len(sizes))
+    return {
+        "width_mm": weighted_quantile(widths, even, NARROW),
+        "length_mm": weighted_quantile(lengths, even, LONG),
+        "widths": widths,
+        "lengths": lengths,
+    }
+
+
+def _places(levels, settings):
+    """work_from_contact (k, 4, 4), evenly along all passes."""
+    angle = math.radians(settings["belt_angle_deg"])
+    pieces = [piece for pieces in levels for piece in pieces]
+    frames = [
+        passes.contact_frames(piece["points"], piece["normals"], piece["tangents"], angle)
+        for piece in pieces
+    ]
+    ends = np.cumsum([0.0, *(passes.length(piece["points"]) for piece in pieces)])
+    found = []
+    for place in (np.arange(PLACES) + 0.5) / PLACES * ends[-1]:
+        k = min(int(np.searchsorted(ends, place, side="right")) - 1, len(pieces) - 1)
+        steps = np.linalg.norm(np.diff(pieces[k]["points"], axis=0), axis=1)
+        s = np.concatenate([[0.0], np.cumsum(steps)])
+        i = int(np.clip(np.searchsorted(s, place - ends[k], side="right") - 1, 0, len(steps) - 1))
+        share = (place - ends[k] - s[i]) / steps[i] if steps[i] > 0.0 else 0.0
+        found.append(passes.between(frames[k][i], frames[k][i + 1], np.array([share]))[0])
+    return np.array(found)
+
+
+def _whole(contact):
+    """Whether a contact lies on the faces with all its sides: none of its outermost cells is on their border."""
+    pressed = contact["pressure"] > contact_extents.TOUCHED * contact["pressure"].max()
+    if not contact["pressure"].max() > 0.0:
+        return False
+    off = contact["coverage"] < COVERED
+    beside = np.zeros_like(off)
+    for axis in (0, 1):
+        for step in (-1, 1):
+            beside |= np.roll(off, step, axis=axis)
+    return not (pressed & (off | beside)).any()

@@ -11,6 +11,7 @@ STILL = 1e-6  # mm; less is no way
 LEAST_LEAD = 0.2  # mm; a shorter way outside the border is none
 RAMP_STEPS = 6  # poses in a ramp of the force: that of a pose holds on the whole way to it
 AHEAD = 0.8  # cosine: so near to its way out, the pass goes on beyond a gap
+UNCUT = (False, False)  # neither end of a piece lies beside what was left out
 CELL = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
@@ -28,9 +29,9 @@ def lever(cell, points):
     return float(np.linalg.norm(points @ frame[:3, :3].T + frame[:3, 3], axis=1).max())
 
 
-def assemble(levels, settings, cell, entry):
+def assemble(levels, settings, cell, entry, clearing):
     """The whole path. ``levels``: for each level line its pieces, dict(points, normals, tangents
-    (n, 3), closed); ``entry``: entry.Entry. Returns dict(frames, feeds, forces, rapid, lines, zones,
+    (n, 3), closed, and perhaps cut); ``entry``: entry.Entry; ``clearing``: clearing.Clearing. Returns dict(frames, feeds, forces, rapid, lines, zones,
     contacts, contact (n,) bool: pose of a pass, passes, cuts: how often a pass ends where it would turn too
     fast or go back, beside (count of ends without room to come from outside)).
     """
@@ -43,7 +44,9 @@ def assemble(levels, settings, cell, entry):
         if some:
             end = some[-1]["points"][-1]
             backwards = backwards != (settings["order"] == "zigzag")
-    beside = _lead_in(strokes, settings, entry)
+    strokes = clearing.cut(strokes)
+    beside = _lead_in(strokes, settings, entry, clearing)
+    stuck = _lifts(strokes, settings, clearing)
     parts, passes, count = [], [], 0
     for stroke in strokes:
         part = _stroke(stroke, settings, entry)
@@ -56,7 +59,7 @@ def assemble(levels, settings, cell, entry):
         parts.append(part)
     names = ("contacts", "feeds", "forces", "rapid", "contact")
     joined = {name: np.concatenate([p[name] for p in parts]) if parts else [] for name in names}
-    joined.update(passes=passes, cuts=cuts, beside=beside)
+    joined.update(passes=passes, cuts=cuts, beside=beside, stuck=stuck)
     if not parts:
         return joined
     joined["frames"] = frames.base_from_tcp(joined["contacts"], **cell)
@@ -109,7 +112,7 @@ def _strokes(pieces, backwards, end, settings):
         left = turn_limits.limited(piece, settings)
         cuts += max(len(left) - 1, not left)
         for one in left:
-            if _length(one["points"]) >= max(settings["min_length_mm"], 1e-9):
+            if length(one["points"]) >= max(settings["min_length_mm"], 1e-9):
                 result.append({**one, "sense": sense})
     return result, cuts
 
@@ -117,7 +120,7 @@ def _strokes(pieces, backwards, end, settings):
 def _turned(piece):
     """The piece travelled backwards; ``sense`` keeps the belt's travel as it was."""
     reversed_ = {name: piece[name][::-1] for name in ("points", "normals", "tangents")}
-    return {**piece, **reversed_, "sense": -1.0}
+    return {**piece, **reversed_, "sense": -1.0, "cut": piece.get("cut", UNCUT)[::-1]}
 
 
 def _begun_near(piece, place):
@@ -150,6 +153,8 @@ def _joins(before, piece, settings):
     """Whether the pass goes on across the gap: it is short, and the way over it leads on as both ends do."""
     if before["closed"] or piece["closed"]:
         return False
+    if before.get("cut", UNCUT)[1] or piece.get("cut", UNCUT)[0]:
+        return False  # what lies between was left out
     over = piece["points"][0] - before["points"][-1]
     gap = np.linalg.norm(over)
     most = settings["edge_turn_deg"]
@@ -169,21 +174,27 @@ def _degrees(a, b):
 
 def _joined(before, piece):
     names = ("points", "normals", "tangents")
-    return {**before, **{name: np.vstack([before[name], piece[name]]) for name in names}}
+    joined = {name: np.vstack([before[name], piece[name]]) for name in names}
+    return {**before, **joined, "cut": (before.get("cut", UNCUT)[0], piece.get("cut", UNCUT)[1])}
 
 
-def _length(points):
+def length(points):
+    """mm along points (n, 3)."""
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def _run_out(piece, distance):
-    """Straight on beyond both ends; for a negative distance, cut back. None if nothing is left."""
+    """Straight on beyond both ends, but where something is left out; for a negative distance, cut back. None if
+    nothing is left."""
     p, n, t = piece["points"], piece["normals"], piece["tangents"]
     sense = piece.get("sense", 1.0)
     if distance > 0:
-        p = np.vstack([p[0] - distance * sense * t[0], p, p[-1] + distance * sense * t[-1]])
-        n, t = (np.vstack([a[:1], a, a[-1:]]) for a in (n, t))
-    elif distance < 0:
+        for at, cut in zip((0, -1), piece.get("cut", UNCUT)):
+            if not cut:
+                way = (1.0 if at else -1.0) * sense * t[at]
+                piece = _run_on(piece, at, distance * way)
+        return piece
+    if distance < 0:
         s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])
         low, high = -distance, s[-1] + distance
         if high <= low:
@@ -213,7 +224,7 @@ def contact_frames(points, normals, tangents, angle=0.0):
     return result
 
 
-def _lead_in(strokes, settings, entry):
+def _lead_in(strokes, settings, entry, clearing):
     """Runs the strokes on beyond their ends, where there is room; rings overlap. How many ends have none."""
     for stroke in strokes:
         stroke["leads"] = [0.0, 0.0]
@@ -237,7 +248,7 @@ def _lead_in(strokes, settings, entry):
     places, outwards, turned = (np.array(a) for a in (places, outwards, turned))
     turned[:, :3, 3] += settings["offset_mm"] * -turned[:, :3, 2]
     most = _to_neighbours(places, outwards, [strokes[k]["level"] for k, _ in ends], entry.lead)
-    leads = entry.leads(turned, outwards, most)
+    leads = entry.leads(turned, outwards, most, clearing)
     for (k, at), lead, outward in zip(ends, leads, outwards):
         if lead > 0.0:
             strokes[k].update(_run_on(strokes[k], at, lead * outward))
@@ -264,7 +275,7 @@ def _run_on(piece, at, shift):
     grown = {name: piece[name][order] for name in ("points", "normals", "tangents")}
     grown = {name: np.vstack([a, a[-1:]]) for name, a in grown.items()}
     grown["points"][-1] += shift
-    return {name: a[order] for name, a in grown.items()}
+    return {**piece, **{name: a[order] for name, a in grown.items()}}
 
 
 def _overlapping(piece, length):
@@ -302,6 +313,37 @@ def _with_ramps(piece, entry):
     return {**piece, **grown}
 
 
+def _lifts(strokes, settings, clearing):
+    """Gives each stroke its ``lifts``: approach and clearance, mm, of both ends, as far as the wheel has room above
+    them. How many ends have none: there they are as the settings have them."""
+    if not strokes:
+        return 0
+    angle = math.radians(settings["belt_angle_deg"])
+    ends = [
+        contact_frames(*(one[name][[0, -1]] for name in ("points", "normals", "tangents")), angle)
+        for one in strokes
+    ]
+    most = max(settings["clearance_mm"], settings["approach_mm"])
+    free = clearing.heights(np.concatenate(ends), most).reshape(-1, 2)
+    for stroke, room in zip(strokes, free):
+        stroke["lifts"] = [
+            {
+                "approach_mm": min(settings["approach_mm"], height or most),
+                "clearance_mm": min(settings["clearance_mm"], height or most),
+            }
+            for height in room
+        ]
+    return int((free <= 0.0).sum())
+
+
+def between(a, b, shares):
+    """Frames (k, 4, 4) between two (4, 4): straight, turned evenly, at ``shares`` (k,) of the way."""
+    ends = frames.to_quaternions(np.stack([a[:3, :3], b[:3, :3]]))
+    turns = turn_limits.slerp(ends[0], ends[1], shares)
+    places = a[:3, 3] + shares[:, None] * (b[:3, 3] - a[:3, 3])
+    return frames.from_quaternions(places, turns)
+
+
 def _stroke(piece, settings, entry):
     """dict(contacts, feeds, forces, rapid, contact) of one pass with its approach and retract."""
     piece = _with_ramps(piece, entry)
@@ -309,8 +351,9 @@ def _stroke(piece, settings, entry):
     angle = math.radians(settings["belt_angle_deg"])
     on = contact_frames(points, piece["normals"], piece["tangents"], angle)
     sense = piece["sense"]
-    before = _approach(on[0], -sense * piece["tangents"][0], settings)
-    after = _approach(on[-1], sense * piece["tangents"][-1], settings)[::-1]
+    low, high = ({**settings, **one} for one in piece["lifts"])
+    before = _approach(on[0], -sense * piece["tangents"][0], low)
+    after = _approach(on[-1], sense * piece["tangents"][-1], high)[::-1]
     contacts = np.concatenate([before, on, after])
     count, lead = len(on), len(before)
     s = _places(piece["points"])

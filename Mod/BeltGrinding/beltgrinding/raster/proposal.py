@@ -12,7 +12,10 @@ import numpy as np
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job.workpiece import apply_stock, make_field, read_design
+from .clearing import Clearing
+from .passes import contact_frames
 from .raster_path import raster, validate
+from .reachable import GROUND
 from .sheets import curvature_along_and_across, planes_across, surfaces
 
 # ISO 3, R10: radii of wheels and their widths, mm.
@@ -21,7 +24,8 @@ WIDTHS = (6.3, 8.0, 10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0)
 SAMPLES = 4000  # to look at the part
 HOLLOW = 0.98  # of the area: what is more hollow is a groove or a fillet, left to another tool
 FIT = 0.8  # of the hollow's radius: the wheel's
-UNFIT, REACHES, PLACES = 0.02, 0.5, 500  # of the area; mm deep; places that are looked at
+UNFIT, PLACES = 0.02, 500  # of the area; places that are looked at
+AS_GOOD = 0.02  # of the area: a wheel that fits on so much less is as good, if it is larger
 SAGITTA = 0.3  # mm that a rim gives way to a surface hollow across its width
 RIM_SHARE, RIM_MOST = 0.3, 15.0  # the rubber's thickness: of the radius; mm
 FORCE_PER_WIDTH = 1.5  # N/mm
@@ -38,8 +42,8 @@ def propose(job, context=None):
     """Settings for a validated job's design, stock and law.
 
     Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm, force_N, direction (3,), step_over_share,
-    feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what is to come off, area_mm2, length_mm of
-    the passes, notes: list of Fact). Raises InputError, Cancelled.
+    feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what is to come off, area_mm2, ground_share: of it, that
+    the passes touch, length_mm of them, notes: list of Fact). Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
     job, notes = copy.copy(job), []
@@ -90,6 +94,7 @@ def propose(job, context=None):
         "samples": samples,
         "allowance_mm": allowance,
         "area_mm2": area,
+        "ground_share": _ground_share(laid),
         "length_mm": sum(one["length_mm"] for one in laid["passes"]),
         "notes": notes,
     }
@@ -157,44 +162,66 @@ def _wheel(job, shape, field, settings, area, extent, notes, context):
         radius,
     )
     width = max((w for w in WIDTHS if w <= wide), default=WIDTHS[0])
-    while (share := _inside(field, settings["direction"], radius, width)) > UNFIT:
-        smaller = [r for r in RADII if r < radius]
-        if not smaller:
-            notes.append(
-                core.Fact(
-                    "raster.proposed_unfit",
-                    "a wheel of {radius:.3g} mm radius, the smallest that is tried, still reaches into the "
-                    "faces on {share:.0f} % of the area",
-                    radius=radius,
-                    share=100.0 * share,
-                )
+    found, share = _that_fits(job, shape, field, settings, radius, width, context)
+    if share > UNFIT:
+        notes.append(
+            core.Fact(
+                "raster.proposed_unfit",
+                "a wheel of {radius:.3g} mm radius, the best of those that are tried, still does not fit the part "
+                "on {share:.0f} % of the area",
+                radius=found[0],
+                share=100.0 * share,
             )
-            break
-        radius = smaller[-1]
-        width = min(width, max((w for w in WIDTHS if w <= radius), default=WIDTHS[0]))
-    return radius, width
+        )
+    return found
 
 
-def _inside(field, direction, radius, width):
-    """Share of the area where a wheel that stands on a sample has other samples deep inside of it: across a
-    bore, in a corner.
-    """
+def _that_fits(job, shape, field, settings, radius, width, context):
+    """((radius, width) mm of the largest wheel, not above these, that fits the part nearly everywhere on the faces;
+    share of the area where it does not): the radius comes down first. Where none fits, the best one."""
+    frames, areas = _standing(field, settings["direction"])
+    clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
+
+    def unfit(radius, width):
+        machine = copy.deepcopy(job["belt_machine"])
+        _mount(machine, radius, width)
+        trial = clearing.with_wheel({**job, "belt_machine": machine})
+        return float(areas[~trial.fits_upright(frames)].sum() / max(areas.sum(), 1e-12))
+
+    tried = {}
+    for r in sorted((r for r in RADII if r <= radius), reverse=True):
+        size = r, min(width, max((w for w in WIDTHS if w <= r), default=WIDTHS[0]))
+        tried[size] = unfit(*size)
+        if tried[size] <= UNFIT:
+            return size, tried[size]
+    best = _largest(tried)
+    for w in sorted((w for w in WIDTHS if w < best[1]), reverse=True):
+        size = best[0], w
+        tried[size] = unfit(*size)
+        if tried[size] <= UNFIT:
+            return size, tried[size]
+    best = _largest(tried)
+    return best, tried[best]
+
+
+def _largest(tried):
+    """Of {(radius, width): share that does not fit}, the largest that is nearly as good as the best."""
+    least = min(tried.values())
+    return max(size for size, share in tried.items() if share <= least + AS_GOOD)
+
+
+def _standing(field, direction):
+    """(work_from_contact (n, 4, 4) of a wheel that stands on places of the faces and travels along a direction,
+    areas (n,) that each stands for)."""
     points, normals = field.points, field.normals.astype(float)
     across = planes_across(direction, points, normals, field.areas)
     chosen = slice(None, None, max(1, len(points) // PLACES))
-    n, area = normals[chosen], field.areas[chosen].astype(float)
+    n, areas = normals[chosen], field.areas[chosen].astype(float)
     travel = np.cross(across, n)
     length = np.linalg.norm(travel, axis=1)
     sound = length > 0.1  # else the pass is no line there
-    n, area, travel = n[sound], area[sound], travel[sound] / length[sound, None]
-    centre = points[chosen][sound] + radius * n
-    bad = np.zeros(len(n), bool)
-    for i, (c, axis) in enumerate(zip(centre, np.cross(n, travel))):
-        way = points - c
-        beside = way @ axis
-        near = np.einsum("ij,ij->i", way, way) - beside**2 < (radius - REACHES) ** 2
-        bad[i] = bool((near & (np.abs(beside) < 0.5 * width)).any())
-    return float(area[bad].sum() / max(area.sum(), 1e-12))
+    frames = contact_frames(points[chosen][sound], n[sound], travel[sound] / length[sound, None])
+    return frames, areas[sound]
 
 
 def _allowance(job, field, notes, context):
@@ -230,8 +257,15 @@ def _feed(job, settings, laid, allowance):
     ends = 2.0 * len(laid["passes"]) * plunge / settings["approach_feed_mm_s"]
     if settings["entry"] != "direct":
         ends *= settings["touch_force_share"]
-    time = allowance * laid["area_mm2"] / (rate * machine["force_N"]) - ends
+    time = allowance * _ground_share(laid) * laid["area_mm2"] / (rate * machine["force_N"]) - ends
     return length / time if time > 0 else math.inf
+
+
+def _ground_share(laid):
+    """Of the area, what the passes touch."""
+    places = laid["places"]
+    ground = places["state"] == GROUND
+    return float(places["areas"][ground].sum() / places["areas"].sum())
 
 
 def _loaded(laid, force):

@@ -14,8 +14,9 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import passes, path_check, reachable
-from .entry import Entry
+from . import footprint, passes, path_check, reachable
+from .clearing import Clearing
+from .entry import Entry, contact_length
 from .footprint import contact_width
 from .sheets import surfaces
 
@@ -70,30 +71,49 @@ def raster(job, settings, context=None):
     _check_size(job, shape, faces, settings, warnings, context)
     spacing = settings["sampling_mm"] or _sampling(area, settings)
     sheets = surfaces(job, shape, faces, spacing, settings, warnings, context)
-    step_over, width = settings["step_over_mm"], None
+    cell = passes.cell_of(job)
+    lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
+    step_over, seen = settings["step_over_mm"], {"width_mm": None}
     if step_over == 0:
-        width = contact_width(job, settings, sheets, warnings)
-        step_over = settings["step_over_share"] * width
+        plain = contact_width(job, settings, sheets, warnings)
+        seen = {"width_mm": plain, "plain_mm": plain, "length_mm": None}
+        if settings["footprint"] == "solved":
+            # Where the contact is looked at, passes as the plain width wants them are near enough.
+            about = settings["step_over_share"] * plain
+            first = _lines(sheets, settings, about, spacing, lever, [], context)
+            along = footprint.solved(job, shape, faces, first, settings, plain, context)
+            seen = {**seen, **(along or {})}
+        step_over = settings["step_over_share"] * seen["width_mm"]
     finer = _finer(area, step_over)
     if not settings["sampling_mm"] and spacing > finer:
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
-    cell = passes.cell_of(job)
-    lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
     found = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
-    entry = Entry(job, shape, faces, settings, context)
-    result = passes.assemble(found, settings, cell, entry)
+    entry = Entry(job, shape, faces, settings, context, seen.get("length_mm"))
+    clearing = Clearing(job, shape, settings, warnings, context)
+    result = passes.assemble(clearing.cleared(found), settings, cell, entry, clearing)
+    if not result["passes"] and any(found):
+        settings = {**settings, "where_it_collides": "warn"}
+        clearing = Clearing(job, shape, settings, [], context)
+        result = passes.assemble(found, settings, cell, entry, clearing)
+        _tell_no_room(result, warnings)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
             "no pass is left on the faces; lower min_length_mm, or give another direction",
         )
     _tell_ends(result, settings, warnings)
-    result["fit"] = _fit(job, settings, sheets, result, warnings, context)
+    _tell_ways(clearing, result, warnings)
+    result["fit"] = _fit(clearing, settings, result, warnings)
     result.update(
-        step_over_mm=float(step_over), contact_width_mm=width, area_mm2=area, warnings=warnings
+        step_over_mm=float(step_over),
+        contact_width_mm=seen["width_mm"],
+        footprint=seen,
+        area_mm2=area,
+        warnings=warnings,
     )
-    result["reachable"] = reachable.told(job, shape, faces, settings, warnings, context)
+    result["places"] = _places(job, shape, faces, found, result, clearing, settings, context)
+    result["reachable"] = reachable.told(result["places"], settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
     warnings += result["check"]["problems"]
     return result
@@ -201,21 +221,18 @@ def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
     return levels
 
 
-def _fit(job, settings, surfaces, result, warnings, context):
-    wheel = engine_input.engine_arguments(job)[0]
-    points = np.vstack([s["points"] for s in surfaces])
-    normals = np.vstack([s["normals"] for s in surfaces])
+def _fit(clearing, settings, result, warnings):
     fit = np.zeros(len(result["frames"]))
     touching = np.flatnonzero(result["contact"])
-    fit[touching] = core.wheel_fit(wheel, result["contacts"][touching], points, normals, context)
-    tight = np.flatnonzero(fit > settings["fit_mm"])
+    fit[touching] = clearing.depth(result["contacts"][touching])
+    tight = np.flatnonzero(fit > settings["fit_mm"] * (1.0 + 1e-6) + 1e-9)
     if len(tight):
         worst = int(np.argmax(fit))
         warnings.append(
             core.Fact(
                 "raster.wheel_does_not_fit",
-                "the wheel does not fit the faces at {count} poses: at worst its undeformed rim "
-                "reaches {depth:.2f} mm into them at pose {pose}; take a smaller or narrower "
+                "the wheel does not fit the part at {count} poses: at worst its undeformed rim "
+                "reaches {depth:.2f} mm into it at pose {pose}; take a smaller or narrower "
                 "wheel, or another direction",
                 count=len(tight),
                 depth=fit[worst],
@@ -223,6 +240,40 @@ def _fit(job, settings, surfaces, result, warnings, context):
             )
         )
     return fit
+
+
+def _tell_ways(clearing, result, warnings):
+    blocked = clearing.ways_blocked(result["contacts"], result["rapid"])
+    if blocked or result["stuck"]:
+        warnings.append(
+            core.Fact(
+                "raster.ways_blocked",
+                "off the passes the wheel goes through the part: on {ways} straight rapid ways, first to pose {pose}, "
+                "and {stuck} ends of passes have no room above them; lead the robot there by hand, or take a smaller "
+                "wheel",
+                ways=len(blocked),
+                pose=blocked[0] + 1 if blocked else 0,
+                stuck=result["stuck"],
+            )
+        )
+
+
+def _tell_no_room(result, warnings):
+    if result["passes"]:
+        warnings.append(
+            core.Fact(
+                "raster.no_room",
+                "the wheel fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
+                "with it; take a smaller or narrower wheel, or another direction",
+            )
+        )
+
+
+def _places(job, shape, faces, levels, result, clearing, settings, context):
+    """What ``reachable.look`` finds for the passes that were laid."""
+    length = contact_length(job, settings)
+    contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
+    return reachable.look(shape, faces, levels, contacts, clearing, settings, length, context)
 
 
 def program(result, tool="", base=""):
@@ -247,6 +298,7 @@ def summary(result):
         "length_mm": sum(ground),
         "step_over_mm": result["step_over_mm"],
         "contact_width_mm": result["contact_width_mm"],
+        "contact_width_on_cylinder_mm": result["footprint"].get("plain_mm"),
         "area_mm2": result["area_mm2"],
         "ends_without_room": result["beside"],
         "reachable": result["reachable"],

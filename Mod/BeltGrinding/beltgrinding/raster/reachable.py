@@ -1,90 +1,222 @@
-"""Where the wheel gets to at all: the rigid wheel, standing on a place of the faces, reaches nowhere deep into
-the part, whichever of its faces. Bodies of the cell are not looked at."""
+"""What of the faces a raster path grinds, and why the rest stays: place by place."""
 
 import math
 
 import numpy as np
 
-from ..engine import InputError, core
-from ..job import engine_input
+from ..engine import core
 from . import passes
 
-PLACES = 1_500  # on the faces, that are looked at
-SPARE = 4.0  # samples for each of them, from which they are taken
-PART_SAMPLES = 40_000  # of the whole part
-ANGLES = 4  # of the belt's travel, that are tried, over half a turn
+PLACES = 4_000  # on the faces, about
+OTHER_WAYS = 400  # of those that the wheel does not get to, that are looked at with the belt in other directions
+ANGLES = 4  # of the belt's travel, over half a turn
 WHOLE = 0.995  # of the area: what is less is told
+BETTER = 0.02  # of the area, that another direction must gain to be told
+BETWEEN = 0.25  # of the contact's length: from pose to pose, to see what lies under the wheel
+BLOCK = 64  # poses that are looked at together
+LEAST_CONTACT = 0.5  # mm
+
+GROUND, NO_ROOM, NO_PASS = 0, 1, 2  # states of a place
 
 
-def reachable(job, shape, faces, fit_mm=0.5, context=None):
-    """Where the rigid wheel of a validated job gets to on faces (from 0) of a core.Shape, its belt in any of
-    ``ANGLES`` directions about the surface's normal.
+def in_any_direction(clearing, points, normals):
+    """(n,) bool: at places with outward normals (n, 3), mm, the wheel of a clearing.Clearing fits, leaned if it must
+    be, with its belt in one of ``ANGLES`` directions about the normal at least."""
+    other = np.eye(3)[np.argmin(abs(normals), axis=1)]
+    tangents = np.cross(normals, other)
+    fits = np.zeros(len(points), dtype=bool)
+    for k in range(ANGLES):
+        left = np.flatnonzero(~fits)
+        frames = passes.contact_frames(
+            points[left], normals[left], tangents[left], math.pi * k / ANGLES
+        )
+        fits[left] = clearing.fits(frames)
+    return fits
 
-    Returns dict(points, normals (n, 3), areas (n,), faces (n,) from 0, fits (n,) bool: no deeper than
-    ``fit_mm`` in the part anywhere; share: of the area; by_face: {face from 1: share of its area}). Raises
-    InputError, Cancelled.
+
+def look(shape, faces, levels, contacts, clearing, settings, length, context=None):
+    """What a path grinds of faces (from 0) of a core.Shape.
+
+    ``levels``: the passes as they would lie if the wheel fitted everywhere, lists of dict(points, tangents (n, 3));
+    ``contacts``: the poses of each pass that is left, list of (n, 4, 4) work_from_contact; ``clearing``: a
+    clearing.Clearing; ``length``: mm, of the contact along a pass.
+
+    Returns dict(points, normals (n, 3), areas (n,), triangles (m, 3), faces (n,) from 0, fits (n,) bool, state (n,): GROUND,
+    NO_ROOM (the wheel would stand in the part, with its belt as the passes want it, however it is leaned), NO_PASS
+    (it fits, and no pass touches it); share: of the area that the wheel gets to; by_face: {face from 1: the same};
+    another_way: the same share with the belt in whichever direction, about). Raises InputError, Cancelled.
     """
     area = sum(shape.face_area(face) for face in faces)
-    field, _ = core.sample_faces(
-        shape, list(faces), math.sqrt(area / (SPARE * PLACES)), context=context
-    )
-    places = np.unique(np.linspace(0, field.size - 1, PLACES).astype(int))
-    points, normals = field.points[places], field.normals[places].astype(float)
-    fits = fits_at(job, shape, points, normals, fit_mm, context)
-    areas, owner = field.areas[places].astype(float), np.asarray(field.faces)[places]
+    spacing = math.sqrt(area / PLACES)
+    field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
+    points, normals = field.points, field.normals.astype(float)
+    areas, owner = field.areas.astype(float), np.asarray(field.faces)
+    line = np.vstack([piece["points"] for pieces in levels for piece in pieces])
+    ways = np.vstack([piece["tangents"] for pieces in levels for piece in pieces])
+    tangents = _along(ways[nearest(points, line)], normals)
+    angle = math.radians(settings["belt_angle_deg"])
+    fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
+    state = np.where(fits, NO_PASS, NO_ROOM)
+    state[_touched(points, contacts, clearing.wheel, length)] = GROUND
     return {
         "points": points,
         "normals": normals,
         "areas": areas,
+        "triangles": np.asarray(field.triangles),
         "faces": owner,
         "fits": fits,
+        "state": state,
         "share": _share(fits, areas),
         "by_face": {
             int(face) + 1: _share(fits[owner == face], areas[owner == face])
             for face in np.unique(owner)
         },
+        "another_way": _another_way(clearing, points, normals, areas, fits),
     }
 
 
-def fits_at(job, shape, points, normals, fit_mm, context=None):
-    """(n,) bool of places with outward normals (n, 3), mm, as ``reachable`` gives it."""
-    wheel = engine_input.engine_arguments(job)[0]
-    whole = sum(shape.face_area(face) for face in range(shape.face_count))
-    part, _ = core.sample_faces(shape, [], math.sqrt(whole / PART_SAMPLES), context=context)
-    # Both ways: beyond a wall the wheel's centre is behind it, and would see its back only.
-    inside = np.vstack([part.points] * 2)
-    looks = np.vstack([part.normals, -part.normals]).astype(float)
-    other = np.eye(3)[np.argmin(abs(normals), axis=1)]
-    tangents = np.cross(normals, other)
-    fits = np.zeros(len(points), dtype=bool)
-    for k in range(ANGLES):
-        frames = passes.contact_frames(points, normals, tangents, math.pi * k / ANGLES)
-        depth = core.wheel_fit(wheel, frames, inside, looks, context, True)
-        fits |= np.asarray(depth) <= fit_mm
-    return fits
+def _another_way(clearing, points, normals, areas, fits):
+    left = np.flatnonzero(~fits)
+    if not len(left) or clearing.blind:
+        return _share(fits, areas)
+    some = left[np.unique(np.linspace(0, len(left) - 1, OTHER_WAYS).astype(int))]
+    gained = _share(in_any_direction(clearing, points[some], normals[some]), areas[some])
+    return _share(fits, areas) + gained * (1.0 - _share(fits, areas))
 
 
-def told(job, shape, faces, settings, warnings, context):
-    """The share of the area that the wheel gets to, and {face from 1: share} of the faces of which it does not
-    get to all; None where the part cannot be sampled. What it does not get to is warned of."""
-    try:
-        found = reachable(job, shape, faces, settings["fit_mm"], context)
-    except InputError:
-        return None
-    lacking = {face: share for face, share in found["by_face"].items() if share < WHOLE}
-    if found["share"] < WHOLE:
+def _along(ways, normals):
+    """Unit tangents next to ``ways``; any where these stand on the surface."""
+    found = ways - (ways * normals).sum(axis=1)[:, None] * normals
+    steep = np.linalg.norm(found, axis=1) < 1e-3
+    other = np.cross(normals, np.eye(3)[np.argmin(abs(normals), axis=1)])
+    found[steep] = other[steep]
+    return found / np.linalg.norm(found, axis=1)[:, None]
+
+
+def nearest(points, others):
+    """(n,) the number of the nearest of ``others`` (m, 3) to each point (n, 3)."""
+    middle = others.mean(axis=0)
+    points, others = points - middle, others - middle
+    squares = (others**2).sum(axis=1)
+    found = np.empty(len(points), dtype=int)
+    block = max(1, 4_000_000 // len(others))
+    for k in range(0, len(points), block):
+        found[k : k + block] = (squares - 2.0 * points[k : k + block] @ others.T).argmin(axis=1)
+    return found
+
+
+def _touched(points, contacts, wheel, length):
+    """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the ends of a
+    contact of that length (mm) on a plane."""
+    length = max(length, LEAST_CONTACT)
+    gap = length**2 / (8.0 * wheel["radius"])
+    drop = _drop(wheel)
+    touched = np.zeros(len(points), dtype=bool)
+    reach = wheel["width"] + length
+    for poses in contacts:
+        fine = _between(poses, BETWEEN * length)
+        for k in range(0, len(fine), BLOCK):
+            some = fine[k : k + BLOCK]
+            middle = some[:, :3, 3].mean(axis=0)
+            radius = np.linalg.norm(some[:, :3, 3] - middle, axis=1).max() + reach
+            near = np.flatnonzero(
+                ~touched & (((points - middle) ** 2).sum(axis=1) <= radius**2)
+            )
+            if len(near):
+                touched[near] = _under(points[near], some, wheel, drop, gap)
+    return touched
+
+
+def _drop(wheel):
+    """y mm -> how much smaller the wheel's radius is there, mm."""
+    crown, half = wheel["crown_radius"], 0.5 * wheel["width"]
+    y = np.linspace(-half, half, 65)
+    turned = np.array(wheel["profile"], dtype=float).reshape(-1, 2)
+    drop = np.interp(y, turned[:, 0], turned[:, 1]) if len(turned) else np.zeros(len(y))
+    if crown > 0.0:
+        drop = drop + crown - np.sqrt(np.maximum(crown**2 - y**2, 0.0))
+    return y, drop
+
+
+def _under(points, frames, wheel, drop, gap):
+    """(n,) bool of points (n, 3) that lie no farther than ``gap`` from the wheel at one of its frames."""
+    z, y = frames[:, :3, 2], frames[:, :3, 1]
+    centres = frames[:, :3, 3] - wheel["radius"] * z
+    way = points[:, None] - centres[None]
+    beside = np.einsum("nkx,kx->nk", way, y)
+    radial = np.sqrt(np.maximum((way**2).sum(axis=2) - beside**2, 0.0))
+    off = radial - wheel["radius"] + np.interp(beside, *drop)
+    down = np.einsum("nkx,kx->nk", way, z) > 0.0
+    return ((abs(beside) <= 0.5 * wheel["width"]) & (abs(off) <= gap) & down).any(axis=1)
+
+
+def _between(frames, spacing):
+    """Frames (k, 4, 4), no farther apart than ``spacing``; those between are means, nearly rotations."""
+    count = np.ceil(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1) / spacing)
+    count = np.maximum(count, 1).astype(int)
+    i = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)) / count[i]
+    found = frames[i] + share[:, None, None] * (frames[i + 1] - frames[i])
+    return np.concatenate([found, frames[-1:]])
+
+
+def told(seen, settings, warnings):
+    """Adds what ``look`` found to the list of warnings. Returns dict(share, faces: {face from 1: share} of the faces
+    that the wheel does not get to all of, left_out, no_pass: of the area)."""
+    areas = seen["areas"]
+    share, found = seen["share"], seen["by_face"]
+    lacking = {face: value for face, value in found.items() if value < WHOLE}
+    no_pass = _share(seen["state"] == NO_PASS, areas)
+    if share < WHOLE:
+        words = {
+            "share": 100.0 * share,
+            "fit": settings["fit_mm"],
+            "faces": ", ".join(f"Face{k} {100.0 * v:.0f} %" for k, v in list(lacking.items())[:8]),
+        }
+        if settings["where_it_collides"] == "tilt":
+            warnings.append(
+                core.Fact(
+                    "raster.not_reachable_leaned",
+                    "the wheel gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
+                    "{fit:.3g} mm deep in the part, leaned by up to {tilt:.3g} degrees, too; allow more, take a "
+                    "smaller or narrower wheel, or leave it to another tool",
+                    tilt=settings["max_tilt_deg"],
+                    **words,
+                )
+            )
+        else:
+            warnings.append(
+                core.Fact(
+                    "raster.not_reachable",
+                    "the wheel gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
+                    "{fit:.3g} mm deep in the part; let it lean, take a smaller or narrower wheel, or leave it to "
+                    "another tool",
+                    **words,
+                )
+            )
+        if seen["another_way"] > share + BETTER:
+            warnings.append(
+                core.Fact(
+                    "raster.another_way",
+                    "with its belt in other directions the wheel would get to {share:.0f} % of the area: try "
+                    "another belt angle, or passes along another direction",
+                    share=100.0 * seen["another_way"],
+                )
+            )
+    if no_pass > 2.0 * (1.0 - WHOLE):
         warnings.append(
             core.Fact(
-                "raster.not_reachable",
-                "the rigid wheel gets to {share:.0f} % of the area only: elsewhere it would stand more than "
-                "{fit:.3g} mm deep in the part, in whichever direction the belt runs ({faces}); take a smaller or "
-                "narrower wheel there, or leave it to another tool",
-                share=100.0 * found["share"],
-                fit=settings["fit_mm"],
-                faces=", ".join(f"Face{k} {100.0 * v:.0f} %" for k, v in list(lacking.items())[:8]),
+                "raster.no_pass_there",
+                "{share:.1f} % of the area, to which the wheel would get, no pass touches",
+                share=100.0 * no_pass,
             )
         )
-    return {"share": found["share"], "faces": lacking}
+    return {
+        "share": share,
+        "faces": lacking,
+        "left_out": _share(seen["state"] == NO_ROOM, areas),
+        "no_pass": no_pass,
+    }
 
 
 def _share(fits, areas):

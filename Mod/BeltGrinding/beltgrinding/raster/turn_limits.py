@@ -86,7 +86,7 @@ def _backs(points):
     return moves[1:][back].tolist()
 
 
-def _slerp(a, b, shares):
+def slerp(a, b, shares):
     """Quaternions (n, 4) from ``a`` to ``b`` ((4,) or (n, 4)), the shorter way."""
     a, b = np.broadcast_to(a, (len(shares), 4)), np.broadcast_to(b, (len(shares), 4))
     cosine = (a * b).sum(axis=1)
@@ -107,7 +107,7 @@ def _at(points, turns, s, places):
     step = s[i + 1] - s[i]
     share = np.clip((places - s[i]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
     between = points[i] + share[:, None] * (points[i + 1] - points[i])
-    return between, _slerp(turns[i], turns[i + 1], share)
+    return between, slerp(turns[i], turns[i + 1], share)
 
 
 def _spread(points, turns, rate, largest):
@@ -164,7 +164,7 @@ def _blended(points, turns, k, rate, largest):
     if high >= s[-1]:
         after = after[:0]
     share = (s[inside] - low) / (high - low)
-    middle_turns = _slerp(sides[0], sides[1], share)
+    middle_turns = slerp(sides[0], sides[1], share)
     joined = np.vstack([points[before], ends[:1], points[inside], ends[1:], points[after]])
     turned = np.vstack([turns[before], sides[:1], middle_turns, sides[1:], turns[after]])
     points, turns = _plain(joined, _one_side(turned))
@@ -191,5 +191,5 @@ def _filled(points, turns, settings):
     between = points[i] + share[:, None] * (points[i + 1] - points[i])
     return (
         np.vstack([between, points[-1:]]),
-        np.vstack([_slerp(turns[i], turns[i + 1], share), turns[-1:]]),
+        np.vstack([slerp(turns[i], turns[i + 1], share), turns[-1:]]),
     )

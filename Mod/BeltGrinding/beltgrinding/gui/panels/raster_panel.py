@@ -4,9 +4,11 @@ import FreeCADGui as Gui
 
 from ...engine import InputError
 from ...objects import raster_path, stored_facts
+from ...objects.raster_path import NO_PASS, NO_ROOM
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..common.report_language import language
+from ..scene.left_out import COLOURS
 from ..widgets.form import Form
 from .panel import Panel
 
@@ -28,7 +30,13 @@ class RasterPanel(Panel):
         self.body.addWidget(self.passes)
         self.process = self._process()
         self.body.addWidget(self.process)
-        self.body.addWidget(self._posing())
+        self.posing = self._posing()
+        self.body.addWidget(self.posing)
+        self.left = QtGui.QLabel()
+        self.left.setObjectName("rasterLeft")
+        self.left.setWordWrap(True)
+        self.left.hide()
+        self.body.addWidget(self.left)
         self.warnings = QtGui.QListWidget()
         self.warnings.setObjectName("rasterWarnings")
         self.warnings.setWordWrap(True)
@@ -75,6 +83,11 @@ class RasterPanel(Panel):
         form.add("PassSpacing", translate("BeltGrinding", "Spacing"), spacing)
         form.add("StepOver", translate("BeltGrinding", "Step-over (0: by contact)"))
         form.add("StepOverShare", translate("BeltGrinding", "Share of contact width"))
+        footprints = {
+            "solved": translate("BeltGrinding", "Solved along the passes"),
+            "cylinder": translate("BeltGrinding", "On a cylinder"),
+        }
+        form.add("Footprint", translate("BeltGrinding", "Contact width"), footprints)
         form.add("Order", translate("BeltGrinding", "Order"), order)
         form.add("RunOut", translate("BeltGrinding", "Run-out at borders"))
         form.add("Bridge", translate("BeltGrinding", "Bridge gaps up to"))
@@ -108,6 +121,14 @@ class RasterPanel(Panel):
 
     def _posing(self):
         form = Form(self.obj, translate("BeltGrinding", "Poses"))
+        collisions = {
+            "tilt": translate("BeltGrinding", "Tilt, else leave out"),
+            "leave_out": translate("BeltGrinding", "Leave out"),
+            "warn": translate("BeltGrinding", "Only warn"),
+        }
+        form.add("WhereItCollides", translate("BeltGrinding", "Wheel in the part"), collisions)
+        form.add("MaxTilt", translate("BeltGrinding", "Tilt at most"))
+        form.add("FitLimit", translate("BeltGrinding", "Rim in the part at most"))
         form.add("BeltAngle", translate("BeltGrinding", "Belt against pass"))
         form.add("Smoothing", translate("BeltGrinding", "Smooth normals over"))
         form.add("ChordError", translate("BeltGrinding", "Chord error"))
@@ -146,7 +167,7 @@ class RasterPanel(Panel):
         if self.obj.Along != "direction":
             hidden.add("Direction")
         if self.obj.StepOver.Value > 0:
-            hidden.add("StepOverShare")
+            hidden |= {"StepOverShare", "Footprint"}
         self.passes.show_rows(set(self.passes.rows) - hidden)
         unused = {
             "run_on": set(),
@@ -154,6 +175,8 @@ class RasterPanel(Panel):
             "direct": {"Lead", "Ramp", "TouchForceShare", "EntryFeed"},
         }
         self.process.show_rows(set(self.process.rows) - unused[self.obj.Entry])
+        tilts = self.obj.WhereItCollides == "tilt"
+        self.posing.show_rows(set(self.posing.rows) - (set() if tilts else {"MaxTilt"}))
 
     def changed(self):
         self.arrange()
@@ -188,9 +211,24 @@ class RasterPanel(Panel):
             share = translate("BeltGrinding", "Removed while plunging: {:.1f} %")
             text += "\n" + share.format(obj.PlungeShare)
         self.tell(text)
+        self._tell_left()
         self.warnings.clear()
         self.warnings.addItems(stored_facts.sentences(obj, "Warnings", language(), SHOWN_WARNINGS))
         self.warnings.setVisible(bool(obj.Warnings))
+
+    def _tell_left(self):
+        """What the passes leave out, in the colours that it has on the part."""
+        words = (
+            (NO_ROOM, self.obj.LeftOut, translate("BeltGrinding", "the wheel does not fit")),
+            (NO_PASS, self.obj.NoPass, translate("BeltGrinding", "without a pass")),
+        )
+        lines = []
+        for state, share, text in words:
+            if share > 0.0:
+                colour = QtGui.QColor.fromRgbF(*COLOURS[state]).name()
+                lines.append(f'<span style="color:{colour}">\u25a0</span> {share:.1f} % {text}')
+        self.left.setText("<br>".join(lines))
+        self.left.setVisible(bool(lines))
 
     def check(self):
         self.timer.stop()

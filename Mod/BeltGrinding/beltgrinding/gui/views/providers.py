@@ -1,5 +1,6 @@
 """The view providers, by the names under which objects ask for them."""
 
+import numpy as np
 from pivy import coin
 
 from ...engine import InputError
@@ -9,7 +10,7 @@ from ...objects.job_data import child, children
 from ...objects.robot_path import load_program
 from ..common.compat import translate
 from ..common.icons import icon, stale_icon, qicon
-from ..scene import path_arrows, stock_shell
+from ..scene import left_out, path_arrows, stock_shell
 from .coloured_mesh_view import frame_selected
 from .deviation_view import DeviationView
 from .ground_mesh_view import GroundMeshView
@@ -214,7 +215,31 @@ def read_again(obj):
 
 
 class RasterPathView(RobotPathView):
+    """Faces that its passes leave out are coloured."""
+
     ICON = "BeltGrinding_RasterPath"
+
+    def attach(self, view):
+        self.left = coin.SoSwitch()
+        view.RootNode.addChild(self.left)
+        super().attach(view)
+
+    def draw_arrows(self):
+        super().draw_arrows()
+        self.left.whichChild = coin.SO_SWITCH_NONE
+        self.left.removeAllChildren()
+        obj = self.view.Object
+        if not self.view.Visibility or not getattr(obj, "LeftTriangles", None):
+            return
+        corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
+        points = np.array([tuple(point) for point in obj.LeftPoints])
+        self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates)))
+        self.left.whichChild = coin.SO_SWITCH_ALL
+
+    def updateData(self, obj, name):
+        super().updateData(obj, name)
+        if name == "LeftStates" and getattr(self, "view", None) is not None:
+            self.draw_arrows()
 
     def panel(self, obj):
         from ..panels.raster_panel import RasterPanel

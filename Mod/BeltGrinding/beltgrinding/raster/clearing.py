@@ -1,0 +1,342 @@
+"""Where the wheel would stand in the part, or in what is fixed to it: there it is leaned about the belt's travel,
+within a limit, or the pass is left out.
+
+A lean about the wheel's own axis would change nothing of the wheel, so that with the belt along the pass the lean is
+one about the feed. A leaned wheel stands on the pass with the point of its profile that lies deepest then: of a flat
+wheel, its edge.
+"""
+
+import copy
+import math
+
+import numpy as np
+
+from ..cell import collision
+from ..engine import InputError, core
+from ..job import engine_input
+from . import passes
+
+PART_SAMPLES = 400_000  # at most, of the part and of all bodies
+CHORD = 0.2  # of the length on which the wheel stands fit_mm deep in a plane: from sample to sample
+NEAR = 0.2  # mm, of the same for a fit of 0
+STEP = 2.5  # degrees from lean to lean
+CHECKS = 8.0  # of the wheel's radius: that way from place to place that is looked at, along a pass
+LEFT_OUT = 4.0  # leans by the limit, that a place left out is as bad as
+CHANGE = 0.5  # of the same: a change of the lean from place to place, times its share of the limit
+CUT = 25.0  # the same, for a pass that ends, or begins, besides its border
+LIFTS = 8  # heights that are looked at, from a pass to its clearance
+MOST_ON_WAY = 200  # places that are looked at on a rapid way
+MARGIN = 0.5  # of fit_mm, that a leaned wheel keeps
+
+
+class Clearing:
+    """Looks whether the wheel of a validated job fits the part, and leans it where it does not."""
+
+    def __init__(self, job, shape, settings, warnings, context):
+        """``settings``: validated. ``blind`` is true where the part cannot be sampled: then nothing is known, and
+        everything fits. Raises InputError, Cancelled."""
+        self.settings, self.context = settings, context
+        self.fit = settings["fit_mm"]
+        most = settings["max_tilt_deg"] if settings["where_it_collides"] == "tilt" else 0.0
+        count = math.ceil(most / STEP - 1e-9)
+        steps = np.linspace(0.0, math.radians(most), count + 1)[1:]
+        self.leans = np.concatenate([[0.0], np.column_stack([steps, -steps]).ravel()])
+        self._turns = np.array([_about_x(lean) for lean in self.leans])
+        self._mount(job)
+        try:
+            self._points = self._solid(job, shape, warnings)
+            self.blind = False
+        except InputError as error:
+            self.blind = True
+            warnings.append(
+                core.Fact(
+                    "raster.blind",
+                    "whether the wheel fits is not known: the part cannot be sampled ({reason})",
+                    reason=error,
+                )
+            )
+
+    def with_wheel(self, job):
+        """The same with the wheel of another job on the same part."""
+        found = copy.copy(self)
+        found._mount(job)
+        return found
+
+    def _mount(self, job):
+        self.wheel = engine_input.engine_arguments(job)[0]
+        profile = collision.wheel_profile(job["belt_machine"]["wheel"])
+        self._shifts = np.array([_shift(profile, lean) for lean in self.leans])
+        self._check = self.wheel["radius"] / CHECKS
+
+    def _solid(self, job, shape, warnings):
+        """Points (n, 3) of the part and of bodies that are fixed to it."""
+        chord = 2.0 * math.sqrt(2.0 * self.wheel["radius"] * max(self.fit, NEAR))
+        wanted = CHORD * min(chord, self.wheel["width"])
+        area = sum(shape.face_area(face) for face in range(shape.face_count))
+        spacing = max(wanted, math.sqrt(area / PART_SAMPLES))
+        part, _ = core.sample_faces(shape, [], spacing, context=self.context)
+        points = [part.points]
+        for body in job["cell"]["bodies"]:
+            placed = _in_work(job, body)
+            if placed is None:
+                continue
+            mesh = collision.read_body(body, body["name"], warnings, self.context)
+            found = _on_mesh(mesh, wanted, PART_SAMPLES)
+            points.append(found @ placed[:3, :3].T + placed[:3, 3])
+        return np.vstack(points)
+
+    def depth(self, frames):
+        """mm (n,) that the whole undeformed wheel stands in the part, or in bodies fixed to it, at work_from_contact
+        (n, 4, 4)."""
+        if self.blind or not len(frames):
+            return np.zeros(len(frames))
+        return np.asarray(
+            core.wheel_fit(self.wheel, frames, self._points, self._points, self.context, True)
+        )
+
+    def fits_upright(self, frames):
+        """(n,) bool: the wheel fits as it stands, or is not asked to."""
+        if self.settings["where_it_collides"] == "warn":
+            return np.ones(len(frames), dtype=bool)
+        return self.depth(frames) <= self.fit
+
+    def fits(self, frames):
+        """(n,) bool: the wheel fits, at one of its leans at least."""
+        found = self.depth(frames) <= self.fit
+        for k in range(1, len(self.leans)):
+            left = np.flatnonzero(~found)
+            if not len(left):
+                break
+            found[left] = self.depth(self._leaned(frames[left], k)) <= MARGIN * self.fit
+        return found
+
+    def cleared(self, levels):
+        """Pieces of passes by level, as the core's lines (dict(points, normals, tangents (n, 3), closed)), leaned
+        where they must be; what fits no way is cut out. Pieces have a ``cut`` (bool, bool) then: ends that lie
+        beside a place that is left out.
+        """
+        if self.blind or self.settings["where_it_collides"] == "warn":
+            return levels
+        fine = [[_finer(piece, self._check) for piece in pieces] for pieces in levels]
+        flat = [one for pieces in fine for one in pieces]
+        depths = self._by_piece(flat, 0)
+        wrong = [k for k, depth in enumerate(depths) if (depth > self.fit).any()]
+        tried = {k: [depths[k]] for k in wrong}
+        for lean in range(1, len(self.leans)):
+            for k, depth in zip(wrong, self._by_piece([flat[k] for k in wrong], lean)):
+                tried[k].append(depth)
+        result, number = [], 0
+        for pieces in levels:
+            kept = []
+            for piece in pieces:
+                if number in tried:
+                    kept += self._chosen(piece, flat[number], np.array(tried[number]))
+                else:
+                    kept.append(piece)
+                number += 1
+            result.append(kept)
+        return result
+
+    def cut(self, strokes):
+        """Strokes (as ``passes.assemble`` has them) without the poses at which the wheel does not fit: what
+        smoothing, bridges and run-outs have changed."""
+        if self.blind or self.settings["where_it_collides"] == "warn" or not strokes:
+            return strokes
+        result = []
+        for stroke, depth in zip(strokes, self._by_piece(strokes, 0)):
+            fits = depth <= self.fit * (1.0 + 1e-9)
+            if fits.all():
+                result.append(stroke)
+                continue
+            for run in _runs(fits):
+                part = _part(stroke, run)
+                if passes.length(part["points"]) >= max(self.settings["min_length_mm"], 1e-9):
+                    result.append(part)
+        return result
+
+    def heights(self, frames, most):
+        """mm (n,), up to ``most``, to which the wheel can be lifted along its normal from frames (n, 4, 4) of passes'
+        ends without standing in the part; 0: not at all."""
+        free, going = np.zeros(len(frames)), np.ones(len(frames), dtype=bool)
+        for share in np.arange(1, LIFTS + 1) / LIFTS:
+            some = np.flatnonzero(going)
+            lifted = frames[some].copy()
+            lifted[:, :3, 3] -= share * most * lifted[:, :3, 2]
+            going[some] = self.fits_upright(lifted)
+            free[going] = share * most
+        return free
+
+    def ways_blocked(self, contacts, rapid):
+        """Numbers of the poses that are reached rapidly and through the part, on straight ways; ``contacts``
+        (n, 4, 4), ``rapid`` (n,) bool of the way to each pose."""
+        found = []
+        moves = np.flatnonzero(rapid[1:])
+        frames, owner = [], []
+        for k in moves:
+            a, b = contacts[k], contacts[k + 1]
+            way = np.linalg.norm(b[:3, 3] - a[:3, 3])
+            count = min(max(math.ceil(way / self._check), 1), MOST_ON_WAY)
+            frames.append(passes.between(a, b, np.arange(1, count + 1) / count))
+            owner += [k + 1] * count
+        if not frames:
+            return found
+        deep = self.depth(np.concatenate(frames)) > self.fit
+        return np.unique(np.array(owner)[deep]).tolist()
+
+    def _by_piece(self, pieces, lean):
+        """mm (n,) of each piece."""
+        if not pieces:
+            return []
+        frames = [self._frames(piece) for piece in pieces]
+        found = self.depth(self._leaned(np.concatenate(frames), lean))
+        return np.split(found, np.cumsum([len(f) for f in frames])[:-1])
+
+    def _frames(self, piece):
+        settings = self.settings
+        points = piece["points"] + settings["offset_mm"] * piece["normals"]
+        angle = math.radians(settings["belt_angle_deg"])
+        return passes.contact_frames(points, piece["normals"], piece["tangents"], angle)
+
+    def _leaned(self, frames, lean):
+        """Frames by the lean of that number, standing on the same places."""
+        if lean == 0:
+            return frames
+        found = frames.copy()
+        found[:, :3, :3] = frames[:, :3, :3] @ self._turns[lean]
+        found[:, :3, 3] -= found[:, :3, :3] @ self._shifts[lean]
+        return found
+
+    def _chosen(self, piece, fine, depths):
+        """The pieces that are left of one; ``depths`` (leans, n)."""
+        limits = np.where(np.arange(len(self.leans)) == 0, self.fit, MARGIN * self.fit)
+        states = _cheapest(depths <= limits[:, None], self.leans)
+        result = []
+        runs = _runs(states >= 0)
+        for run in runs:
+            mine = states[run]
+            kept = fine["own"][run]
+            kept[[0, -1]] = True
+            changes = np.flatnonzero(np.diff(mine))
+            kept[changes] = kept[changes + 1] = True
+            places = run[kept]
+            part = self._posed({**piece, **_part(fine, places)}, mine[kept])
+            whole = len(run) == len(states)
+            part["closed"] = piece["closed"] and whole
+            part["cut"] = (run[0] > 0, run[-1] < len(states) - 1)
+            part.pop("own", None)
+            result.append(part)
+        if piece["closed"] and len(runs) > 1 and runs[0][0] == 0 and runs[-1][-1] == len(states) - 1:
+            last = result.pop()  # the beginning of a ring is no end
+            for name in ("points", "normals", "tangents"):
+                result[0][name] = np.vstack([last[name][:-1], result[0][name]])
+            result[0]["cut"] = (True, True)
+        return result
+
+    def _posed(self, piece, states):
+        """The piece with its poses leaned as ``states`` (n,) say."""
+        if not states.any():
+            return piece
+        frames, angle = self._frames(piece), math.radians(self.settings["belt_angle_deg"])
+        for lean in np.unique(states[states > 0]):
+            mine = states == lean
+            frames[mine] = self._leaned(frames[mine], lean)
+        normals = -frames[:, :3, 2]
+        tangents = frames[:, :3, 0] * math.cos(angle) - frames[:, :3, 1] * math.sin(angle)
+        points = frames[:, :3, 3] - self.settings["offset_mm"] * normals
+        return {**piece, "points": points, "normals": normals, "tangents": tangents}
+
+
+def _about_x(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def _shift(profile, lean):
+    """From the leaned contact frame's origin to the point of the wheel's profile (n, 2; y, radius) that lies deepest
+    in the work, in that frame, mm."""
+    y, drop = profile[:, 0], np.interp(0.0, profile[:, 0], profile[:, 1]) - profile[:, 1]
+    k = int(np.argmax(y * math.sin(lean) - drop * math.cos(lean)))
+    return np.array([0.0, y[k], -drop[k]])
+
+
+def _in_work(job, body):
+    """work_from_(the body's frame) 4 x 4; None for a body that moves against the part, or with the wheel."""
+    if body["frame"] == "part":
+        return np.eye(4)
+    cell = passes.cell_of(job)
+    if body["frame"] == "base" and cell["holding"] == "tool_in_hand":
+        return np.linalg.inv(cell["base_from_work"])
+    if body["frame"] == "tool" and cell["holding"] == "part_in_hand":
+        return np.linalg.inv(cell["tcp_from_work"])
+    return None
+
+
+def _on_mesh(mesh, spacing, most):
+    """Points (n, 3) on a core.TriangleMesh, ``spacing`` mm apart at most, if they are not more than ``most``."""
+    p = np.asarray(mesh.vertices, dtype=float)[np.asarray(mesh.triangles)]
+    longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
+    while True:
+        parts = np.maximum(np.ceil(longest / spacing), 1).astype(int)
+        if (parts.astype(float) ** 2).sum() <= 2.0 * most or (parts == 1).all():
+            break
+        spacing *= 1.5
+    found = []
+    for count in np.unique(parts):
+        i, j = np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij")
+        inside = i + j <= count
+        a, b = i[inside] / count, j[inside] / count
+        weights = np.column_stack([1.0 - a - b, a, b])
+        found.append(np.einsum("kc,ncx->nkx", weights, p[parts == count]).reshape(-1, 3))
+    return np.vstack(found)
+
+
+def _finer(piece, spacing):
+    """The piece with points no farther apart than ``spacing`` mm; ``own`` (n,) bool: those that it had."""
+    p = piece["points"]
+    count = np.maximum(np.ceil(np.linalg.norm(np.diff(p, axis=0), axis=1) / spacing), 1).astype(int)
+    i = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)) / count[i]
+    found = {"closed": piece["closed"], "own": np.append(share == 0.0, True)}
+    for name in ("points", "normals", "tangents"):
+        a = piece[name]
+        between = a[i] + share[:, None] * (a[i + 1] - a[i])
+        found[name] = np.vstack([between, a[-1:]])
+        if name != "points":
+            found[name] /= np.linalg.norm(found[name], axis=1)[:, None]
+    return found
+
+
+def _part(piece, places):
+    """The piece's points of these numbers."""
+    return {**piece, **{name: piece[name][places] for name in ("points", "normals", "tangents")}}
+
+
+def _runs(wanted):
+    """Index arrays of the runs in which ``wanted`` (n,) is true."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(int)))
+    return [np.arange(a, b) for a, b in zip(edges[::2], edges[1::2])]
+
+
+def _cheapest(fits, leans):
+    """For each place the number of its lean, -1: left out, such that the sum of the costs is least (dynamic
+    programming over the places). ``fits``: (leans, n) bool."""
+    scale = max(abs(leans).max(), 1e-9)
+    costs = np.append(abs(leans) / scale, LEFT_OUT)
+    change = CHANGE * abs(leans[:, None] - leans[None]) / scale
+    between = np.full((len(costs), len(costs)), CUT)
+    between[:-1, :-1] = change * 2.0
+    between[-1, -1] = 0.0
+    count = fits.shape[1]
+    usable = np.vstack([fits, np.ones(count, dtype=bool)])
+    total = np.where(usable[:, 0], costs, np.inf)
+    came = np.zeros((count, len(costs)), dtype=int)
+    for k in range(1, count):
+        ways = total[:, None] + between
+        came[k] = ways.argmin(axis=0)
+        total = ways[came[k], np.arange(len(costs))] + np.where(usable[:, k], costs, np.inf)
+    states = np.zeros(count, dtype=int)
+    states[-1] = int(np.argmin(total))
+    for k in range(count - 1, 0, -1):
+        states[k - 1] = came[k, states[k]]
+    states[states == len(leans)] = -1
+    return states

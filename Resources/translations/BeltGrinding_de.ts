@@ -784,10 +784,6 @@
         <translation>was das Band tat, als JSON</translation>
     </message>
     <message>
-        <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together</source>
-        <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs derer u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen</translation>
-    </message>
-    <message>
         <source>what the robot carries (gripper, tool), in the tool frame</source>
         <translation>was der Roboter trägt (Greifer, Werkzeug), im Werkzeugsystem</translation>
     </message>
@@ -1194,6 +1190,10 @@
     <message>
         <source>where the wheel would stand in the part, or in a body fixed to it. tilt: it leans about the belt&apos;s travel as far as it must, up to max_tilt_deg, and the place is left out where that is not enough; leave_out: without leaning; warn: the pass is laid all the same</source>
         <translation>wo die Scheibe im Teil stünde oder in einem Körper, der fest mit ihm ist. tilt: sie neigt sich um den Bandlauf so weit wie nötig, bis max_tilt_deg, und die Stelle bleibt aus, wo das nicht reicht; leave_out: ohne Neigung; warn: die Bahn wird trotzdem gelegt</translation>
+    </message>
+    <message>
+        <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together; auto: of these ways, and of several directions, the one that leaves least, by a coarse simulation of each</source>
+        <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs denen u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen; auto: von diesen Wegen und mehreren Richtungen dem, der am wenigsten übrig lässt, nach einer groben Simulation von jedem</translation>
     </message>
 </context>
 <context>
@@ -3535,6 +3535,14 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>without a pass</source>
         <translation>ohne Bahn</translation>
+    </message>
+    <message>
+        <source>Comparing ways of the passes</source>
+        <translation>Wege der Bahnen werden verglichen</translation>
+    </message>
+    <message>
+        <source>Find the best way</source>
+        <translation>Besten Weg suchen</translation>
     </message>
 </context>
 <context>

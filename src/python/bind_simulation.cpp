@@ -102,6 +102,17 @@ py::array_t<Scalar> column(const std::vector<StepRecord>& steps, Get get) {
     return own(std::move(values));
 }
 
+py::dict pose_contact_to_dict(const PoseContact& contact) {
+    py::dict d = contact_to_dict(contact.grid, contact.solution);
+    d["approach"] = contact.placed + contact.solution.approach;
+    d["beyond_placed"] = contact.solution.approach;
+    d["commanded_force"] = contact.commanded;
+    d["gap"] = cells(contact.grid, contact.gap);
+    d["coverage"] = cells(contact.grid, contact.coverage);
+    d["model"] = contact.model;
+    return d;
+}
+
 }  // namespace
 
 namespace {
@@ -324,14 +335,7 @@ void bind_simulation(py::module_& m) {
                 const py::gil_scoped_release release;
                 contact = contact_at(field, path, pose, *elastic, o.process, o.resolution);
             }
-            py::dict d = contact_to_dict(contact.grid, contact.solution);
-            d["approach"] = contact.placed + contact.solution.approach;
-            d["beyond_placed"] = contact.solution.approach;
-            d["commanded_force"] = contact.commanded;
-            d["gap"] = cells(contact.grid, contact.gap);
-            d["coverage"] = cells(contact.grid, contact.coverage);
-            d["model"] = contact.model;
-            return d;
+            return pose_contact_to_dict(contact);
         },
         py::arg("field"), py::arg("path"), py::arg("pose"), py::arg("wheel"), py::arg("compliance"),
         py::arg("options"),
@@ -339,6 +343,32 @@ void bind_simulation(py::module_& m) {
         "(ny, nx) mm with the wheel `beyond_placed` mm short of where it stands, coverage (ny, "
         "nx); "
         "approach: mm along z from the programmed pose.");
+    m.def(
+        "contacts_at",
+        [](const HeightField& field, const ToolPath& path, const std::vector<std::size_t>& poses,
+           const py::dict& wheel, const py::dict& compliance, const py::dict& options,
+           const RunContext* context) {
+            const SimulationOptions o = options_from(wheel, options);
+            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
+            std::vector<std::optional<PoseContact>> found;
+            {
+                const py::gil_scoped_release release;
+                found = contacts_at(field, path, poses, *elastic, o.process, o.resolution,
+                                    context != nullptr ? *context : RunContext());
+            }
+            py::list result;
+            for (const auto& one : found) {
+                if (one)
+                    result.append(pose_contact_to_dict(*one));
+                else
+                    result.append(py::none());
+            }
+            return result;
+        },
+        py::arg("field"), py::arg("path"), py::arg("poses"), py::arg("wheel"),
+        py::arg("compliance"), py::arg("options"), py::arg("context") = nullptr,
+        "contact_at for several poses (numbers from 0), each by itself: a list, None where the "
+        "wheel does not touch.");
 }
 
 }  // namespace beltgrinding::python

@@ -216,6 +216,60 @@ def test_an_even_raster_grinds_evenly():
     assert np.ptp(result.field.height[middle]) < 0.06
 
 
+def groove():
+    """A block of 120 x 80 x 20 mm with a groove of 12 mm width and 8 mm depth along y, its floor's number last."""
+    x = [0.0, 54.0, 54.0, 66.0, 66.0, 120.0]
+    z = [0.0, 0.0, -8.0, -8.0, 0.0, 0.0]
+    points = np.array([[a, b, c] for b in (0.0, 80.0) for a, c in zip(x, z)], np.float32)
+    triangles = []
+    for k in range(5):
+        triangles += [[k, k + 1, k + 7], [k, k + 7, k + 6]]
+    mesh = core.TriangleMesh(points, np.array(triangles, np.uint32))
+    return core.shape_from_mesh(mesh).write_brep()
+
+
+def test_the_best_way_goes_where_the_wheel_fits_in():
+    brep = groove()
+    shape = core.Shape.from_brep(brep, "groove")
+    floors = [
+        k + 1
+        for k in range(shape.face_count)
+        if (core.sample_faces(shape, [k], 3.0)[0].points[:, 2] < -7.9).all()
+    ]
+    machine = {"wheel": {"radius_mm": 20, "width_mm": 10}, "force_N": 20}
+    job = job_of(brep, design={"brep": brep, "faces": floors}, belt_machine=machine)
+    found = raster.raster(job, {"along": "auto", "step_over_mm": 1.5})
+    assert found["along"] != "auto" and not found["no_room"]
+    steps = np.diff(found["contacts"][on_pass(found, 0), :3, 3], axis=0)
+    assert np.abs(steps[:, 1]).sum() > 10 * np.abs(steps[:, 0]).sum()  # along the groove
+    (chosen,) = [one for one in found["tried"] if one["chosen"]]
+    across = [one for one in found["tried"] if one.get("no_room")]
+    assert across and not chosen["no_room"] and chosen["untouched"] < 0.35
+    least = min(one["residual"] for one in found["tried"] if not one.get("no_room", True))
+    assert chosen["residual"] <= 1.1 * least + 1e-12
+    # The same as when it is asked for by name.
+    named = raster.raster(
+        job, {"along": found["along"], "direction": found["direction"], "step_over_mm": 1.5}
+    )
+    assert named["contacts"] == pytest.approx(found["contacts"])
+    assert json.loads(json.dumps(raster.summary({**found, "warnings": []})))["tried"]
+
+
+def test_the_solved_width_is_that_of_the_contact_there():
+    """On a cylinder both ways to the width agree; on a part of two curvatures the solved one keeps to the narrow."""
+    radius = 50.0
+    round_ = plate(bend=lambda x: math.sqrt(radius**2 - (x - 50.0) ** 2) if abs(x - 50) < 40 else 30.0)
+    settings = {"along": "direction", "direction": [0, 1, 0], "smoothing_mm": 3.0}
+    solved = raster.raster(job_of(round_), settings)
+    plain = raster.raster(job_of(round_), {**settings, "footprint": "cylinder"})
+    assert plain["footprint"]["plain_mm"] == plain["contact_width_mm"]
+    assert solved["contact_width_mm"] <= np.median(solved["footprint"]["widths"])
+    flat = raster.raster(job_of(plate()), ALONG_X)
+    assert flat["contact_width_mm"] == pytest.approx(flat["footprint"]["plain_mm"], rel=0.12)
+    assert np.ptp(flat["footprint"]["widths"]) < 1.0
+    assert flat["contact_length_mm"] == pytest.approx(np.median(flat["footprint"]["lengths"]), abs=1)
+
+
 def test_a_wheel_that_does_not_fit_is_warned_of():
     def bend(x):
         return 30.0 - math.sqrt(30.0**2 - min(abs(x - 50.0), 25.0) ** 2)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 
+import FreeCAD
 import numpy as np
 
 from ..engine import InputError
@@ -10,7 +11,7 @@ from ..job import load as jobs
 from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster
 from ..raster.reachable import GROUND, NO_PASS, NO_ROOM  # noqa: F401 (the window takes its words from here)
-from . import job_data, job_object, stored_facts
+from . import job_data, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
 from .properties import Key, Output, add_keys, add_outputs, to_job
@@ -119,12 +120,21 @@ class RasterPath(RobotPath):
 
 
 def generate(obj):
-    """Lays the passes of a raster path if what they come from has changed. Raises InputError."""
+    """Lays the passes of a raster path if what they come from has changed; for the way ``auto``, the best one is put
+    in its place. Raises InputError, Cancelled."""
     job, settings, digest = _inputs(obj)
     if digest == obj.Inputs:
         return
     job["design"]["brep"] = OwnBrep(job["design"]["brep"].exportBrepToString())
-    found = raster.raster(jobs.validate(job), settings)
+    job = jobs.validate(job)
+    if settings.get("along") == "auto":
+        text = FreeCAD.Qt.translate("BeltGrinding", "Comparing ways of the passes")
+        found = waiting.wait(lambda context: raster.raster(job, settings, context), text)
+        # From now on the way that was found is the user's: it changes no more by itself.
+        obj.Along, obj.Direction = found["along"], FreeCAD.Vector(*found["direction"])
+        digest = _inputs(obj)[2]
+    else:
+        found = raster.raster(job, settings)
     set_arrays(obj, found)
     obj.Language = "raster"
     obj.PassCount = len(found["passes"])

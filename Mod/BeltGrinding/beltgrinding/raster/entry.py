@@ -26,18 +26,14 @@ class Entry:
     """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
     control."""
 
-    def __init__(self, job, shape, faces, settings, context, length=None):
-        """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes, if that is
-        known. Raises InputError, Cancelled."""
+    def __init__(self, job, shape, faces, settings, context, length):
+        """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes. Raises InputError, Cancelled."""
         self.settings, self.context = settings, context
         machine = job["belt_machine"]
         self.wheel = engine_input.engine_arguments(job)[0]
         under_force = machine["control"] == "force"
         self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
-        length = length or contact_length(job, settings)
-        if settings["entry"] == "direct":
-            length = 0.0
-        self._half = 0.5 * length
+        self._half = 0.5 * length if settings["entry"] != "direct" else 0.0
         self.lead = 0.0
         if settings["entry"] == "run_on":
             self.lead = settings["lead_mm"] or self._half

@@ -89,12 +89,9 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     )
     angle = -math.radians(settings["belt_angle_deg"])
     sizes = []
-    for pose in range(len(frames)):
-        try:
-            found = core.contact_at(field, path, pose, wheel, compliance, options)
-        except InputError:
-            continue  # the wheel touches nothing there
-        if _whole(found):
+    poses = list(range(len(frames)))
+    for found in core.contacts_at(field, path, poses, wheel, compliance, options, context):
+        if found is not None and _whole(found):
             sizes.append(contact_extents.extents(found, angle))
     if len(sizes) < FEWEST:
         return None

@@ -14,7 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import footprint, passes, path_check, reachable
+from . import direction, footprint, passes, path_check, reachable
 from .clearing import Clearing
 from .entry import Entry, contact_length
 from .footprint import contact_width
@@ -58,15 +58,46 @@ def raster(job, settings, context=None):
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
     work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
-    mm how deep the undeformed wheel reaches into the faces, cuts, beside (as ``passes.assemble``), step_over_mm, contact_width_mm (None
-    if the step-over was given), contact_length_mm, area_mm2, warnings). Raises InputError, Cancelled.
+    mm how deep the undeformed wheel reaches into the part, cuts, beside, stuck (as ``passes.assemble``),
+    step_over_mm, contact_width_mm (None if the step-over was given), contact_length_mm, footprint (as
+    ``footprint.solved``, and plain_mm, the width on a cylinder), area_mm2, no_room (bool: the wheel fits nowhere, and
+    the passes lie as if it did), along, direction: the way that they go, tried (as ``direction.best``), places (as
+    ``reachable.look``), reachable (as ``reachable.told``), check (as ``path_check.check``), warnings). Raises
+    InputError, Cancelled.
     """
     settings = validate(settings)
     context = context or core.RunContext()
-    warnings = []
     shape = read_design(job["design"], context)
     chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)
     faces = _checked_faces(chosen, shape)
+
+    def lay(settings, context):
+        return _laid(job, shape, faces, settings, [], context)[0]
+
+    tried = []
+    if settings["along"] == "auto":
+        way, tried = direction.best(job, shape, faces, settings, lay, context)
+        settings = {**settings, **way}
+    warnings = []
+    result, levels, clearing = _laid(job, shape, faces, settings, warnings, context)
+    _tell_ends(result, settings, warnings)
+    _tell_ways(clearing, result, warnings)
+    result["fit"] = _fit(clearing, settings, result, warnings)
+    contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
+    length = result["contact_length_mm"]
+    result["places"] = reachable.look(
+        shape, faces, levels, contacts, clearing, settings, length, context
+    )
+    result["reachable"] = reachable.told(result["places"], settings, warnings)
+    result["check"] = path_check.check(job, settings, result, context)
+    warnings += result["check"]["problems"]
+    result.update(along=settings["along"], direction=settings["direction"], tried=tried)
+    result["warnings"] = warnings
+    return result
+
+
+def _laid(job, shape, faces, settings, warnings, context):
+    """(the path on faces (from 0) of a core.Shape, along a way that is given; its level lines; the Clearing)."""
     area = sum(shape.face_area(face) for face in faces)
     _check_size(job, shape, faces, settings, warnings, context)
     spacing = settings["sampling_mm"] or _sampling(area, settings)
@@ -88,35 +119,32 @@ def raster(job, settings, context=None):
     if not settings["sampling_mm"] and spacing > finer:
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
-    found = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
-    entry = Entry(job, shape, faces, settings, context, seen.get("length_mm"))
+    levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
+    length = seen.get("length_mm") or contact_length(job, settings)
+    entry = Entry(job, shape, faces, settings, context, length)
     clearing = Clearing(job, shape, settings, warnings, context)
-    result = passes.assemble(clearing.cleared(found), settings, cell, entry, clearing)
-    if not result["passes"] and any(found):
-        settings = {**settings, "where_it_collides": "warn"}
-        clearing = Clearing(job, shape, settings, [], context)
-        result = passes.assemble(found, settings, cell, entry, clearing)
+    result = passes.assemble(clearing.cleared(levels), settings, cell, entry, clearing)
+    no_room = not result["passes"] and any(levels)
+    if no_room:
+        clearing = Clearing(
+            job, shape, {**settings, "where_it_collides": "warn"}, [], context
+        )
+        result = passes.assemble(levels, settings, cell, entry, clearing)
         _tell_no_room(result, warnings)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
             "no pass is left on the faces; lower min_length_mm, or give another direction",
         )
-    _tell_ends(result, settings, warnings)
-    _tell_ways(clearing, result, warnings)
-    result["fit"] = _fit(clearing, settings, result, warnings)
     result.update(
         step_over_mm=float(step_over),
         contact_width_mm=seen["width_mm"],
+        contact_length_mm=length,
         footprint=seen,
         area_mm2=area,
-        warnings=warnings,
+        no_room=no_room,
     )
-    result["places"] = _places(job, shape, faces, found, result, clearing, settings, context)
-    result["reachable"] = reachable.told(result["places"], settings, warnings)
-    result["check"] = path_check.check(job, settings, result, context)
-    warnings += result["check"]["problems"]
-    return result
+    return result, levels, clearing
 
 
 def _tell_ends(result, settings, warnings):
@@ -269,13 +297,6 @@ def _tell_no_room(result, warnings):
         )
 
 
-def _places(job, shape, faces, levels, result, clearing, settings, context):
-    """What ``reachable.look`` finds for the passes that were laid."""
-    length = contact_length(job, settings)
-    contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
-    return reachable.look(shape, faces, levels, contacts, clearing, settings, length, context)
-
-
 def program(result, tool="", base=""):
     """The path as a ``programs.Program``, for ``programs.write_program``. ``tool``, ``base``: what its
     frames are, in words.
@@ -300,6 +321,9 @@ def summary(result):
         "contact_width_mm": result["contact_width_mm"],
         "contact_width_on_cylinder_mm": result["footprint"].get("plain_mm"),
         "area_mm2": result["area_mm2"],
+        "along": result["along"],
+        "direction": result["direction"] if result["along"] == "direction" else None,
+        "tried": [{**one, "error": str(one["error"]) if one.get("error") else None} for one in result["tried"]],
         "ends_without_room": result["beside"],
         "reachable": result["reachable"],
         "check": {k: v for k, v in result["check"].items() if k != "problems"},

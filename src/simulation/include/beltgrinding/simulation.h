@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -148,5 +149,13 @@ struct PoseContact {
 PoseContact contact_at(const HeightField& field, const ToolPath& path, std::size_t pose,
                        const ContactModel& model, const ProcessSettings& process,
                        const Resolution& resolution = {});
+
+/// The same at several poses, each by itself; nothing where the wheel does not touch.
+std::vector<std::optional<PoseContact>> contacts_at(const HeightField& field, const ToolPath& path,
+                                                    const std::vector<std::size_t>& poses,
+                                                    const ContactModel& model,
+                                                    const ProcessSettings& process,
+                                                    const Resolution& resolution = {},
+                                                    const RunContext& context = {});
 
 }  // namespace beltgrinding

@@ -2,7 +2,7 @@
 
 import FreeCADGui as Gui
 
-from ...engine import InputError
+from ...engine import Cancelled, InputError
 from ...objects import raster_path, stored_facts
 from ...objects.raster_path import NO_PASS, NO_ROOM
 from ..common.compat import QtCore, QtGui, translate
@@ -66,6 +66,7 @@ class RasterPanel(Panel):
             "u": translate("BeltGrinding", "u of each face"),
             "v": translate("BeltGrinding", "v of each face"),
             "direction": translate("BeltGrinding", "A direction"),
+            "auto": translate("BeltGrinding", "Find the best way"),
         }
         spacing = {
             "lines": translate("BeltGrinding", "Lines of the surface"),
@@ -185,12 +186,22 @@ class RasterPanel(Panel):
     def compute(self):
         """Lays the passes and shows what came out."""
         self.timer.stop()
+        way = self.obj.Along
         try:
             raster_path.generate(self.obj)
         except InputError as error:
             self.tell(error_text(error), True)
             return
+        except Cancelled:  # without a comparison
+            self.obj.Along = "u"
+            self.passes.refresh("Along")
+            self.changed()
+            return
         obj = self.obj
+        if way == "auto":
+            self.passes.refresh("Along")
+            self.direction.refresh()
+            self.arrange()
         obj.recompute()
         text = translate(
             "BeltGrinding", "{} passes {:.2f} mm apart, {:.0f} mm; {} poses, {:.1f} s"
@@ -268,6 +279,13 @@ class DirectionField(QtGui.QWidget):
         if all(line.hasAcceptableInput() for line in self.fields):
             self.obj.Direction = tuple(float(line.text()) for line in self.fields)
             self.changed()
+
+    def refresh(self):
+        """Shows the property as it is."""
+        for line, value in zip(self.fields, self.obj.Direction):
+            line.blockSignals(True)
+            line.setText(f"{value:g}")
+            line.blockSignals(False)
 
     def take_edge(self):
         """The direction from end to end of the edge that is selected."""

@@ -237,9 +237,13 @@ class Form(QtGui.QGroupBox):
                 widget.setVisible(name in names)
 
     def refresh(self, name):
-        """Shows a number that was set from elsewhere."""
+        """Shows a value that was set from elsewhere."""
         widget, value = self.rows[name][1], getattr(self.obj, name)
-        if self.obj.getTypeIdOfProperty(name) in QUANTITIES:
+        if isinstance(widget, QtGui.QComboBox):
+            widget.blockSignals(True)
+            widget.setCurrentIndex(self.obj.getEnumerationsOfProperty(name).index(value))
+            widget.blockSignals(False)
+        elif self.obj.getTypeIdOfProperty(name) in QUANTITIES:
             show_quantity(widget, value)
         else:
             widget.setText(f"{value:g}")

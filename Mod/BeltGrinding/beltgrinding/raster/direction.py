@@ -1,0 +1,107 @@
+"""Which way the passes go best: each way is laid and ground by the simulator on a coarse field, and compared."""
+
+import math
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job import engine_input
+from . import path_check
+
+SAMPLES = 6_000  # on the faces, about
+ACROSS = 4.0  # of them across the contact's width, if that is finer
+MOST_SAMPLES = 40_000
+STEP = 0.3  # of the contact's length: from step to step of the simulation
+AS_EVEN = 0.1  # of the residual: so near the best, the quickest is taken
+ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the faces are longest
+FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
+
+
+def candidates(field):
+    """Settings of the ways that are tried, for a core.HeightField of the faces: list of dict(along, direction)."""
+    points, weight = field.points, field.areas[:, None].astype(float)
+    middle = (points * weight).sum(axis=0) / weight.sum()
+    spread = ((points - middle) * weight).T @ (points - middle)
+    mean = (field.normals * weight).sum(axis=0) / weight.sum()
+    _, axes = np.linalg.eigh(spread)
+    ways = [{"along": "u"}, {"along": "v"}]
+    if np.linalg.norm(mean) > FLAT:
+        normal = mean / np.linalg.norm(mean)
+        first = axes[:, -1] - (axes[:, -1] @ normal) * normal
+        if np.linalg.norm(first) < 0.1:
+            first = axes[:, -2] - (axes[:, -2] @ normal) * normal
+        first /= np.linalg.norm(first)
+        second = np.cross(normal, first)
+        turns = [math.radians(angle) for angle in ANGLES]
+        directions = [math.cos(a) * first + math.sin(a) * second for a in turns]
+    else:  # round about: along its axes
+        directions = list(axes.T[::-1])
+    return ways + [
+        {"along": "direction", "direction": (np.round(d, 6) + 0.0).tolist()} for d in directions
+    ]
+
+
+def best(job, shape, faces, settings, lay, context=None):
+    """Lays passes every way of ``candidates`` and takes the one that leaves least.
+
+    ``lay(settings, context)`` gives a path with contacts, feeds and so on as ``raster_path.raster`` does. Returns
+    (settings of the best way, list of dict(along, direction, residual, untouched, duration_s, poses, chosen, no_room,
+    error: why there is no path) of all ways). residual: standard deviation of the removal over the area, by its mean:
+    what stays of an allowance that comes off on the mean; untouched: of the area; duration_s: at constant feed.
+    Raises InputError (no way gives a path), Cancelled.
+    """
+    context = context or core.RunContext()
+    area = sum(shape.face_area(face) for face in faces)
+    coarse, _ = core.sample_faces(shape, list(faces), math.sqrt(area / SAMPLES), context=context)
+    tried, ways, first = [], candidates(coarse), None
+    for way in ways:
+        one = {**way, "chosen": False}
+        tried.append(one)
+        try:
+            path = lay({**settings, **way, "footprint": "cylinder"}, context)
+        except InputError as error:
+            first = first or error
+            one["error"] = error
+            continue
+        one.update(_judged(job, shape, faces, area, settings, path, context))
+    laid = [k for k, one in enumerate(tried) if "residual" in one]
+    if not laid:
+        raise first
+    # One that only lies as if the wheel fitted is worse than any other.
+    laid = [k for k in laid if not tried[k]["no_room"]] or laid
+    least = min(tried[k]["residual"] for k in laid)
+    near = [k for k in laid if tried[k]["residual"] <= (1.0 + AS_EVEN) * least]
+    chosen = min(near, key=lambda k: tried[k]["duration_s"])
+    tried[chosen]["chosen"] = True
+    return ways[chosen], tried
+
+
+def _judged(job, shape, faces, area, settings, path, context):
+    """What a path leaves, by the simulator: dict(residual, untouched, duration_s, no_room, poses)."""
+    width = path["contact_width_mm"] or path["step_over_mm"]
+    spacing = max(min(math.sqrt(area / SAMPLES), width / ACROSS), math.sqrt(area / MOST_SAMPLES))
+    field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
+    wheel, compliance, law, options = engine_input.engine_arguments(job)
+    step = STEP * max(path["contact_length_mm"], spacing)
+    options.update(
+        force=settings["force_N"] or options["force"],
+        max_travel=max(step, options["max_travel"]),
+        max_angle=max(2.0 * step / wheel["radius"], options["max_angle"]),
+        must_touch=False,
+        shifted_laws=[],
+        trace=True,
+    )
+    names = "feeds", "forces", "rapid", "lines", "zones"
+    tool_path = core.ToolPath(frames=path["contacts"], **{name: path[name] for name in names})
+    core.simulate(field, tool_path, wheel, compliance, law, options, context)
+    removed, weight = -field.height.astype(float), field.areas.astype(float)
+    mean = (removed * weight).sum() / weight.sum()
+    spread = math.sqrt(((removed - mean) ** 2 * weight).sum() / weight.sum())
+    untouched = weight[field.trace["peak_pressure"] <= 0].sum() / weight.sum()
+    return {
+        "residual": spread / mean if mean > 0 else math.inf,
+        "untouched": float(untouched),
+        "duration_s": float(path_check.motion(path)["time"].sum()),
+        "no_room": path["no_room"],
+        "poses": len(path["frames"]),
+    }

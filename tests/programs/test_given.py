@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from beltgrinding.base import frames, schemas
-from beltgrinding.job.inputs import files
+from beltgrinding.engine import InputError
+from beltgrinding.job.inputs import digests, files
 from beltgrinding.job.load import validate
+from beltgrinding.job.poses import program_arrays
 from beltgrinding.programs import given
 from beltgrinding.programs.patch.patch import patch
 from beltgrinding.programs.program import ProgramError
@@ -218,6 +220,50 @@ def test_a_job_names_its_values_and_hashes_them(tmp_path):
     assert len(read_program(path, values=job["programs"][0]["values"]).motions) == 1
     with pytest.raises(ProgramError, match="elsewhere"):
         read_program(path, values=tmp_path / "elsewhere.json")
+
+
+def inline(values):
+    return {
+        "schema": 1,
+        "design": {"file": "a.step"},
+        "programs": [{"file": "p.src", "values": values}],
+    }
+
+
+def test_a_job_may_hold_the_values_itself(tmp_path):
+    beside = {"XP1": frame(*SIDE)}  # is not looked at then
+    write(tmp_path, "p.src", "DEF p()\nLIN XP1\nLIN {X H}\nEND\n", variables=beside)
+    job = validate(inline({"variables": {"xp1": frame(*TOP), "H": 7, "NONE": 1}}), tmp_path)
+    assert files(job)[1:] == [tmp_path / "p.src"]  # the values are part of the job's own digest
+    told = []
+    arrays = program_arrays(job["programs"][0], "p", told)
+    np.testing.assert_allclose(arrays["frames"][0], matrix(TOP), atol=1e-9)
+    np.testing.assert_allclose(arrays["frames"][1][:3, 3], (7, *TOP[1:3]), atol=1e-9)
+    assert [str(one) for one in told if "NONE" in str(one)]
+    other = validate(inline({"variables": {"XP1": frame(*SIDE), "H": 7}}), tmp_path)
+    assert digests(job)[0]["sha256"] != digests(other)[0]["sha256"]
+
+
+@pytest.mark.parametrize(
+    "values, word",
+    [
+        ({"base": {}}, "base"),
+        ({"bases": {"UFRAME 1": {"x_mm": 1}}}, "bases.UFRAME 1"),
+        ({"tools": {"T": frame(1e308, 0, 0, 0, 0, 0)}}, "tools.T.x_mm"),
+        ({"variables": {"R[5]": "12"}}, "variables.R[5]"),
+        ({"variables": {"R[5]": 1e300}}, "R[5]"),
+        ({"variables": {"R[5]": 1, "r[5]": 2}}, "twice"),
+    ],
+)
+def test_bad_values_in_a_job_are_refused_by_their_key(tmp_path, values, word):
+    with pytest.raises(InputError) as error:
+        validate(inline(values), tmp_path)
+    assert "programs.0.values" in str(error.value) and word in str(error.value)
+
+
+def test_values_of_a_job_are_a_file_or_an_object(tmp_path):
+    with pytest.raises(InputError, match="programs.0.values"):
+        validate(inline([1]), tmp_path)
 
 
 def test_the_schema_is_published():

@@ -59,8 +59,11 @@ def _program_files(path, values=None):
     from ..programs.registry import values_beside
 
     path = Path(path)
-    values = Path(values) if values else values_beside(path)
-    given = [values] if os.path.isfile(values) else []
+    if isinstance(values, dict):  # part of the job, and so of its own digest
+        given = []
+    else:
+        values = Path(values) if values else values_beside(path)
+        given = [values] if os.path.isfile(values) else []
     try:
         near = sorted(path.parent.iterdir())
     except OSError:

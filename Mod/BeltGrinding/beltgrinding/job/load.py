@@ -37,8 +37,12 @@ def validate(job, folder="."):
     for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
         if "file" in holder:
             holder["file"] = absolute(folder, holder["file"])
-    for program in job["programs"]:
-        if "values" in program:
+    for i, program in enumerate(job["programs"]):
+        if isinstance(program.get("values"), dict):
+            from ..programs.registry import check_values
+
+            check_values(program["values"], f"programs.{i}.values")
+        elif "values" in program:
             program["values"] = absolute(folder, program["values"])
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:

@@ -22,17 +22,24 @@ def beside(path):
 
 
 def load(file):
-    """dict of bases, tools: {words: 4 x 4 in mm}, and variables: {NAME: number, truth value or six of a
-    frame}, names in upper case without blanks; what is null is not given. Raises ProgramError naming the
-    file and the key.
-    """
+    """What a values file holds, as ``parsed`` gives it. Raises ProgramError naming the file and the key."""
     file = Path(file)
     try:
-        data = schemas.checked(schemas.read_json(file), schemas.schema("values"), "values")
+        data = schemas.read_json(file)
     except InputError as error:
-        if str(file) not in str(error):
-            error = in_file(error, file)
-        raise ProgramError.of(error) from None
+        raise ProgramError.of(in_file(error, file)) from None
+    return parsed(data, file)
+
+
+def parsed(data, source):
+    """dict of bases, tools: {words: 4 x 4 in mm}, and variables: {NAME: number, truth value or six of a
+    frame}, names in upper case without blanks; what is null is not given. ``data``: as in a values file;
+    ``source``: the file, or the key of a job, that holds it. Raises ProgramError naming it and the key.
+    """
+    try:
+        data = schemas.checked(data, schemas.schema("values"), "values")
+    except InputError as error:
+        raise ProgramError.of(in_file(error, source)) from None
     found = {"bases": {}, "tools": {}, "variables": {}}
     for kind in ("bases", "tools"):
         for words, frame in data.get(kind, {}).items():
@@ -49,7 +56,7 @@ def load(file):
                 raise ProgramError(
                     "programs.values.too_large",
                     "{file}: variables: {name} is too large a number",
-                    file=shown(file),
+                    file=shown(source),
                     name=name[:60],
                 )
         key = "".join(name.upper().split())
@@ -57,7 +64,7 @@ def load(file):
             raise ProgramError(
                 "programs.values.twice",
                 "{file}: variables: {name} is there twice",
-                file=shown(file),
+                file=shown(source),
                 name=name[:60],
             )
         if value is not None:

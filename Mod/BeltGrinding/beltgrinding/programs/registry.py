@@ -11,6 +11,7 @@ from ..base.regular_files import open_regular, shown
 from ..engine import InputError
 from . import given
 from .given import beside as values_beside  # noqa: F401
+from .given import parsed as check_values  # noqa: F401
 from .program import MAX_FILE, ProgramError
 from .readers.roll import lay
 from .readers.speeds import told as told_problems  # noqa: F401
@@ -125,8 +126,8 @@ def read_program(path, roll=None, roll_direction=None, values=None):
     """The Program in the file ``path``, its language told by the suffix. Raises ProgramError.
 
     ``roll``, ``roll_direction``: how poses with a free roll are turned (``readers.roll.lay``).
-    ``values``: the file of what only the controller knows (``given``); without it NAME.values.json beside
-    the program, where there is one.
+    ``values``: what only the controller knows (``given``), as the content of a values file (a dict) or as
+    its file; without it NAME.values.json beside the program, where there is one.
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
@@ -143,8 +144,11 @@ def read_program(path, roll=None, roll_direction=None, values=None):
         open_regular(path, MAX_FILE).close()  # before anything looks at what lies beside it
     except InputError as error:
         raise ProgramError.of(error) from None
-    side = Path(values) if values else given.beside(path)
-    known = given.load(side) if values or os.path.isfile(side) else None
+    if isinstance(values, dict):
+        side, known = Path("values"), given.parsed(values, "values")
+    else:
+        side = Path(values) if values else given.beside(path)
+        known = given.load(side) if values or os.path.isfile(side) else None
     with _no_collection():
         if known and reader in WITH_VARIABLES:
             program = reader(path, known["variables"])

@@ -13,7 +13,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.job import load as jobs, poses  # noqa: E402
 from beltgrinding.raster import passes, path_check, raster_path, turn_limits  # noqa: E402
-from beltgrinding.raster.entry import contact_length  # noqa: E402
+from beltgrinding.raster.footprint import plane_extents  # noqa: E402
 from beltgrinding.simulation import run as runs  # noqa: E402
 
 SETTINGS = raster_path.validate({})
@@ -183,7 +183,7 @@ def test_next_to_nothing_is_removed_by_plunging():
 def test_the_force_grows_over_the_border():
     job = job_of(holed(0.0))
     laid = raster_path.raster(job, X)
-    length = contact_length(job, raster_path.validate(X))
+    length = plane_extents(job, raster_path.validate(X))[0]
     assert 3 < length < 20
     for one in laid["passes"]:
         on = slice(one["first"], one["last"] + 1)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..engine import InputError, core
-from ..job import contact_extents, engine_input
+from ..job import engine_input
 
 SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for room
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
@@ -112,18 +112,3 @@ class Entry:
             return np.ones(len(places))
         near = np.minimum(places / first, (length - places) / last)
         return touch + (1.0 - touch) * np.clip(near, 0.0, 1.0)
-
-
-def contact_length(job, settings):
-    """Length of the contact along the pass, mm: on a plane, of the job's wheel under the force. Under
-    position control, the wheel's chord at the depth of the allowance, and a little more."""
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    machine = job["belt_machine"]
-    if machine["control"] != "force" or compliance["model"] == "geometric":
-        depth = max(job["stock"].get("allowance_mm", 0.0), 0.1)
-        return 2.0 * math.sqrt(2.0 * wheel["radius"] * 1.5 * depth)
-    force = settings["force_N"] or options["force"]
-    # The pass lies at -belt_angle to the belt's travel.
-    angle = -math.radians(settings["belt_angle_deg"])
-    spacing = options["contact_spacing"]
-    return contact_extents.single(wheel, {"shape": "plane"}, compliance, force, spacing, angle)[0]

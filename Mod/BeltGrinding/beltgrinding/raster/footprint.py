@@ -62,6 +62,21 @@ def contact_width(job, settings, surfaces, warnings):
         return width_on({"shape": "plane"})
 
 
+def plane_extents(job, settings):
+    """(mm along the pass, mm across it) of the contact on a plane, of the job's wheel under the force. Under
+    position control, the wheel's chord at the depth of the allowance, and a little more, and its width."""
+    wheel, compliance, _, options = engine_input.engine_arguments(job)
+    machine = job["belt_machine"]
+    if machine["control"] != "force" or compliance["model"] == "geometric":
+        depth = max(job["stock"].get("allowance_mm", 0.0), 0.1)
+        return 2.0 * math.sqrt(2.0 * wheel["radius"] * 1.5 * depth), wheel["width"]
+    force = settings["force_N"] or options["force"]
+    # The pass lies at -belt_angle to the belt's travel.
+    angle = -math.radians(settings["belt_angle_deg"])
+    spacing = options["contact_spacing"]
+    return contact_extents.single(wheel, {"shape": "plane"}, compliance, force, spacing, angle)
+
+
 def solved(job, shape, faces, levels, settings, plain, context=None):
     """The contact at ``PLACES`` places along passes, solved by the simulator's own contact on the design as it is
     sampled, without stock.

@@ -16,8 +16,8 @@ from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
 from . import direction, footprint, passes, path_check, reachable
 from .clearing import Clearing
-from .entry import Entry, contact_length
-from .footprint import contact_width
+from .entry import Entry
+from .footprint import contact_width, plane_extents
 from .sheets import surfaces
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
@@ -84,9 +84,8 @@ def raster(job, settings, context=None):
     _tell_ways(clearing, result, warnings)
     result["fit"] = _fit(clearing, settings, result, warnings)
     contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
-    length = result["contact_length_mm"]
     result["places"] = reachable.look(
-        shape, faces, levels, contacts, clearing, settings, length, context
+        shape, faces, levels, contacts, clearing, settings, _extents(job, settings, result), context
     )
     result["reachable"] = reachable.told(result["places"], settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
@@ -120,7 +119,7 @@ def _laid(job, shape, faces, settings, warnings, context):
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
-    length = seen.get("length_mm") or contact_length(job, settings)
+    length = seen.get("length_mm") or plane_extents(job, settings)[0]
     entry = Entry(job, shape, faces, settings, context, length)
     clearing = Clearing(job, shape, settings, warnings, context)
     result = passes.assemble(clearing.cleared(levels), settings, cell, entry, clearing)
@@ -145,6 +144,14 @@ def _laid(job, shape, faces, settings, warnings, context):
         no_room=no_room,
     )
     return result, levels, clearing
+
+
+def _extents(job, settings, result):
+    """(mm along, mm across the belt's travel) of the contact."""
+    along = result["contact_length_mm"]
+    across = result["contact_width_mm"] or plane_extents(job, settings)[1]
+    turn = abs(math.sin(math.radians(settings["belt_angle_deg"])))
+    return (along, across) if turn < math.sqrt(0.5) else (across, along)
 
 
 def _tell_ends(result, settings, warnings):

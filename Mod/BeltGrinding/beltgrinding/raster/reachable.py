@@ -34,12 +34,12 @@ def in_any_direction(clearing, points, normals):
     return fits
 
 
-def look(shape, faces, levels, contacts, clearing, settings, length, context=None):
+def look(shape, faces, levels, contacts, clearing, settings, extents, context=None):
     """What a path grinds of faces (from 0) of a core.Shape.
 
     ``levels``: the passes as they would lie if the wheel fitted everywhere, lists of dict(points, tangents (n, 3));
     ``contacts``: the poses of each pass that is left, list of (n, 4, 4) work_from_contact; ``clearing``: a
-    clearing.Clearing; ``length``: mm, of the contact along a pass.
+    clearing.Clearing; ``extents``: (length, width) mm of the contact along and across the belt's travel.
 
     Returns dict(points, normals (n, 3), areas (n,), triangles (m, 3), faces (n,) from 0, fits (n,) bool, state (n,): GROUND,
     NO_ROOM (the wheel would stand in the part, with its belt as the passes want it, however it is leaned), NO_PASS
@@ -57,7 +57,7 @@ def look(shape, faces, levels, contacts, clearing, settings, length, context=Non
     angle = math.radians(settings["belt_angle_deg"])
     fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
     state = np.where(fits, NO_PASS, NO_ROOM)
-    state[_touched(points, contacts, clearing.wheel, length)] = GROUND
+    state[_touched(points, contacts, clearing.wheel, extents)] = GROUND
     return {
         "points": points,
         "normals": normals,
@@ -105,12 +105,12 @@ def nearest(points, others):
     return found
 
 
-def _touched(points, contacts, wheel, length):
+def _touched(points, contacts, wheel, extents):
     """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the ends of a
-    contact of that length (mm) on a plane."""
-    length = max(length, LEAST_CONTACT)
-    gap = length**2 / (8.0 * wheel["radius"])
+    contact of these extents (mm) on a plane."""
+    length, width = max(extents[0], LEAST_CONTACT), min(extents[1], wheel["width"])
     drop = _drop(wheel)
+    gap = max(length**2 / (8.0 * wheel["radius"]), float(np.interp(0.5 * width, *drop)))
     touched = np.zeros(len(points), dtype=bool)
     reach = wheel["width"] + length
     for poses in contacts:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..engine import InputError, core
 from ..job import engine_input
-from . import path_check
+from . import around, path_check
 
 SAMPLES = 6_000  # on the faces, about
 ACROSS = 4.0  # of them across the contact's width, if that is finer
@@ -25,6 +25,8 @@ def candidates(field):
     mean = (field.normals * weight).sum(axis=0) / weight.sum()
     _, axes = np.linalg.eigh(spread)
     ways = [{"along": "u"}, {"along": "v"}]
+    if around.Axis(points, field.normals.astype(float), field.areas).turn >= around.CLOSED:
+        ways.append({"along": "rings"})
     if np.linalg.norm(mean) > FLAT:
         normal = mean / np.linalg.norm(mean)
         first = axes[:, -1] - (axes[:, -1] @ normal) * normal
@@ -54,6 +56,8 @@ def best(job, shape, faces, settings, lay, context=None):
     area = sum(shape.face_area(face) for face in faces)
     coarse, _ = core.sample_faces(shape, list(faces), math.sqrt(area / SAMPLES), context=context)
     tried, ways, first = [], candidates(coarse), None
+    if settings["order"] == "helix":
+        ways = [{"along": "rings"}]
     for way in ways:
         one = {**way, "chosen": False}
         tried.append(one)

@@ -14,7 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import direction, footprint, passes, path_check, reachable
+from . import around, direction, footprint, passes, path_check, reachable
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import contact_width, plane_extents
@@ -27,6 +27,7 @@ STEP_SAMPLES = 4  # between neighbouring passes, at least
 POSE_SAMPLES = 3  # between neighbouring poses, at least
 WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
 MOST_POSES = 300_000
+ONE_LEVEL = 1.5
 UNCOVERED = 0.01  # of the area; more is warned of
 
 
@@ -218,7 +219,10 @@ def _finer(area, step_over):
 
 def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
     """Pieces of passes of all surfaces: list of levels, each a list of the core's lines."""
-    levels = []
+    levels, laid = [], settings["spacing"]
+    if settings["order"] == "helix":
+        surfaces, laid = around.helix(surfaces, step_over), "lines"
+        step_over *= ONE_LEVEL  # of a period, which is no more than a step-over
     for surface in surfaces:
         found = core.raster_lines(
             surface["points"],
@@ -227,7 +231,7 @@ def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
             surface["scalars"],
             period=surface["period"],
             step_over=step_over,
-            spacing=settings["spacing"],
+            spacing=laid,
             weld=0.0 if surface["name"] else WELD * spacing,
             split_turn=math.radians(settings["edge_turn_deg"]),
             smoothing=settings["smoothing_mm"],

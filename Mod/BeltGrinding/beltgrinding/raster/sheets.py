@@ -4,6 +4,7 @@ are the passes. No FreeCAD in here."""
 import numpy as np
 
 from ..engine import InputError, core
+from . import around
 
 PARALLEL = 0.05  # sine of an angle below which two directions count as one
 
@@ -12,20 +13,23 @@ def surfaces(job, shape, faces, spacing, settings, warnings, context):
     """What passes are laid on: each face by itself for u and v, all together for a direction. List
     of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
     """
-    field, report = core.sample_faces(
-        shape, faces, spacing, 1.0, 0, context, settings["along"] != "direction"
-    )
+    along = settings["along"]
+    field, report = core.sample_faces(shape, faces, spacing, 1.0, 0, context, along in ("u", "v"))
     warnings += report["warnings"]
     points, normals, triangles = field.points, field.normals.astype(float), field.triangles
     if len(triangles) == 0:
         raise InputError(
             "raster.faces_too_small", "the faces are too small for the sampling; lower sampling_mm"
         )
-    if settings["along"] == "direction":
+    if along == "rings":
+        found = around.sheet(points, normals, triangles, field.areas, warnings)
+        whole = {"points": points, "normals": normals, "triangles": triangles}
+        return [{**whole, **found, "period": 0.0, "name": ""}]
+    if along == "direction":
         scalars = points @ planes_across(settings["direction"], points, normals, field.areas)
         whole = {"points": points, "normals": normals, "triangles": triangles}
         return [{**whole, "scalars": scalars[triangles], "period": 0.0, "name": ""}]
-    axis = 1 if settings["along"] == "u" else 0  # what does not change along a pass
+    axis = 1 if along == "u" else 0  # what does not change along a pass
     scalars = report["parameters"][:, axis].copy()
     scalars[(field.flags & core.DEGENERATE) > 0] = np.nan  # a pole
     owner, result = field.faces[triangles[:, 0]], []

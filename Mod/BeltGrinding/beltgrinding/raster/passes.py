@@ -191,8 +191,7 @@ def _run_out(piece, distance):
     if distance > 0:
         for at, cut in zip((0, -1), piece.get("cut", UNCUT)):
             if not cut:
-                way = (1.0 if at else -1.0) * sense * t[at]
-                piece = _run_on(piece, at, distance * way)
+                piece = _run_on(piece, at, distance * _outward({**piece, "sense": sense}, at))
         return piece
     if distance < 0:
         s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])
@@ -243,7 +242,7 @@ def _lead_in(strokes, settings, entry, clearing):
             one["points"][[at]], one["normals"][[at]], one["tangents"][[at]], angle
         )
         places.append(one["points"][at])
-        outwards.append((1.0 if at else -1.0) * one["sense"] * one["tangents"][at])
+        outwards.append(_outward(one, at))
         turned.append(frame[0])
     places, outwards, turned = (np.array(a) for a in (places, outwards, turned))
     turned[:, :3, 3] += settings["offset_mm"] * -turned[:, :3, 2]
@@ -254,6 +253,20 @@ def _lead_in(strokes, settings, entry, clearing):
             strokes[k].update(_run_on(strokes[k], at, lead * outward))
             strokes[k]["leads"][at] = float(lead)
     return int((leads <= 0.0).sum())
+
+
+def _outward(piece, at):
+    """Unit vector in which the pass goes on beyond its first (0) or last (-1) point: the belt's way, unless a turn
+    that is spread along the pass has it lag behind the way of the points."""
+    tangent = (1.0 if at else -1.0) * piece["sense"] * piece["tangents"][at]
+    ways = np.diff(piece["points"], axis=0)[:: 1 if at else -1] * (1.0 if at else -1.0)
+    moves = ways[np.linalg.norm(ways, axis=1) > STILL]
+    if not len(moves):
+        return tangent
+    normal = piece["normals"][at]
+    way = moves[-1] - (moves[-1] @ normal) * normal
+    length = np.linalg.norm(way)
+    return way / length if length > STILL and way @ tangent < AHEAD * length else tangent
 
 
 def _to_neighbours(places, outwards, levels, lead):

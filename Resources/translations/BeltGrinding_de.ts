@@ -844,10 +844,6 @@
         <translation>Arbeit der Anpresskraft bei Bandgeschwindigkeit, J</translation>
     </message>
     <message>
-        <source>zigzag: every other pass backwards; one_way: all passes in one direction</source>
-        <translation>zigzag: jede zweite Bahn rückwärts; one_way: alle Bahnen in einer Richtung</translation>
-    </message>
-    <message>
         <source>contacts whose pressure did not settle</source>
         <translation>Kontakte, deren Druck nicht konvergierte</translation>
     </message>
@@ -1192,8 +1188,20 @@
         <translation>wo die Scheibe im Teil stünde oder in einem Körper, der fest mit ihm ist. tilt: sie neigt sich um den Bandlauf so weit wie nötig, bis max_tilt_deg, und die Stelle bleibt aus, wo das nicht reicht; leave_out: ohne Neigung; warn: die Bahn wird trotzdem gelegt</translation>
     </message>
     <message>
-        <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together; auto: of these ways, and of several directions, the one that leaves least, by a coarse simulation of each</source>
-        <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs denen u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen; auto: von diesen Wegen und mehreren Richtungen dem, der am wenigsten übrig lässt, nach einer groben Simulation von jedem</translation>
+        <source>how far round the points of the region, mm; 0: half the contact&apos;s width</source>
+        <translation>wie weit um die Punkte des Gebiets, mm; 0: die halbe Kontaktbreite</translation>
+    </message>
+    <message>
+        <source>passes only near these points of the faces; none: everywhere</source>
+        <translation>Bahnen nur bei diesen Punkten der Flächen; keine: überall</translation>
+    </message>
+    <message>
+        <source>what the passes follow. u, v: the lines of each face&apos;s own parametrisation along which u or v grows; direction: the cuts of parallel planes through all faces together; rings: round all faces together, which close about an axis; auto: of these ways, and of several directions, the one that leaves least, by a coarse simulation of each</source>
+        <translation>wem die Bahnen folgen. u, v: den Linien der eigenen Parametrisierung jeder Fläche, längs denen u oder v wächst; direction: den Schnitten paralleler Ebenen durch alle Flächen zusammen; rings: rund um alle Flächen zusammen, die sich um eine Achse schließen; auto: von diesen Wegen und mehreren Richtungen dem, der am wenigsten übrig lässt, nach einer groben Simulation von jedem</translation>
+    </message>
+    <message>
+        <source>zigzag: every other pass backwards; one_way: all passes in one direction; helix: rings are one pass, which goes on by a step-over at each turn (surfaces of revolution)</source>
+        <translation>zigzag: jede zweite Bahn rückwärts; one_way: alle Bahnen in einer Richtung; helix: die Ringe sind eine Bahn, die mit jeder Drehung um einen Bahnabstand weitergeht (Drehflächen)</translation>
     </message>
 </context>
 <context>
@@ -3543,6 +3551,42 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Find the best way</source>
         <translation>Besten Weg suchen</translation>
+    </message>
+    <message>
+        <source>Everywhere</source>
+        <translation>Überall</translation>
+    </message>
+    <message>
+        <source>Helix</source>
+        <translation>Wendel</translation>
+    </message>
+    <message>
+        <source>Lays passes on the chosen cluster, where too much is left</source>
+        <translation>Legt Bahnen auf das gewählte Cluster, wo zu viel steht</translation>
+    </message>
+    <message>
+        <source>Only what is left</source>
+        <translation>Nur was noch steht</translation>
+    </message>
+    <message>
+        <source>Raster path here...</source>
+        <translation>Rasterbahn hier...</translation>
+    </message>
+    <message>
+        <source>Region</source>
+        <translation>Gebiet</translation>
+    </message>
+    <message>
+        <source>Round the faces</source>
+        <translation>Rund um die Flächen</translation>
+    </message>
+    <message>
+        <source>everywhere on the faces</source>
+        <translation>überall auf den Flächen</translation>
+    </message>
+    <message>
+        <source>near {} points within {:.0f} mm</source>
+        <translation>bei {} Punkten innerhalb von {:.0f} mm</translation>
     </message>
 </context>
 <context>

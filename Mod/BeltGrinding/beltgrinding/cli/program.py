@@ -48,6 +48,28 @@ def add(commands):
     raster.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
+    raster.add_argument(
+        "--region", metavar="RESULT", help="passes only where this result has too much left"
+    )
+    raster.add_argument(
+        "--above", type=float, metavar="MM", help="more is too much; without: above its tolerance"
+    )
+    raster.add_argument(
+        "--cluster",
+        type=int,
+        action="append",
+        default=[],
+        metavar="N",
+        help="in place of --above: a cluster of the result's verdict, by its number",
+    )
+    raster.add_argument(
+        "--then",
+        nargs=2,
+        action="append",
+        default=[],
+        metavar=("JOB", "OUTPUT"),
+        help="a job with another wheel, and the program for where the wheels before do not get to",
+    )
     _add_frames(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
@@ -192,12 +214,12 @@ def _program(arguments):
 
 def _raster(arguments):
     from ..base import schemas
-    from ..base.files import cannot_be_written
     from ..engine import InputError
-    from ..programs.writers.writer import write_program
-    from ..raster import raster_path as raster
+    from ..raster import in_turn, raster_path as raster, region
 
-    outputs.check(arguments, [arguments.output], [arguments.job, arguments.settings])
+    written = [arguments.output, *(file for _, file in arguments.then)]
+    read = [arguments.job, arguments.settings, *(job for job, _ in arguments.then)]
+    outputs.check(arguments, written, read, arguments.region)
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
     if not isinstance(settings, dict):
         raise InputError(
@@ -213,16 +235,40 @@ def _raster(arguments):
             settings[key] = json.loads(value)
         except ValueError:
             settings[key] = value
+    if arguments.region:
+        points, _ = region.of_result(arguments.region, arguments.above, arguments.cluster)
+        settings["region_points"] = points.tolist()
+    elif arguments.above is not None or arguments.cluster:
+        raise InputError("cli.region_of_what", "--above and --cluster need --region RESULT")
     job = raster.load_job(arguments.job)
-    found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
+    if not arguments.then:
+        found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
+        _write_raster(arguments, arguments.output, job, found)
+        print(json.dumps(raster.summary(found)))
+        return
+    steps = [(job, settings)] + [(raster.load_job(one), settings) for one, _ in arguments.then]
+    laid, places = background.run(lambda context: in_turn(steps, context), quiet=True)
+    files = [arguments.output, *(file for _, file in arguments.then)]
+    for (one, _), file, found in zip(steps, files, laid):
+        if found is not None:
+            _write_raster(arguments, file, one, found)
+    left = float(places["areas"][places["left"]].sum() / places["areas"].sum())
+    summaries = [None if found is None else raster.summary(found) for found in laid]
+    print(json.dumps({"wheels": summaries, "left_by_all": left}))
+
+
+def _write_raster(arguments, file, job, found):
+    from ..base.files import cannot_be_written
+    from ..programs.writers.writer import write_program
+    from ..raster import raster_path as raster
+
     try:
         made = raster.program(found, **_frame_words(job))
-        notes = write_program(arguments.output, None, made, **_frames(arguments))
+        notes = write_program(file, None, made, **_frames(arguments))
     except OSError as error:
-        raise cannot_be_written(arguments.output, error) from None
+        raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])
     arguments.messages.print_notes(notes)
-    print(json.dumps(raster.summary(found)))
 
 
 def _reach(arguments):

@@ -9,10 +9,11 @@ import numpy as np
 from ..engine import InputError
 from ..job import load as jobs
 from ..job.workpiece import OwnBrep
-from ..raster import raster_path as raster
-from ..raster.reachable import GROUND, NO_PASS, NO_ROOM  # noqa: F401 (the window takes its words from here)
+from ..raster import raster_path as raster, region
+from ..raster.reachable import NO_PASS, NO_ROOM
 from . import job_data, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
+from .fields import field_of
 from .geometry import faces_digest
 from .properties import Key, Output, add_keys, add_outputs, to_job
 from .proxy import type_of
@@ -21,6 +22,7 @@ from .robot_path import RobotPath, set_arrays
 KEYS = (
     Key("Along", "Enumeration", "Passes", "raster.along"),
     Key("Direction", "Vector", "Passes", "raster.direction"),
+    Key("RegionSize", "Length", "Passes", "raster.region_mm"),
     Key("PassSpacing", "Enumeration", "Passes", "raster.spacing"),
     Key("StepOver", "Length", "Passes", "raster.step_over_mm"),
     Key("StepOverShare", "Float", "Passes", "raster.step_over_share"),
@@ -94,6 +96,9 @@ class RasterPath(RobotPath):
             obj.addProperty(
                 "App::PropertyLinkSubListGlobal", "Faces", "Passes", "the faces with the passes"
             )
+        if "RegionPoints" not in obj.PropertiesList:
+            text = "passes only near these points of the faces; none: everywhere"
+            obj.addProperty("App::PropertyVectorList", "RegionPoints", "Passes", text)
         if "Proposed" not in obj.PropertiesList:
             text = "laid as a first proposal, and nobody has looked at it since"
             obj.addProperty("App::PropertyBool", "Proposed", "Passes", text, 4)
@@ -161,7 +166,7 @@ def _left(places):
     with two such corners at least."""
     states = places["state"]
     triangles = places["triangles"]
-    left = triangles[(states[triangles] != GROUND).sum(axis=1) > 1]
+    left = triangles[np.isin(states[triangles], (NO_ROOM, NO_PASS)).sum(axis=1) > 1]
     used, numbers = np.unique(left, return_inverse=True)
     return places["points"][used], numbers.reshape(-1, 3), states[used]
 
@@ -189,10 +194,29 @@ def _inputs(obj):
     settings = {}
     to_job(obj, KEYS, settings)
     settings = settings["raster"]
+    settings["region_points"] = [list(point) for point in getattr(obj, "RegionPoints", [])]
     digest = faces_digest(shape.Faces[number - 1] for number in numbers)
     text = json.dumps([data, settings, digest], sort_keys=True)
     data["design"]["brep"] = shape
     return data, settings, hashlib.sha256(text.encode()).hexdigest()
+
+
+def to_what_is_left(obj):
+    """Restricts a raster path to where the last result of its job is above the tolerance. Raises InputError."""
+    from .simulation import Simulation
+
+    job = obj.getParentGroup()
+    simulation = job_data.child(job, Simulation)
+    field = None if simulation is None else field_of(simulation)
+    if field is None:
+        raise InputError("raster.no_result", "there is no result yet: simulate first")
+    data = {"inspection": job_data.inspection(job)}
+    set_region(obj, region.of_field(field, data, where=simulation.Label)[0])
+
+
+def set_region(obj, points):
+    """Restricts a raster path to the surroundings of points (n, 3) mm; to none: everywhere."""
+    obj.RegionPoints = [tuple(point) for point in np.asarray(points, dtype=float).tolist()]
 
 
 def proposed(path):

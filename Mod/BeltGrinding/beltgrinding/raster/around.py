@@ -1,5 +1,6 @@
 """Passes round faces: rings on closed faces, and the helix on surfaces of revolution."""
 
+import copy
 import math
 
 import numpy as np
@@ -42,8 +43,20 @@ class Axis:
             if self._error(points, normals, weight, place, way) < ROUND:
                 self.place, self.way, self.revolution = place, way, True
                 break
-        if self.way is None:
-            self.way = np.linalg.eigh((normals * weight[:, None]).T @ normals)[1][:, 0]
+        self.turn = 0.0
+        if self.revolution:
+            self._settle(points)
+        if self.turn < CLOSED:
+            # A bent tube may be a piece of a torus, round whose axis it does not go.
+            tube = copy.copy(self)
+            tube.place, tube.revolution = middle, False
+            tube.way = np.linalg.eigh((normals * weight[:, None]).T @ normals)[1][:, 0]
+            tube._settle(points)
+            if not self.revolution or tube.turn >= CLOSED:
+                self.__dict__ = tube.__dict__
+
+    def _settle(self, points):
+        """Turns the axis up, and finds the share of a turn that the points take."""
         k = int(np.argmax(abs(self.way)))
         self.way = self.way * (1.0 if self.way[k] > 0 else -1.0)
         angles, radius = self.angles(points), self.radii(points)

@@ -117,7 +117,7 @@ class Clearing:
         """
         if self.blind or self.settings["where_it_collides"] == "warn":
             return levels
-        fine = [[_finer(piece, self._check) for piece in pieces] for pieces in levels]
+        fine = [[finer(piece, self._check) for piece in pieces] for pieces in levels]
         flat = [one for pieces in fine for one in pieces]
         depths = self._by_piece(flat, 0)
         wrong = [k for k, depth in enumerate(depths) if (depth > self.fit).any()]
@@ -148,8 +148,8 @@ class Clearing:
             if fits.all():
                 result.append(stroke)
                 continue
-            for run in _runs(fits):
-                part = _part(stroke, run)
+            for run in runs(fits):
+                part = part_of(stroke, run)
                 if passes.length(part["points"]) >= max(self.settings["min_length_mm"], 1e-9):
                     result.append(part)
         return result
@@ -211,21 +211,21 @@ class Clearing:
         limits = np.where(np.arange(len(self.leans)) == 0, self.fit, MARGIN * self.fit)
         states = _cheapest(depths <= limits[:, None], self.leans)
         result = []
-        runs = _runs(states >= 0)
-        for run in runs:
+        kept_runs = runs(states >= 0)
+        for run in kept_runs:
             mine = states[run]
             kept = fine["own"][run]
             kept[[0, -1]] = True
             changes = np.flatnonzero(np.diff(mine))
             kept[changes] = kept[changes + 1] = True
             places = run[kept]
-            part = self._posed({**piece, **_part(fine, places)}, mine[kept])
+            part = self._posed({**piece, **part_of(fine, places)}, mine[kept])
             whole = len(run) == len(states)
             part["closed"] = piece["closed"] and whole
             part["cut"] = (run[0] > 0, run[-1] < len(states) - 1)
             part.pop("own", None)
             result.append(part)
-        if piece["closed"] and len(runs) > 1 and runs[0][0] == 0 and runs[-1][-1] == len(states) - 1:
+        if piece["closed"] and len(kept_runs) > 1 and kept_runs[0][0] == 0 and kept_runs[-1][-1] == len(states) - 1:
             last = result.pop()  # the beginning of a ring is no end
             for name in ("points", "normals", "tangents"):
                 result[0][name] = np.vstack([last[name][:-1], result[0][name]])
@@ -290,7 +290,7 @@ def _on_mesh(mesh, spacing, most):
     return np.vstack(found)
 
 
-def _finer(piece, spacing):
+def finer(piece, spacing):
     """The piece with points no farther apart than ``spacing`` mm; ``own`` (n,) bool: those that it had."""
     p = piece["points"]
     count = np.maximum(np.ceil(np.linalg.norm(np.diff(p, axis=0), axis=1) / spacing), 1).astype(int)
@@ -306,12 +306,12 @@ def _finer(piece, spacing):
     return found
 
 
-def _part(piece, places):
+def part_of(piece, places):
     """The piece's points of these numbers."""
     return {**piece, **{name: piece[name][places] for name in ("points", "normals", "tangents")}}
 
 
-def _runs(wanted):
+def runs(wanted):
     """Index arrays of the runs in which ``wanted`` (n,) is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(int)))
     return [np.arange(a, b) for a, b in zip(edges[::2], edges[1::2])]

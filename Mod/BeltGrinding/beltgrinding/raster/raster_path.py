@@ -14,7 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import around, direction, footprint, passes, path_check, reachable
+from . import around, direction, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import contact_width, plane_extents
@@ -84,9 +84,21 @@ def raster(job, settings, context=None):
     _tell_ends(result, settings, warnings)
     _tell_ways(clearing, result, warnings)
     result["fit"] = _fit(clearing, settings, result, warnings)
+    wanted = None
+    if settings["region_points"]:
+        width = result["contact_width_mm"] or result["step_over_mm"]
+        wanted = settings["region_points"], region.margin_of(settings, width)
     contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
     result["places"] = reachable.look(
-        shape, faces, levels, contacts, clearing, settings, _extents(job, settings, result), context
+        shape,
+        faces,
+        levels,
+        contacts,
+        clearing,
+        settings,
+        _extents(job, settings, result),
+        wanted,
+        context,
     )
     result["reachable"] = reachable.told(result["places"], settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
@@ -120,6 +132,16 @@ def _laid(job, shape, faces, settings, warnings, context):
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
+    if settings["region_points"]:
+        points = np.array(settings["region_points"], dtype=float)
+        margin = region.margin_of(settings, seen["width_mm"] or step_over)
+        region.check(points, np.vstack([s["points"] for s in sheets]), margin)
+        levels = region.restricted(levels, points, margin)
+        if not any(levels):
+            raise InputError(
+                "raster.no_pass_in_region",
+                "no pass comes near the region; lower step_over_mm, or enlarge region_mm",
+            )
     length = seen.get("length_mm") or plane_extents(job, settings)[0]
     entry = Entry(job, shape, faces, settings, context, length)
     clearing = Clearing(job, shape, settings, warnings, context)

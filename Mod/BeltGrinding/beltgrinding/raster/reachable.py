@@ -16,7 +16,7 @@ BETWEEN = 0.25  # of the contact's length: from pose to pose, to see what lies u
 BLOCK = 64  # poses that are looked at together
 LEAST_CONTACT = 0.5  # mm
 
-GROUND, NO_ROOM, NO_PASS = 0, 1, 2  # states of a place
+GROUND, NO_ROOM, NO_PASS, NOT_WANTED = 0, 1, 2, 3  # states of a place
 
 
 def in_any_direction(clearing, points, normals):
@@ -34,16 +34,18 @@ def in_any_direction(clearing, points, normals):
     return fits
 
 
-def look(shape, faces, levels, contacts, clearing, settings, extents, context=None):
+def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=None, context=None):
     """What a path grinds of faces (from 0) of a core.Shape.
 
     ``levels``: the passes as they would lie if the wheel fitted everywhere, lists of dict(points, tangents (n, 3));
     ``contacts``: the poses of each pass that is left, list of (n, 4, 4) work_from_contact; ``clearing``: a
-    clearing.Clearing; ``extents``: (length, width) mm of the contact along and across the belt's travel.
+    clearing.Clearing; ``extents``: (length, width) mm of the contact along and across the belt's travel; ``wanted``: (points of a
+    region, mm round them), None: everywhere.
 
     Returns dict(points, normals (n, 3), areas (n,), triangles (m, 3), faces (n,) from 0, fits (n,) bool, state (n,): GROUND,
     NO_ROOM (the wheel would stand in the part, with its belt as the passes want it, however it is leaned), NO_PASS
-    (it fits, and no pass touches it); share: of the area that the wheel gets to; by_face: {face from 1: the same};
+    (it fits, and no pass touches it), NOT_WANTED (nor is it in the region); counted (n,): the areas in the region, to
+    which all that follows belongs; share: of the area that the wheel gets to; by_face: {face from 1: the same};
     another_way: the same share with the belt in whichever direction, about). Raises InputError, Cancelled.
     """
     area = sum(shape.face_area(face) for face in faces)
@@ -58,25 +60,31 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, context=No
     fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
     state = np.where(fits, NO_PASS, NO_ROOM)
     state[_touched(points, contacts, clearing.wheel, extents)] = GROUND
+    counted = areas
+    if wanted is not None:
+        outside = nearest_distance(points, np.array(wanted[0], dtype=float)) > wanted[1]
+        state[outside & (state != GROUND)] = NOT_WANTED
+        counted = np.where(outside, 0.0, areas)
     return {
         "points": points,
         "normals": normals,
         "areas": areas,
+        "counted": counted,
         "triangles": np.asarray(field.triangles),
         "faces": owner,
         "fits": fits,
         "state": state,
-        "share": _share(fits, areas),
+        "share": _share(fits, counted),
         "by_face": {
-            int(face) + 1: _share(fits[owner == face], areas[owner == face])
-            for face in np.unique(owner)
+            int(face) + 1: _share(fits[owner == face], counted[owner == face])
+            for face in np.unique(owner[counted > 0])
         },
-        "another_way": _another_way(clearing, points, normals, areas, fits),
+        "another_way": _another_way(clearing, points, normals, counted, fits),
     }
 
 
 def _another_way(clearing, points, normals, areas, fits):
-    left = np.flatnonzero(~fits)
+    left = np.flatnonzero(~fits & (areas > 0))
     if not len(left) or clearing.blind:
         return _share(fits, areas)
     some = left[np.unique(np.linspace(0, len(left) - 1, OTHER_WAYS).astype(int))]
@@ -103,6 +111,11 @@ def nearest(points, others):
     for k in range(0, len(points), block):
         found[k : k + block] = (squares - 2.0 * points[k : k + block] @ others.T).argmin(axis=1)
     return found
+
+
+def nearest_distance(points, others):
+    """mm (n,) from each point (n, 3) to the nearest of ``others`` (m, 3)."""
+    return np.linalg.norm(points - others[nearest(points, others)], axis=1)
 
 
 def _touched(points, contacts, wheel, extents):
@@ -163,7 +176,7 @@ def _between(frames, spacing):
 def told(seen, settings, warnings):
     """Adds what ``look`` found to the list of warnings. Returns dict(share, faces: {face from 1: share} of the faces
     that the wheel does not get to all of, left_out, no_pass: of the area)."""
-    areas = seen["areas"]
+    areas = seen["counted"]
     share, found = seen["share"], seen["by_face"]
     lacking = {face: value for face, value in found.items() if value < WHOLE}
     no_pass = _share(seen["state"] == NO_PASS, areas)

@@ -4,7 +4,7 @@ import FreeCAD
 import FreeCADGui as Gui
 import numpy as np
 
-from ...objects import verdict as objects
+from ...objects import api, raster_path, verdict as objects
 from ...objects.job_data import children, face_name
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
@@ -19,6 +19,7 @@ from .verdict_tables import cluster_rows, doubts, fill, motion_rows, region_rows
 
 WIDTH = 470  # pixels of the dock as it comes
 SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other
+MOST_POINTS = 2000  # of a region that passes are laid on
 AROUND = 1.5  # times a cluster's length that the camera sees
 LEAST_SEEN = 10.0  # mm
 WHEELS = 3.2  # radii of the wheel that are seen at a motion
@@ -67,6 +68,14 @@ class VerdictDock(ObjectDock):
             parts.addWidget(_titled(title, widget))
         parts.setSizes(SHARES)
         layout.addWidget(parts, 1)
+        self.here = QtGui.QPushButton(translate("BeltGrinding", "Raster path here..."))
+        self.here.setObjectName("rasterHere")
+        self.here.setToolTip(
+            translate("BeltGrinding", "Lays passes on the chosen cluster, where too much is left")
+        )
+        self.here.setEnabled(False)
+        self.here.clicked.connect(self.lay_here)
+        layout.addWidget(self.here)
         self.setWidget(body)
         self.regions.cellClicked.connect(lambda row, _: self.go_to_region(row))
         self.clusters.currentCellChanged.connect(lambda row, *_: self.go_to_cluster(row))
@@ -134,6 +143,7 @@ class VerdictDock(ObjectDock):
         if self.found is None or not 0 <= row < len(self.found["clusters"]):
             return
         cluster = self.found["clusters"][row]
+        self.here.setEnabled(cluster["side"] == "above")
         fill(self.motions, motion_rows(cluster, self.found["programs"]))
         self._show_wheel(None, 0)
         if not self._read_field():
@@ -149,6 +159,25 @@ class VerdictDock(ObjectDock):
         size = max(AROUND * cluster["extent_mm"], LEAST_SEEN)
         samples = [cluster["worst"]["sample"], *np.flatnonzero(inside)]
         self._sight().at_samples(self.field, samples, size, middle)
+
+    def lay_here(self):
+        """A raster path on the cluster that is chosen, in its panel."""
+        from ..common.transaction import transaction
+        from ..panels.panel import edit
+
+        row = self.clusters.currentRow()
+        if self.cluster_of is None or row < 0:
+            return
+        job = self.obj.getParentGroup()
+        points = self.field.points[self.cluster_of == row]
+        points = points[:: max(1, len(points) // MOST_POINTS)]
+        text = translate("BeltGrinding", "Raster path")
+        with transaction(job.Document, text, panel=True) as step:
+            path = api.make_raster(job, compute=False)
+            path.Along = "u"  # a small place needs no comparison
+            raster_path.set_region(path, points)
+        if not step.failed:
+            edit(path)
 
     def _read_field(self):
         if self.field is None:

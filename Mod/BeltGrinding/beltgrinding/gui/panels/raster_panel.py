@@ -1,5 +1,6 @@
 """Task panel of a raster path; the passes in the 3D view follow every change."""
 
+import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
@@ -31,6 +32,7 @@ class RasterPanel(Panel):
         self.left.hide()
         self.body.addWidget(self.left)
         self.body.addWidget(self._faces())
+        self.body.addWidget(self._region())
         self.passes = self._passes()
         self.body.addWidget(self.passes)
         self.process = self._process()
@@ -60,12 +62,60 @@ class RasterPanel(Panel):
         self.name_faces()
         return box
 
+    def _region(self):
+        box = QtGui.QGroupBox(translate("BeltGrinding", "Region"))
+        rows = QtGui.QVBoxLayout(box)
+        self.region = QtGui.QLabel()
+        self.region.setObjectName("rasterRegion")
+        self.region.setWordWrap(True)
+        rows.addWidget(self.region)
+        for name, text, clicked in (
+            ("regionLeft", translate("BeltGrinding", "Only what is left"), self.take_left),
+            ("regionAll", translate("BeltGrinding", "Everywhere"), self.take_all),
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(clicked)
+            rows.addWidget(button)
+        self.name_region()
+        return box
+
+    def name_region(self):
+        """Shows where passes are wanted."""
+        points = self.obj.RegionPoints
+        text = translate("BeltGrinding", "everywhere on the faces")
+        if points:
+            size = FreeCAD.BoundBox()
+            for point in points:
+                size.add(point)
+            text = translate("BeltGrinding", "near {} points within {:.0f} mm").format(
+                len(points), size.DiagonalLength
+            )
+        self.region.setText(text)
+
+    def take_left(self):
+        """Lays passes only where the last result is above the tolerance."""
+        try:
+            raster_path.to_what_is_left(self.obj)
+        except InputError as error:
+            self.tell(error_text(error), True)
+            return
+        self.name_region()
+        self.changed()
+
+    def take_all(self):
+        """Lays passes everywhere again."""
+        raster_path.set_region(self.obj, [])
+        self.name_region()
+        self.changed()
+
     def _passes(self):
         form = Form(self.obj, translate("BeltGrinding", "Passes"))
         along = {
             "u": translate("BeltGrinding", "u of each face"),
             "v": translate("BeltGrinding", "v of each face"),
             "direction": translate("BeltGrinding", "A direction"),
+            "rings": translate("BeltGrinding", "Round the faces"),
             "auto": translate("BeltGrinding", "Find the best way"),
         }
         spacing = {
@@ -75,6 +125,7 @@ class RasterPanel(Panel):
         order = {
             "zigzag": translate("BeltGrinding", "Zigzag"),
             "one_way": translate("BeltGrinding", "One way"),
+            "helix": translate("BeltGrinding", "Helix"),
         }
         form.add("Along", translate("BeltGrinding", "Along"), along)
         self.direction = DirectionField(self.obj, self.changed, self.tell)

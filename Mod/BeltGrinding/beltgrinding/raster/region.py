@@ -1,0 +1,114 @@
+"""Passes on a part of the faces only: near points that are given, from a result or from what another wheel left."""
+
+import math
+
+import numpy as np
+
+from ..base.quantile import weighted_quantile
+from ..engine import InputError, core
+from ..inspection import verdict
+from ..simulation.result import Result
+from . import reachable
+from .clearing import finer, part_of, runs
+
+MOST_POINTS = 5_000  # of a region that is made of samples
+FINE = 0.25  # of the margin: from place to place that is looked at along a pass
+NEAREST = 0.99  # of a region's points must lie by the faces, or it is another part's
+APART = 2.0  # of the margin: farther than that off the faces is elsewhere
+
+
+def of_result(folder, above_mm=None, clusters=()):
+    """(points (n, 3) mm, margin mm that their spacing asks for) where a result has too much left.
+
+    ``folder``: of a run; ``above_mm``: more is too much, None: above its tolerance; ``clusters``: numbers, from 1, of
+    its verdict's clusters, in place of that. Raises InputError where nothing is left, or a cluster is cut too deep.
+    """
+    result = Result.read(folder)
+    field, job = result.field, result.job
+    return of_field(field, job, above_mm, clusters, str(folder))
+
+
+def of_field(field, job, above_mm=None, clusters=(), where=""):
+    """The same of a ground core.HeightField of a job; ``where``: what it is called in errors."""
+    height = field.height.astype(float)
+    if clusters:
+        chosen = []
+        for number in clusters:
+            mine = verdict.cluster_samples(job, field, number)
+            if not len(mine):
+                raise InputError(
+                    "raster.no_such_cluster",
+                    "{where}: the verdict has no cluster {number}",
+                    where=where,
+                    number=number,
+                )
+            if np.mean(height[mine]) < np.mean(job["inspection"]["tolerance_mm"]):
+                raise InputError(
+                    "raster.cluster_below",
+                    "{where}: cluster {number} is cut too deep: there is nothing to come off",
+                    where=where,
+                    number=number,
+                )
+            chosen.append(mine)
+        chosen = np.concatenate(chosen)
+    else:
+        limit = job["inspection"]["tolerance_mm"][1] if above_mm is None else above_mm
+        chosen = np.flatnonzero(np.isfinite(height) & (height > limit) & (field.areas > 0))
+        if not len(chosen):
+            raise InputError(
+                "raster.nothing_left",
+                "{where}: nothing is left above {limit:.4g} mm: no passes are needed",
+                where=where,
+                limit=limit,
+            )
+    area = float(field.areas[chosen].sum())
+    some = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_POINTS).astype(int))]
+    return field.points[some], 1.5 * math.sqrt(area / len(some))
+
+
+def margin_of(settings, width):
+    """mm round a region's points; ``width``: of the contact, mm."""
+    return settings["region_mm"] or 0.5 * width
+
+
+def check(points, faces, margin):
+    """Raises InputError if a region's points do not lie on faces that have ``faces`` (m, 3) points, mm."""
+    off = reachable.nearest_distance(points, faces)
+    far = weighted_quantile(off, np.ones(len(off)), NEAREST)
+    spacing = weighted_quantile(reachable.nearest_distance(faces[:50], faces[50:]), np.ones(50), 0.9)
+    if far > APART * max(margin, spacing):
+        raise InputError(
+            "raster.region_elsewhere",
+            "{key}: the region lies up to {far:.3g} mm off the faces; is it of another part, or of other faces?",
+            key="raster.region_points",
+            far=far,
+        )
+
+
+def restricted(levels, points, margin):
+    """The pieces of passes by level, as ``clearing.cleared`` takes them, cut to where they are no farther than
+    ``margin`` mm from one of ``points`` (n, 3). Shorter gaps than that are kept."""
+    result = []
+    for pieces in levels:
+        kept = []
+        for piece in pieces:
+            fine = finer(piece, FINE * margin)
+            near = reachable.nearest_distance(fine["points"], points) <= margin
+            for gap in runs(~near):
+                inner = gap[0] > 0 and gap[-1] < len(near) - 1
+                if inner and len(gap) * FINE * margin < margin:
+                    near[gap] = True
+            if near.all():
+                kept.append(piece)
+                continue
+            for run in runs(near):
+                own = fine["own"][run]
+                own[[0, -1]] = True
+                if own.sum() < 2:
+                    continue
+                part = {**piece, **part_of(fine, run[own]), "closed": False}
+                part.pop("own", None)
+                part["cut"] = (run[0] > 0, run[-1] < len(near) - 1)
+                kept.append(part)
+        result.append(kept)
+    return result

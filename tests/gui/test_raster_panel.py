@@ -89,3 +89,90 @@ press("Close")
 """,
         window=True,
     )
+
+
+def test_passes_on_what_a_result_has_left(freecad):
+    """From the verdict's cluster, and from the panel; the whole is one step, everywhere again."""
+    freecad.run(
+        PREPARE
+        + """
+menu("Raster path...")
+path = doc.RasterPath
+note = field("note").text()
+wait(lambda: path.PassCount > 0)
+field("regionLeft").click()  # nothing has been simulated
+assert "simulate first" in field("note").text(), field("note").text()
+press("Cancel")
+assert doc.getObject("RasterPath") is None
+
+Gui.Selection.clearSelection()
+menu("Simulate")
+wait(lambda: doc.getObject("Simulation") is not None)
+press("Deviation")
+press("OK")
+menu("Verdict")
+verdict = doc.Verdict
+found = verdict.Proxy.data(verdict)
+dock = field("BeltGrinding_VerdictDock")
+here, clusters = field("rasterHere"), field("clusters")
+assert not here.isEnabled()
+above = next(i for i, c in enumerate(found["clusters"]) if c["side"] == "above")
+clusters.setCurrentCell(above, 0)
+settle()
+assert here.isEnabled()
+steps = doc.UndoCount
+here.click()
+path = doc.RasterPath
+wait(lambda: path.PassCount > 0)
+low, high = found["clusters"][above]["box_mm"]
+points = list(path.RegionPoints)
+assert points and all(low[k] - 1e-6 <= p[k] <= high[k] + 1e-6 for p in points for k in range(3))
+assert "near" in field("rasterRegion").text()
+screenshot("region.png")
+few = path.GroundLength.Value
+field("regionAll").click()
+wait(lambda: path.GroundLength.Value >= few)
+assert not path.RegionPoints and "everywhere" in field("rasterRegion").text()
+field("regionLeft").click()
+wait(lambda: path.GroundLength.Value < 1e9 and len(path.RegionPoints) > 0)
+press("OK")
+assert doc.UndoCount == steps + 1
+doc.undo()
+assert doc.getObject("RasterPath") is None
+""",
+        window=True,
+    )
+
+
+def test_what_is_left_out_is_coloured(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import Part
+doc.BeltMachine.WheelRadius, doc.BeltMachine.RimThickness = "15 mm", "5 mm"
+wall = doc.addObject("Part::Feature", "Corner")
+wall.Shape = Part.makeBox(60, 40, 20).fuse(
+    Part.makeBox(60, 8, 60, FreeCAD.Vector(0, 40, 0))).removeSplitter()
+doc.recompute()
+top = next(i for i, f in enumerate(wall.Shape.Faces, 1)
+           if abs(f.Area - 60 * 40) < 1 and abs(f.CenterOfMass.z - 20) < 1e-6)
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Corner", f"Face{top}")
+menu("Raster path...")
+path = doc.RasterPath
+wait(lambda: path.PassCount > 0)
+field("WhereItCollides").setCurrentIndex(1)
+field("Along").setCurrentIndex(2)
+type_in("Direction_x", "0")
+type_in("Direction_y", "1")
+wait(lambda: path.LeftOut > 5 and "does not fit" in field("rasterLeft").text())
+assert path.LeftTriangles and path.ViewObject.Proxy.left.whichChild.getValue() == -3
+screenshot("left.png")
+field("WhereItCollides").setCurrentIndex(2)  # only warn
+wait(lambda: path.LeftOut == 0)
+path.ViewObject.Visibility = False
+assert path.ViewObject.Proxy.left.whichChild.getValue() == -1
+press("Cancel")
+""",
+        window=True,
+    )

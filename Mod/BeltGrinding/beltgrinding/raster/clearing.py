@@ -187,11 +187,12 @@ class Clearing:
         """mm (n,) of each piece."""
         if not pieces:
             return []
-        frames = [self._frames(piece) for piece in pieces]
+        frames = [self.frames(piece) for piece in pieces]
         found = self.depth(self._leaned(np.concatenate(frames), lean))
         return np.split(found, np.cumsum([len(f) for f in frames])[:-1])
 
-    def _frames(self, piece):
+    def frames(self, piece):
+        """work_from_contact (n, 4, 4) at the points of a piece."""
         settings = self.settings
         points = piece["points"] + settings["offset_mm"] * piece["normals"]
         angle = math.radians(settings["belt_angle_deg"])
@@ -222,7 +223,8 @@ class Clearing:
             part = self._posed({**piece, **part_of(fine, places)}, mine[kept])
             whole = len(run) == len(states)
             part["closed"] = piece["closed"] and whole
-            part["cut"] = (run[0] > 0, run[-1] < len(states) - 1)
+            before, after = piece.get("cut", passes.UNCUT)
+            part["cut"] = (run[0] > 0 or before, run[-1] < len(states) - 1 or after)
             part.pop("own", None)
             result.append(part)
         if piece["closed"] and len(kept_runs) > 1 and kept_runs[0][0] == 0 and kept_runs[-1][-1] == len(states) - 1:
@@ -236,7 +238,7 @@ class Clearing:
         """The piece with its poses leaned as ``states`` (n,) say."""
         if not states.any():
             return piece
-        frames, angle = self._frames(piece), math.radians(self.settings["belt_angle_deg"])
+        frames, angle = self.frames(piece), math.radians(self.settings["belt_angle_deg"])
         for lean in np.unique(states[states > 0]):
             mine = states == lean
             frames[mine] = self._leaned(frames[mine], lean)

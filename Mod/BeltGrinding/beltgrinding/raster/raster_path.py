@@ -14,7 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import around, direction, footprint, passes, path_check, reachable, region
+from . import around, direction, filling, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import contact_width, plane_extents
@@ -73,7 +73,7 @@ def raster(job, settings, context=None):
     faces = _checked_faces(chosen, shape)
 
     def lay(settings, context):
-        return _laid(job, shape, faces, settings, [], context)[0]
+        return _laid(job, shape, faces, settings, [], context, False)[0]
 
     tried = []
     if settings["along"] == "auto":
@@ -84,22 +84,7 @@ def raster(job, settings, context=None):
     _tell_ends(result, settings, warnings)
     _tell_ways(clearing, result, warnings)
     result["fit"] = _fit(clearing, settings, result, warnings)
-    wanted = None
-    if settings["region_points"]:
-        width = result["contact_width_mm"] or result["step_over_mm"]
-        wanted = settings["region_points"], region.margin_of(settings, width)
-    contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
-    result["places"] = reachable.look(
-        shape,
-        faces,
-        levels,
-        contacts,
-        clearing,
-        settings,
-        _extents(job, settings, result),
-        wanted,
-        context,
-    )
+    result["places"] = _places(job, shape, faces, settings, result, levels, clearing, context)
     result["reachable"] = reachable.told(result["places"], settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
     warnings += result["check"]["problems"]
@@ -108,8 +93,9 @@ def raster(job, settings, context=None):
     return result
 
 
-def _laid(job, shape, faces, settings, warnings, context):
-    """(the path on faces (from 0) of a core.Shape, along a way that is given; its level lines; the Clearing)."""
+def _laid(job, shape, faces, settings, warnings, context, fill=True):
+    """(the path on faces (from 0) of a core.Shape, along a way that is given; its level lines; the Clearing).
+    ``fill``: with passes besides, where the even ones miss what the wheel gets to."""
     area = sum(shape.face_area(face) for face in faces)
     _check_size(job, shape, faces, settings, warnings, context)
     spacing = settings["sampling_mm"] or _sampling(area, settings)
@@ -132,11 +118,10 @@ def _laid(job, shape, faces, settings, warnings, context):
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
-    if settings["region_points"]:
-        points = np.array(settings["region_points"], dtype=float)
-        margin = region.margin_of(settings, seen["width_mm"] or step_over)
-        region.check(points, np.vstack([s["points"] for s in sheets]), margin)
-        levels = region.restricted(levels, points, margin)
+    wanted = _wanted(settings, seen["width_mm"] or step_over)
+    if wanted is not None:
+        region.check(wanted[0], np.vstack([s["points"] for s in sheets]), wanted[1])
+        levels = region.restricted(levels, *wanted)
         if not any(levels):
             raise InputError(
                 "raster.no_pass_in_region",
@@ -145,7 +130,8 @@ def _laid(job, shape, faces, settings, warnings, context):
     length = seen.get("length_mm") or plane_extents(job, settings)[0]
     entry = Entry(job, shape, faces, settings, context, length)
     clearing = Clearing(job, shape, settings, warnings, context)
-    result = passes.assemble(clearing.cleared(levels), settings, cell, entry, clearing)
+    cleared = clearing.cleared(levels)
+    result = passes.assemble(cleared, settings, cell, entry, clearing)
     no_room = not result["passes"] and any(levels)
     if no_room:
         clearing = Clearing(
@@ -166,7 +152,48 @@ def _laid(job, shape, faces, settings, warnings, context):
         area_mm2=area,
         no_room=no_room,
     )
+    if fill and not no_room and settings["where_it_collides"] != "warn" and _overlap(result):
+
+        def levels_of(step_over):
+            found = _lines(sheets, settings, step_over, spacing, lever, [], context)
+            return found if wanted is None else region.restricted(found, *wanted)
+
+        places = _places(job, shape, faces, settings, result, levels, clearing, context)
+        extents = _extents(job, settings, result)
+        added = filling.more(levels_of, places, clearing, settings, step_over, extents)
+        if added:
+            result.update(passes.assemble(cleared + added, settings, cell, entry, clearing))
     return result, levels, clearing
+
+
+def _overlap(result):
+    """Whether the passes are near enough for their contacts to overlap; else stripes between them are wanted."""
+    return result["contact_width_mm"] is not None
+
+
+def _wanted(settings, width):
+    """(points (n, 3), mm round them) of the region, None: everywhere; ``width``: of the contact, mm."""
+    if not settings["region_points"]:
+        return None
+    return np.array(settings["region_points"], dtype=float), region.margin_of(settings, width)
+
+
+def _places(job, shape, faces, settings, result, levels, clearing, context):
+    """What ``reachable.look`` finds of a path."""
+    contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
+    if result["no_room"]:  # none that may be ground
+        contacts = []
+    return reachable.look(
+        shape,
+        faces,
+        levels,
+        contacts,
+        clearing,
+        settings,
+        _extents(job, settings, result),
+        _wanted(settings, result["contact_width_mm"] or result["step_over_mm"]),
+        context,
+    )
 
 
 def _extents(job, settings, result):

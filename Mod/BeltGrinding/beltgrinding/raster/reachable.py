@@ -59,7 +59,7 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
     angle = math.radians(settings["belt_angle_deg"])
     fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
     state = np.where(fits, NO_PASS, NO_ROOM)
-    state[_touched(points, contacts, clearing.wheel, extents)] = GROUND
+    state[touched(points, contacts, clearing.wheel, extents)] = GROUND
     counted = areas
     if wanted is not None:
         outside = nearest_distance(points, np.array(wanted[0], dtype=float)) > wanted[1]
@@ -118,13 +118,13 @@ def nearest_distance(points, others):
     return np.linalg.norm(points - others[nearest(points, others)], axis=1)
 
 
-def _touched(points, contacts, wheel, extents):
+def touched(points, contacts, wheel, extents):
     """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the ends of a
     contact of these extents (mm) on a plane."""
     length, width = max(extents[0], LEAST_CONTACT), min(extents[1], wheel["width"])
     drop = _drop(wheel)
     gap = max(length**2 / (8.0 * wheel["radius"]), float(np.interp(0.5 * width, *drop)))
-    touched = np.zeros(len(points), dtype=bool)
+    found = np.zeros(len(points), dtype=bool)
     reach = wheel["width"] + length
     for poses in contacts:
         fine = _between(poses, BETWEEN * length)
@@ -133,11 +133,11 @@ def _touched(points, contacts, wheel, extents):
             middle = some[:, :3, 3].mean(axis=0)
             radius = np.linalg.norm(some[:, :3, 3] - middle, axis=1).max() + reach
             near = np.flatnonzero(
-                ~touched & (((points - middle) ** 2).sum(axis=1) <= radius**2)
+                ~found & (((points - middle) ** 2).sum(axis=1) <= radius**2)
             )
             if len(near):
-                touched[near] = _under(points[near], some, wheel, drop, gap)
-    return touched
+                found[near] = _under(points[near], some, wheel, drop, gap)
+    return found
 
 
 def _drop(wheel):

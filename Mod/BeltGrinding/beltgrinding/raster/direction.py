@@ -39,7 +39,7 @@ def candidates(field):
     else:  # round about: along its axes
         directions = list(axes.T[::-1])
     return ways + [
-        {"along": "direction", "direction": (np.round(d, 6) + 0.0).tolist()} for d in directions
+        {"along": "direction", "direction": (np.round(d, 4) + 0.0).tolist()} for d in directions
     ]
 
 

@@ -289,3 +289,19 @@ def test_a_real_part_with_holes_has_no_violent_motion():
     seen = laid["check"]  # 173 degrees from pose to pose, and four reversals, before
     assert seen["turn_deg"] <= 5.0 + 1e-6 and seen["turn_deg_per_mm"] <= 30.0 + 1e-6
     assert seen["fast_turns"] == seen["reversals"] == seen["leaps"] == 0
+
+
+def test_a_ring_that_goes_back_where_it_begins_is_none():
+    angle = np.linspace(0.0, 2.0 * math.pi, 200)
+    ring = np.stack([30 * np.cos(angle), 30 * np.sin(angle), 0 * angle], axis=1)
+    spike = np.vstack([[[30.0, 4.0, 0.0]], ring, [[30.0, 4.0, 0.0]]])
+    for points, closed in ((ring, True), (spike, False)):
+        normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        tangents = np.gradient(points, axis=0)
+        tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+        piece = {"points": points, "normals": normals, "tangents": tangents, "closed": True}
+        left = turn_limits.limited(piece, raster_path.validate({}))
+        assert [one["closed"] for one in left if len(one["points"]) > 100] == [closed]
+        for one in left:
+            steps = np.diff(one["points"], axis=0)
+            assert ((steps[1:] * steps[:-1]).sum(axis=1) > 0).all()

@@ -31,8 +31,9 @@ def limited(piece, settings):
         done += _spread(points[start : cut + 1], turns[start : cut + 1], rate, largest)
         start = cut
     result = []
-    whole = piece["closed"] and len(done) == 1
-    if piece["closed"] and len(done) > 1 and not _apart(done[-1], done[0], rate):
+    ring = piece["closed"] and not _seam_backs(points)
+    whole = ring and len(done) == 1
+    if ring and len(done) > 1 and not _apart(done[-1], done[0], rate):
         # The beginning of a ring is no end.
         last = done.pop()
         done[0] = tuple(np.concatenate([a[:-1], b]) for a, b in zip(last, done[0]))
@@ -84,6 +85,13 @@ def _backs(points):
     moves = np.flatnonzero(np.linalg.norm(steps, axis=1) > STILL)
     back = (steps[moves[1:]] * steps[moves[:-1]]).sum(axis=1) < BACK
     return moves[1:][back].tolist()
+
+
+def _seam_backs(points):
+    """Whether the way of a ring goes back where it begins."""
+    steps = np.diff(points, axis=0)
+    moves = steps[np.linalg.norm(steps, axis=1) > STILL]
+    return len(moves) < 2 or moves[-1] @ moves[0] < BACK
 
 
 def slerp(a, b, shares):

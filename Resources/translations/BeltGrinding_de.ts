@@ -3588,6 +3588,50 @@ im Mittel {} abgetragen</translation>
         <source>near {} points within {:.0f} mm</source>
         <translation>bei {} Punkten innerhalb von {:.0f} mm</translation>
     </message>
+    <message>
+        <source>Apply</source>
+        <translation>Übernehmen</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>Value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>Values ({} missing)</source>
+        <translation>Werte ({} fehlen)</translation>
+    </message>
+    <message>
+        <source>What only the controller knows. Frames: x y z in mm, a b c in degrees, Rz(a) Ry(b) Rx(c), with blanks between them. What is left empty is not known.</source>
+        <translation>Was nur die Steuerung weiß. Frames: x y z in mm, a b c in Grad, Rz(a) Ry(b) Rx(c), mit Leerzeichen dazwischen. Was leer bleibt, ist nicht bekannt.</translation>
+    </message>
+    <message>
+        <source>base</source>
+        <translation>Basis</translation>
+    </message>
+    <message>
+        <source>frame</source>
+        <translation>Frame</translation>
+    </message>
+    <message>
+        <source>number</source>
+        <translation>Zahl</translation>
+    </message>
+    <message>
+        <source>tool</source>
+        <translation>Werkzeug</translation>
+    </message>
+    <message>
+        <source>Apply and save</source>
+        <translation>Übernehmen und sichern</translation>
+    </message>
+    <message>
+        <source>Writes NAME.values.json beside the program, too</source>
+        <translation>Schreibt auch NAME.values.json neben das Programm</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

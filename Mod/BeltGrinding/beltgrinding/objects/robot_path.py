@@ -1,6 +1,7 @@
 """A robot's program in the document: poses that are the truth, and a Path that is drawn."""
 
 import hashlib
+import json
 import os
 
 import FreeCAD
@@ -16,7 +17,7 @@ from ..programs.readers.roll import RULES, lay
 from ..programs.registry import read_program, told_problems
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
-from . import freecad_path, stored_facts
+from . import freecad_path, program_values, stored_facts
 from .geometry import matrix
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
@@ -48,6 +49,14 @@ LISTS = (
         "mm around each pose in which the corner is rounded; negative: not known",
     ),
     ("Gaps", "IntegerList", "line from which on motions are left out before each pose; 0: none"),
+)
+HELD = (
+    (
+        "Values",
+        "what only the controller knows of the program, as in NAME.values.json; empty: that file's, "
+        "where it lies beside the program",
+    ),
+    ("Asked", "the values that the program asks for"),
 )
 WITH_FREE_ROLL = ("APT", "G-code", "FreeCAD path")  # languages of tool axes only
 FRAMES = (
@@ -93,6 +102,9 @@ class RobotPath(Proxy):
             obj.RollDirection = FreeCAD.Vector(1, 0, 0)
         if add("String", "RollOfPoses", "Program", "the roll that the poses have"):
             obj.setEditorMode("RollOfPoses", 2)
+        for name, text in HELD:
+            if add("String", name, "Program", text):
+                obj.setEditorMode(name, 2)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
         for name, text in FRAMES:
@@ -220,14 +232,15 @@ def roll_text(obj):
     return f"{rule or 'hold'}{'' if direction is None else f' {direction}'}"
 
 
-def read_arrays(path, roll=None, direction=None):
+def read_arrays(path, roll=None, direction=None, values=None):
     """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
-    and Cancelled where a person cancels it. ``roll``, ``direction``: as ``readers.roll.lay`` takes them.
+    and Cancelled where a person cancels it. ``roll``, ``direction``: as ``readers.roll.lay`` takes them;
+    ``values``: as ``read_program`` does.
     """
 
     def work(context):
         with stoppable(context):
-            program = read_program(path, roll, direction)
+            program = read_program(path, roll, direction, values)
             return program, program.path_arrays(DEFAULT_FEED)
 
     text = FreeCAD.Qt.translate("BeltGrinding", "Reading {}").format(os.path.basename(path))
@@ -274,15 +287,23 @@ def follow(obj):
     stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
 
 
-def load_program(obj, path, **values):
-    """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed."""
-    program, arrays = read_arrays(path, *_roll(obj))
+def load_program(obj, path, given=None, **values):
+    """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed.
+
+    ``given``: what only the controller knows, as in a values file, from now on; without it what the object
+    holds of this file, or what lies beside it.
+    """
+    kept = "" if os.path.abspath(path) != obj.Source else obj.Values
+    if given is not None:
+        kept = json.dumps(given)
+    program, arrays = read_arrays(path, *_roll(obj), json.loads(kept) if kept else None)
     if obj.Machine is not None:
         program.check_holding(obj.Machine.Holding)
     set_arrays(obj, arrays)
     obj.RollOfPoses = roll_text(obj)
     obj.SourceObject = None
     obj.Source = os.path.abspath(path)
+    obj.Values, obj.Asked = kept, program_values.asked(program, path)
     obj.Language = program.language
     stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
     set_by_name(obj, values)

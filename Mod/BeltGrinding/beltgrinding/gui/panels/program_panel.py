@@ -3,12 +3,13 @@
 from pathlib import Path
 
 from ...engine import Cancelled, InputError
-from ...objects import robot_path, stored_facts
+from ...objects import program_values, robot_path, stored_facts
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
+from ..widgets.program_values import ProgramValues
 from .panel import Panel, edit
 
 SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
@@ -69,6 +70,10 @@ class ProgramPanel(Panel):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.each)
         column.addWidget(self.problems)
+        self.values = ProgramValues()
+        self.values.applied = self.give
+        self.values.saved = lambda data: self.give(data, True)
+        self.values.wrong = lambda error: self.tell(error_text(error), True)
         self.walk.moved = self.table.show_pose
         self.table.chosen = self.walk.go
         self.body.addWidget(self.walk)
@@ -87,21 +92,42 @@ class ProgramPanel(Panel):
 
     def reload(self):
         """Reads the file, or follows the path, again; on an error the poses stay as they were."""
+        values = self.obj.Values
         try:
             if self.obj.SourceObject is not None:
                 robot_path.follow(self.obj)
             else:
+                if self.obj.Source != self.source:
+                    self.obj.Values = ""  # of another program
                 robot_path.load_program(self.obj, self.obj.Source)
                 self.obj.Label = Path(self.obj.Source).stem
             self.source, self.roll = self.obj.Source, robot_path.roll_text(self.obj)
         except Cancelled:
-            self.obj.Source = self.source
+            self.obj.Source, self.obj.Values = self.source, values
             return
         except InputError as error:
-            self.obj.Source = self.source
+            self.obj.Source, self.obj.Values = self.source, values
             self.tell(error_text(error), True)
             return
         self.show()
+
+    def give(self, data, save=False):
+        """Reads the file with what a person says of it; on an error all stays as it was. ``save``: writes it
+        beside the program, too."""
+        try:
+            robot_path.load_program(self.obj, self.obj.Source, data)
+        except Cancelled:
+            return
+        except InputError as error:
+            self.tell(error_text(error), True)
+            return
+        self.show()
+        self.table.setCurrentWidget(self.values)
+        try:
+            if save:
+                program_values.save_beside(self.obj, data)
+        except InputError as error:
+            self.tell(error_text(error), True)
 
     def show(self):
         """Poses, source and problems as they are now."""
@@ -123,7 +149,25 @@ class ProgramPanel(Panel):
         if obj.Problems:
             text = translate("BeltGrinding", "Problems ({})").format(len(obj.Problems))
             self.table.addTab(self.trouble, text)
+        self.show_values()
         self.describe()
+
+    def show_values(self):
+        """What the program asks for, and what is given."""
+        at = self.table.indexOf(self.values)
+        if at >= 0:
+            self.table.removeTab(at)
+        rows = []
+        if self.obj.SourceObject is None and self.obj.Source:
+            try:
+                rows = program_values.rows(self.obj)
+            except InputError:  # the file beside it has gone bad since; reading the program again tells
+                pass
+        self.values.show_rows(rows)
+        if rows:
+            missing = sum(row.value is None for row in rows)
+            text = translate("BeltGrinding", "Values ({} missing)").format(missing)
+            self.table.addTab(self.values, text)
 
     def show_problems(self):
         """The list of problems: many of a kind in one line, or each place."""

@@ -222,6 +222,85 @@ def test_a_job_names_its_values_and_hashes_them(tmp_path):
         read_program(path, values=tmp_path / "elsewhere.json")
 
 
+RAPID = """MODULE M
+  VAR robtarget known := [[100,0,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  VAR num height;
+  PROC main()
+    height := AInput(ai1);
+    MoveL known, vGrind, zGrind, tool0;
+    MoveL pTaught, v100, fine, tool0;
+    MoveL Offs(pTaught, 1, stepover, height), v100, zNone, tool0;
+    MoveL RelTool(known, 0, 0, height), vmax, z10, tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_rapid_targets_numbers_speeds_and_zones(tmp_path):
+    path = write(tmp_path, "p.mod", RAPID)
+    program = read_program(path)
+    asked = {
+        "VGRIND": "number", "ZGRIND": "number", "ZNONE": "number", "VMAX": "number",
+        "PTAUGHT": "frame", "HEIGHT": "number", "STEPOVER": "number",
+    }  # fmt: skip
+    assert [m.kind for m in program.motions] == ["LIN", "GAP"] and program.problems
+    known = {
+        "vGrind": 35, "zgrind": 2.5, "zNone": 0, "vmax": 1500,
+        "pTaught": frame(10, 20, 30, 90, 0, 180), "height": 7, "stepover": -4,
+    }  # fmt: skip
+    program = read_program(write(tmp_path, "p.mod", RAPID, variables=known))
+    assert program.asked == asked and not program.problems
+    taught = matrix((10, 20, 30, 90, 0, 180))
+    offset = taught.copy()
+    offset[:3, 3] += (1, -4, 7)
+    wanted = [matrix((100, 0, 0, 0, 0, 0)), taught, offset, matrix((100, 0, 7, 0, 0, 0))]
+    np.testing.assert_allclose([m.pose for m in program.motions], wanted, atol=1e-9)
+    assert [m.speed_mm_s for m in program.motions] == [35, 100, 100, 1500]
+    assert [m.zone_mm for m in program.motions] == [2.5, 0, 0, 10]
+
+
+def test_what_a_rapid_program_tells_is_not_taken_from_the_file(tmp_path):
+    text = RAPID.replace("AInput(ai1)", "3").replace("pTaught", "known").replace("stepover", "2")
+    path = write(tmp_path, "p.mod", text, variables={"height": 50, "known": frame(*TOP)})
+    program = read_program(path)
+    heights = [m.pose[2, 3] for m in program.motions]
+    assert heights == [0, 0, 3, 3]
+    assert any("HEIGHT, KNOWN" in str(p) and p.file == "p.values.json" for p in program.problems)
+
+
+@pytest.mark.parametrize(
+    "values, word",
+    [
+        ({"pTaught": 5}, "PTAUGHT"),
+        ({"vGrind": frame(*TOP)}, "VGRIND"),
+        ({"height": True}, "HEIGHT"),
+    ],
+)
+def test_values_of_a_wrong_kind_are_refused(tmp_path, values, word):
+    path = write(tmp_path, "p.mod", RAPID, variables=values)
+    with pytest.raises(ProgramError) as error:
+        read_program(path)
+    assert "p.values.json" in str(error.value) and word in str(error.value)
+
+
+def test_a_damaged_rapid_program_with_values_is_read_or_refused(tmp_path):
+    known = {"vGrind": 35, "pTaught": frame(*TOP), "height": 7, "stepover": -4}
+    write(tmp_path, "p.mod", RAPID, variables=known)
+    draw = np.random.default_rng(18)
+    for _ in range(200):
+        damaged = bytearray(RAPID.encode())
+        for _ in range(draw.integers(1, 4)):
+            at = int(draw.integers(len(damaged)))
+            damaged[at : at + int(draw.integers(0, 9))] = draw.bytes(int(draw.integers(0, 5)))
+        (tmp_path / "p.mod").write_bytes(bytes(damaged))
+        try:
+            poses = read_program(tmp_path / "p.mod").path_arrays(9.0)["frames"]
+        except ProgramError as error:
+            assert "p." in str(error)
+            continue
+        assert np.isfinite(poses).all()
+
+
 def inline(values):
     return {
         "schema": 1,

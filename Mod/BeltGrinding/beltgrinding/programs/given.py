@@ -8,10 +8,15 @@ from ..base.files import in_file, write_whole
 from ..base.frames import from_abc
 from ..base.regular_files import shown
 from ..engine import InputError
-from .program import ProgramError
+from .program import Fact, ProgramError
 
 SUFFIX = ".values.json"
 FRAME = ("x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg")
+SHAPES = {
+    "frame": Fact("programs.values.frame", "a frame of six numbers"),
+    "number": Fact("programs.values.number", "a number"),
+    "truth": Fact("programs.values.truth", "true or false"),
+}
 LARGEST = 1e12  # of a number
 
 
@@ -74,7 +79,8 @@ def parsed(data, source):
 
 def apply(program, given, file):
     """Puts the frames that are given where the program tells none; what the program does not use is a
-    problem, since it may be misspelt. ``file``: how the values' file is named."""
+    problem, since it may be misspelt. ``file``: how the values' file is named. Raises ProgramError where a
+    value is not of the kind that the program takes."""
     used = {
         "bases": {m.base for m in program.motions},
         "tools": {m.tool for m in program.motions},
@@ -86,6 +92,19 @@ def apply(program, given, file):
                 kept[words] = frame
             else:
                 unused.append(words)
+    for name, value in given["variables"].items():
+        shape = program.asked.get(name)
+        told = "frame" if isinstance(value, tuple) else "truth"
+        if told == "truth" and not isinstance(value, bool):
+            told = "number"
+        if shape and shape != told:
+            raise ProgramError(
+                "programs.values.shape",
+                "{file}: variables: {name}: the program takes {shape} there",
+                file=file,
+                name=name[:60],
+                shape=SHAPES[shape],
+            )
     unused += [name for name in given["variables"] if name not in program.asked]
     if unused:
         program.problem(

@@ -139,8 +139,8 @@ class Program:
     base_frames: dict = field(default_factory=dict)
     tool_frames: dict = field(default_factory=dict)
     held: set = field(default_factory=set)
-    # Names that only the controller knows and the program asks for, {NAME: "frame", or "" of a number or
-    # truth value}, whether a person gave them (``programs.given``) or not.
+    # Names that only the controller knows and the program asks for, {NAME: "frame", "number", "truth", or ""
+    # where the program does not tell which}, whether a person gave them (``programs.given``) or not.
     asked: dict = field(default_factory=dict)
     told: set = field(default_factory=set)  # problems that path_arrays has found
 

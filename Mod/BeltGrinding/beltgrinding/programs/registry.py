@@ -29,10 +29,10 @@ def _csv(path):
     return csv_program.read(path)
 
 
-def _rapid(path):
+def _rapid(path, values=None):
     from .readers.rapid import reader as rapid
 
-    return rapid.read(path)
+    return rapid.read(path, values)
 
 
 def _urscript(path):
@@ -101,7 +101,7 @@ READERS = {
 }
 
 
-WITH_VARIABLES = (_krl, _fanuc)  # which take variables that a person gives
+WITH_VARIABLES = (_krl, _fanuc, _rapid)  # which take variables that a person gives
 
 
 def file_pattern():

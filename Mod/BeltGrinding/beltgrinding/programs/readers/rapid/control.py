@@ -21,8 +21,8 @@ TARGET = re.compile(r"\s*(\w+)\s*(?:\{[^}]*\}\s*|\.\s*\w+\s*)*:=")
 class Control(MotionRunner):
     """Runs blocks of statements; ``statement(node)`` is what a language's reader adds."""
 
-    def __init__(self, path):
-        super().__init__(path)
+    def __init__(self, path, given=None):
+        super().__init__(path, given)
         self.routines = {}  # (node, parameters, body) by name
         self.labels = {}  # places of labels in a block, by the id of its list
         self.rounds = 0  # units of work; below 0: what the file allows

@@ -6,7 +6,7 @@ reference manual, RAPID instructions, functions and data types.
 
 import math
 
-from ....base.frames import QUATERNION_TOLERANCE, from_quaternion, to_abc
+from ....base.frames import QUATERNION_TOLERANCE, from_abc, from_quaternion, to_abc, to_quaternions
 from ...program import Fact, Unknown
 
 MAX_MM = 1e6  # a robot's world ends before; RAPID writes 9E9 for 'not given'
@@ -57,6 +57,17 @@ RECORDS = {
 }
 SIMPLE = {"num": 0.0, "dnum": 0.0, "byte": 0.0, "bool": False, "string": ""}
 
+# What a person can say of data, by its type: "frame": six numbers, "number", "truth".
+GIVEN = {
+    "num": "number",
+    "dnum": "number",
+    "bool": "truth",
+    "speeddata": "number",
+    "zonedata": "number",
+    "robtarget": "frame",
+    "pose": "frame",
+}
+
 IDENTITY = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
 LOAD0 = [0.001, [0.0, 0.0, 0.001], [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0]
 # The manual's predefined speeds; vmax is the robot's own and therefore not among them.
@@ -84,6 +95,20 @@ PREDEFINED = {
     **{f"z{int(size)}": ("zonedata", zone(size)) for size in ZONES},
     **{f"reg{k}": ("num", 0.0) for k in range(1, 6)},
 }
+
+
+def from_person(kind, value):
+    """Data of what a person says: speeddata by mm/s, zonedata by mm (0: fine), a target by its frame."""
+    if kind == "speeddata":
+        return [value, *PREDEFINED["v5"][1][1:]]
+    if kind == "zonedata":
+        return zone(value) if value > 0 else PREDEFINED["fine"][1]
+    if kind not in ("robtarget", "pose"):
+        return value
+    (turn_,) = to_quaternions(from_abc(value[:3], value[3:])[None, :3, :3])
+    w_last = [float(one) for one in turn_]
+    pose = [[float(one) for one in value[:3]], w_last]
+    return [*pose, [0.0] * 4, [9e9] * 6] if kind == "robtarget" else pose
 
 
 def initial(kind, records, depth=0):

@@ -1,5 +1,6 @@
 """What a RAPID program knows while it is followed: its data, where the robot is, its motions."""
 
+import contextlib
 import functools
 import math
 import re
@@ -16,6 +17,7 @@ TOOL = Fact("programs.rapid.tool", "tool")
 WORK_OBJECT = Fact("programs.rapid.work_object", "work object")
 NO_VALUE = Fact("programs.rapid.no_value", "this file gives it no value")
 ASSIGNED = Fact("programs.assigned_at_run_time", "it is assigned at run time")
+OF_TARGETS = ("offs", "reltool")  # functions whose first argument is a target
 MAX_TEXT = 200  # characters of a reason
 MAX_RESOLVING = 10  # constants defined by constants
 NAME = re.compile(
@@ -54,6 +56,9 @@ class State:
         self.constants = set()
         self.reasons = {}  # why a value is not known
         self.texts = {}  # frames in words; cleared when data changes
+        self.given = {}  # what a person says: {NAME: number, truth value or six of a frame}
+        self.points = set()  # names of targets that are not declared, as far as that is seen
+        self.wanted = None  # type of what a motion takes while it is looked at; None: nobody is asked
 
     def value(self, row):
         """The value of an expression's tokens. Raises Unknown."""
@@ -78,12 +83,18 @@ class State:
             kind, value = PREDEFINED[name]
             return value, kind
         if entry is None:
+            told = self.ask(name, "robtarget" if name in self.points else self.wanted)
+            if told is not None:
+                return told
             raise Unknown(
                 "programs.rapid.not_declared", "{name} is not declared in this file", name=written
             )
         if len(entry) == 3:
             self.resolve(entry, name)
         if entry[1] is None:
+            told = self.ask(name, entry[0])
+            if told is not None:
+                return told
             fact = Fact(
                 "programs.not_known_since",
                 "{name} is not known ({reason})",
@@ -92,6 +103,28 @@ class State:
             )
             raise Unknown(shortened(fact, MAX_TEXT))
         return entry[1], entry[0]
+
+    def ask(self, name, kind):
+        """(value, type) that a person gives for data; None: nothing, or nobody is asked."""
+        if self.wanted is None or kind not in data.GIVEN:
+            return None
+        shape = data.GIVEN[kind]
+        self.program.asked.setdefault(name.upper(), shape)
+        value = self.given.get(name.upper())
+        if value is None or isinstance(value, tuple) != (shape == "frame"):
+            return None
+        if isinstance(value, bool) != (shape == "truth"):
+            return None
+        return data.from_person(kind, value), kind
+
+    @contextlib.contextmanager
+    def asking(self, kind):
+        """What is not known meanwhile is asked for: a motion needs it. ``kind``: of data not declared."""
+        before, self.wanted = self.wanted, kind
+        try:
+            yield
+        finally:
+            self.wanted = before
 
     def resolve(self, entry, name):
         if self.resolving >= MAX_RESOLVING:
@@ -147,8 +180,9 @@ class State:
 class MotionRunner(State):
     """Collects the motions of a program."""
 
-    def __init__(self, path):
+    def __init__(self, path, given=None):
         super().__init__()
+        self.given = given or {}
         self.file = name_of(path)
         self.program = Program("ABB RAPID", self.file)
         self.poses = []  # (motion, position, quaternion), made frames all at once
@@ -196,7 +230,7 @@ class MotionRunner(State):
             if len(row) <= speed_at + to_tool:
                 raise Unknown("programs.rapid.few_arguments", "it has too few arguments")
             tool, wobj = self.frames_of(line, row[speed_at + to_tool], options.get("wobj"))
-            targets = [self.value(r) for r in row[before : before + count]]
+            targets = [self.target(r, joint) for r in row[before : before + count]]
             if joint:
                 if not data.is_joints(targets[0]):
                     raise Unknown("programs.rapid.no_joint_target", "its target is no joint target")
@@ -231,6 +265,17 @@ class MotionRunner(State):
             )
             self.gap(line)
 
+    def target(self, row, joint):
+        """The value of a target's tokens. Raises Unknown."""
+        if joint:
+            return self.value(row)
+        with self.asking("robtarget" if len(row) == 1 else "num"):
+            # Offs(p, x, y, z): the first is a target, where it is not declared, the others are numbers.
+            if len(row) > 3 and (row[1][1], row[3][1]) == ("(", ",") and row[2][0] == "name":
+                if str(row[0][1]).lower() in OF_TARGETS:
+                    self.points.add(row[2][1].lower())
+            return self.value(row)
+
     def add(self, motion, tool, wobj):
         motion.tool, motion.base = self.described(tool, 1), self.described(wobj, 3)
         self.program.motions.append(motion)
@@ -257,6 +302,13 @@ class MotionRunner(State):
             return pose
         return pose_of(product(self.displacement, pose))
 
+    def is_vmax(self, row):
+        """Whether a speed is the robot's own, and nobody says which."""
+        if len(row) != 1 or str(row[0][1]).lower() != "vmax" or self.entry("vmax") is not None:
+            return False
+        with self.asking("speeddata"):
+            return self.ask("vmax", "speeddata") is None
+
     def speed(self, line, kind, row, options, length):
         """mm/s of a motion; None: not known here."""
         try:
@@ -270,7 +322,7 @@ class MotionRunner(State):
                 )
             if options.get("v"):
                 speed = number(self.value(options["v"]))
-            elif len(row) == 1 and str(row[0][1]).lower() == "vmax" and self.entry("vmax") is None:
+            elif self.is_vmax(row):
                 if kind != "PTP":
                     self.problem(
                         line,
@@ -280,7 +332,8 @@ class MotionRunner(State):
                     )
                 return None
             else:
-                value = self.value(row)
+                with self.asking("speeddata" if len(row) == 1 else "num"):
+                    value = self.value(row)
                 if not isinstance(value, list) or len(value) != 4:
                     raise Unknown("programs.rapid.no_speeddata", "it is no speeddata")
                 speed = number(value[0])
@@ -304,10 +357,11 @@ class MotionRunner(State):
         try:
             if "inpos" in options:
                 return 0.0
-            if len(row) == 1 and row[0][0] == "name":
-                value = self.variable(row[0][1])[0]
-            else:
-                value = self.value(row)
+            with self.asking("zonedata" if len(row) == 1 else "num"):
+                if len(row) == 1 and row[0][0] == "name":
+                    value = self.variable(row[0][1])[0]
+                else:
+                    value = self.value(row)
             if not isinstance(value, list) or len(value) != 7 or not isinstance(value[0], bool):
                 raise Unknown("programs.rapid.no_zonedata", "it is no zonedata")
             if value[0]:

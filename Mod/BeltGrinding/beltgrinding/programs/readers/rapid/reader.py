@@ -28,9 +28,9 @@ PARAMETER = re.compile(r"(?:(INOUT|VAR|PERS)\s+)?(\w+)\s+(\w+)\s*(?:\{[^}]*\})?$
 BLOCKS = ("if", "for", "while", "test")
 
 
-def read(path):
-    """The Program of a RAPID module. Raises ProgramError when it cannot be read at all."""
-    interpreter = _Interpreter(path)
+def read(path, values=None):
+    """The Program of a RAPID module; ``values``: what a person gives, by name. Raises ProgramError when it cannot be read at all."""
+    interpreter = _Interpreter(path, values)
     try:
         interpreter.run(tree(path), modules.others(Path(path)))
     except RecursionError:
@@ -54,8 +54,8 @@ class _Undecided(Exception):
 class _Interpreter(Control):
     """Follows a program from PROC main on with the values it can know."""
 
-    def __init__(self, path):
-        super().__init__(path)
+    def __init__(self, path, given=None):
+        super().__init__(path, given)
         self.calls = 0
         self.missing = set()
         self.functions = {}  # as routines

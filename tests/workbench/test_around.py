@@ -16,7 +16,7 @@ RINGS = {"along": "rings", "step_over_mm": 10.0, "entry": "direct"}
 @pytest.fixture(scope="module")
 def parts(freecad, tmp_path_factory):
     """BREP files: a cylinder whose side is two half faces, askew in space; a cone; a cup; a quarter of a torus (a
-    bent tube); a half cylinder."""
+    bent tube); a half cylinder; a cap of a sphere about (1, 2, 2)."""
     folder = tmp_path_factory.mktemp("round")
     freecad.run(
         f"""
@@ -35,6 +35,7 @@ half().exportBrep(str(folder / "half.brep"))
 Part.makeCylinder({RADIUS}, {HEIGHT}, V(0, 0, 0), V(0, 0, 1), 90).exportBrep(str(folder / "quarter.brep"))
 Part.makeCone(30, 15, 40).exportBrep(str(folder / "cone.brep"))
 Part.makeTorus(60, 15, V(0, 0, 0), V(0, 0, 1), -180, 180, 90).exportBrep(str(folder / "bend.brep"))
+Part.makeSphere(50, V(0, 0, 0), V(1, 2, 2), 50, 90, 360).exportBrep(str(folder / "cap.brep"))
 """
     )
     return folder
@@ -141,3 +142,29 @@ def test_the_axis_of_a_surface_of_revolution_is_found(parts):
     )
     assert abs(axis.way @ turned) == pytest.approx(1.0, abs=1e-6)
     assert axis.radii(field.points) == pytest.approx(np.full(field.size, RADIUS), abs=1e-3)
+
+
+def test_rings_on_a_cap_of_a_sphere_go_round_its_pole(parts):
+    path = parts / "cap.brep"  # all lines through a sphere's middle are axes of it, one is its border's
+    laid = raster_path.raster(job_of(path, faces_of(path, "sphere")), RINGS)
+    way = np.array([1.0, 2.0, 2.0]) / 3.0
+    rings = 0
+    for k, one in enumerate(laid["passes"]):
+        places = on_pass(laid, k)[:, :3, 3]
+        height = places @ way
+        assert np.ptp(height) < 0.3
+        if np.linalg.norm(places[0] - places[-1]) < 0.3:
+            rings += 1
+            radius = math.sqrt(50.0**2 - height.mean() ** 2)
+            assert one["length_mm"] == pytest.approx(2 * math.pi * radius, rel=1e-2)
+    # 50 mm by 40 degrees of arc from the border to the pole.
+    assert rings >= 3
+
+
+def test_an_oblong_dome_does_not_go_round():
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60)))
+    points = 20.0 * np.stack([x, 0.6 * y, -0.5 * x**2 - y**2], axis=1)
+    normals = np.stack([x, 2.0 * y / 0.6, np.ones(len(x))], axis=1)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    axis = around.Axis(points, normals, np.ones(len(x)))
+    assert axis.turn < 0.5

@@ -36,33 +36,52 @@ class Axis:
         # Without b: what of the equation b can take up is taken out (Schur complement).
         a, b, c = matrix[:3, :3], matrix[:3, 3:], matrix[3:, 3:]
         back = np.linalg.pinv(c, rcond=1e-9, hermitian=True) @ b.T
-        for way in np.linalg.eigh(a - b @ back)[1].T:
-            shift = -back @ way
-            shift -= (shift @ way) * way  # a rotation, no screw
-            place = middle + size * np.cross(way, shift)
-            if self._error(points, normals, weight, place, way) < ROUND:
-                self.place, self.way, self.revolution = place, way, True
-                break
+        mean = normals.T @ weight
+        spread = np.linalg.eigh((normals * weight[:, None]).T @ normals)[1].T
+
+        def revolved(ways):
+            """(unevenness, Axis) of those of the ways that are an axis of revolution."""
+            found = []
+            for way in ways:
+                shift = -back @ way
+                shift -= (shift @ way) * way  # a rotation, no screw
+                place = middle + size * np.cross(way, shift)
+                if self._error(points, normals, weight, place, way) < ROUND:
+                    one = copy.copy(self)
+                    one.place, one.way, one.revolution = place, way, True
+                    found.append((one._settle(points, weight), one))
+            return found
+
+        found = revolved(np.linalg.eigh(a - b @ back)[1].T)
+        if len(found) > 1:
+            # A sphere has all axes: the one that the faces lie evenly round is wanted.
+            found += revolved(spread)
+            if np.linalg.norm(mean) > ROUND:
+                found += revolved([mean / np.linalg.norm(mean)])
         self.turn = 0.0
-        if self.revolution:
-            self._settle(points)
+        if found:
+            self.__dict__ = min(found, key=lambda one: one[0])[1].__dict__
         if self.turn < CLOSED:
             # A bent tube may be a piece of a torus, round whose axis it does not go.
             tube = copy.copy(self)
-            tube.place, tube.revolution = middle, False
-            tube.way = np.linalg.eigh((normals * weight[:, None]).T @ normals)[1][:, 0]
-            tube._settle(points)
+            tube.place, tube.revolution, tube.way = middle, False, spread[0]
+            tube._settle(points, weight)
+            looks = np.sort(tube.angles(normals + middle))
+            gap = np.diff(looks, append=looks[0] + 2.0 * math.pi).max()
+            if gap > math.pi:  # a dome lies round about its middle, but does not look every way
+                tube.turn = min(tube.turn, 1.0 - gap / (2.0 * math.pi))
             if not self.revolution or tube.turn >= CLOSED:
                 self.__dict__ = tube.__dict__
 
-    def _settle(self, points):
-        """Turns the axis up, and finds the share of a turn that the points take."""
+    def _settle(self, points, weight):
+        """Turns the axis up, and finds the share of a turn that the points take. Returns how unevenly they lie round
+        it: the standard deviation of the sectors' weights."""
         k = int(np.argmax(abs(self.way)))
         self.way = self.way * (1.0 if self.way[k] > 0 else -1.0)
         angles, radius = self.angles(points), self.radii(points)
         off = radius > 1e-3 * max(radius.max(), 1e-12)
-        sector = ((angles[off] + math.pi) / (2.0 * math.pi) * SECTORS).astype(int) % SECTORS
-        self.turn = len(np.unique(sector)) / SECTORS
+        self.turn = _turn(angles[off])
+        return np.bincount(_sectors(angles), weight, SECTORS).std()
 
     @staticmethod
     def _error(points, normals, weight, place, way):
@@ -88,6 +107,16 @@ class Axis:
         first /= np.linalg.norm(first)
         off = points - self.place
         return np.arctan2(off @ np.cross(self.way, first), off @ first)
+
+
+def _sectors(angles):
+    """Number of the sector (n,) in which angles (n,) rad, -pi to pi, lie."""
+    return ((angles + math.pi) / (2.0 * math.pi) * SECTORS).astype(int) % SECTORS
+
+
+def _turn(angles):
+    """The share of a full turn that angles (n,) rad take."""
+    return len(np.unique(_sectors(angles))) / SECTORS
 
 
 def sheet(points, normals, triangles, areas, warnings):

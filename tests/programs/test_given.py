@@ -318,7 +318,7 @@ def test_a_job_may_hold_the_values_itself(tmp_path):
     arrays = program_arrays(job["programs"][0], "p", told)
     np.testing.assert_allclose(arrays["frames"][0], matrix(TOP), atol=1e-9)
     np.testing.assert_allclose(arrays["frames"][1][:3, 3], (7, *TOP[1:3]), atol=1e-9)
-    assert [str(one) for one in told if "NONE" in str(one)]
+    assert [one for one in map(str, told) if "NONE" in one and one.startswith("p.src: values")]
     other = validate(inline({"variables": {"XP1": frame(*SIDE), "H": 7}}), tmp_path)
     assert digests(job)[0]["sha256"] != digests(other)[0]["sha256"]
 
@@ -338,6 +338,14 @@ def test_bad_values_in_a_job_are_refused_by_their_key(tmp_path, values, word):
     with pytest.raises(InputError) as error:
         validate(inline(values), tmp_path)
     assert "programs.0.values" in str(error.value) and word in str(error.value)
+
+
+def test_values_of_a_wrong_kind_in_a_job_are_refused_by_their_program(tmp_path):
+    write(tmp_path, "p.mod", RAPID)
+    job = inline({"variables": {"height": True}})
+    job["programs"][0]["file"] = "p.mod"
+    with pytest.raises(InputError, match="p.mod: values: variables: HEIGHT"):
+        program_arrays(validate(job, tmp_path)["programs"][0], "p", [])
 
 
 def test_values_of_a_job_are_a_file_or_an_object(tmp_path):

@@ -145,7 +145,8 @@ def read_program(path, roll=None, roll_direction=None, values=None):
     except InputError as error:
         raise ProgramError.of(error) from None
     if isinstance(values, dict):
-        side, known = Path("values"), given.parsed(values, "values")
+        side = Path(f"{path.name}: values")
+        known = given.parsed(values, shown(side.name))
     else:
         side = Path(values) if values else given.beside(path)
         known = given.load(side) if values or os.path.isfile(side) else None

@@ -41,7 +41,20 @@ FREE_FORM = {"plane", "cylinder", "cone"}  # and all but these
 SAMPLES = 15_000  # on the faces, at least
 COARSEST = 1.5  # mm from sample to sample: the contact is some 6 mm across
 SMALLEST = 20.0  # mm2; a face below it is none that one grinds
-HEAD = "turn", "/mm", "fast", "back", "plunge", "ramp", "left", "reach", "cover", "passes", "poses", "s"
+HEAD = (
+    "turn",
+    "/mm",
+    "fast",
+    "back",
+    "plunge",
+    "ramp",
+    "left",
+    "reach",
+    "cover",
+    "passes",
+    "poses",
+    "s",
+)
 
 
 def chosen(shape):

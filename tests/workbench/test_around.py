@@ -145,7 +145,9 @@ def test_the_axis_of_a_surface_of_revolution_is_found(parts):
 
 
 def test_rings_on_a_cap_of_a_sphere_go_round_its_pole(parts):
-    path = parts / "cap.brep"  # all lines through a sphere's middle are axes of it, one is its border's
+    path = (
+        parts / "cap.brep"
+    )  # all lines through a sphere's middle are axes of it, one is its border's
     laid = raster_path.raster(job_of(path, faces_of(path, "sphere")), RINGS)
     way = np.array([1.0, 2.0, 2.0]) / 3.0
     rings = 0

@@ -107,7 +107,9 @@ def test_round_a_post_the_pass_is_interrupted(parts):
     centre = contacts[:, :3, 3] - RADIUS * contacts[:, :3, 2]
     beside = np.abs(contacts[:, 1, 3] - 30.0) < 0.5 * WIDTH + 6.0 - 1.0
     # The wheel's axis is 20 mm high, the post 30: along x it keeps a radius off the post's side.
-    side = np.sqrt(np.maximum(6.0**2 - np.maximum(np.abs(contacts[:, 1, 3] - 30.0) - 5.0, 0) ** 2, 0))
+    side = np.sqrt(
+        np.maximum(6.0**2 - np.maximum(np.abs(contacts[:, 1, 3] - 30.0) - 5.0, 0) ** 2, 0)
+    )
     assert (np.abs(centre[beside, 0] - 40.0) > RADIUS + side[beside] - 0.75).all()
     # No way bridges the post in contact, however long a gap may be.
     for one in laid["passes"]:

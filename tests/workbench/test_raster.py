@@ -258,7 +258,9 @@ def test_the_best_way_goes_where_the_wheel_fits_in():
 def test_the_solved_width_is_that_of_the_contact_there():
     """On a cylinder both ways to the width agree; on a part of two curvatures the solved one keeps to the narrow."""
     radius = 50.0
-    round_ = plate(bend=lambda x: math.sqrt(radius**2 - (x - 50.0) ** 2) if abs(x - 50) < 40 else 30.0)
+    round_ = plate(
+        bend=lambda x: math.sqrt(radius**2 - (x - 50.0) ** 2) if abs(x - 50) < 40 else 30.0
+    )
     settings = {"along": "direction", "direction": [0, 1, 0], "smoothing_mm": 3.0}
     solved = raster.raster(job_of(round_), settings)
     plain = raster.raster(job_of(round_), {**settings, "footprint": "cylinder"})
@@ -267,7 +269,9 @@ def test_the_solved_width_is_that_of_the_contact_there():
     flat = raster.raster(job_of(plate()), ALONG_X)
     assert flat["contact_width_mm"] == pytest.approx(flat["footprint"]["plain_mm"], rel=0.12)
     assert np.ptp(flat["footprint"]["widths"]) < 1.0
-    assert flat["contact_length_mm"] == pytest.approx(np.median(flat["footprint"]["lengths"]), abs=1)
+    assert flat["contact_length_mm"] == pytest.approx(
+        np.median(flat["footprint"]["lengths"]), abs=1
+    )
 
 
 def test_a_wheel_that_does_not_fit_is_warned_of():

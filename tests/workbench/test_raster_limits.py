@@ -305,3 +305,18 @@ def test_a_ring_that_goes_back_where_it_begins_is_none():
         for one in left:
             steps = np.diff(one["points"], axis=0)
             assert ((steps[1:] * steps[:-1]).sum(axis=1) > 0).all()
+
+
+def test_a_ring_whose_ends_look_different_ways_is_none():
+    """Its beginning was leaned and its end was not: over the seam the wheel would jump."""
+    angle = np.linspace(0.0, 2.0 * math.pi, 200)
+    points = np.stack([30 * np.cos(angle), 30 * np.sin(angle), 0 * angle], axis=1)
+    tangents = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=1)
+    lean = np.clip(0.2 - 0.02 * np.arange(200), 0.0, None)[:, None]
+    outwards = points / 30.0
+    normals = np.cos(lean) * outwards + np.sin(lean) * np.array([0.0, 0.0, 1.0])
+    piece = {"points": points, "normals": normals, "tangents": tangents, "closed": True}
+    (one,) = turn_limits.limited(piece, raster_path.validate({}))
+    assert not one["closed"]
+    even = {**piece, "normals": outwards}
+    assert turn_limits.limited(even, raster_path.validate({}))[0]["closed"]

@@ -47,15 +47,19 @@ def job_of(brep, wheel=None, **parts):
 def test_passes_stay_near_the_region():
     spot = [[x, y, 0.0] for x in range(30, 51, 2) for y in range(20, 31, 2)]
     job = job_of(plate())
-    laid = raster_path.raster(job, {**X, "region_points": spot, "region_mm": 3.0, "entry": "direct"})
+    laid = raster_path.raster(
+        job, {**X, "region_points": spot, "region_mm": 3.0, "entry": "direct"}
+    )
     places = laid["contacts"][laid["contact"]][:, :3, 3]
     off = np.maximum(np.maximum([30, 20] - places[:, :2], places[:, :2] - [50, 30]), 0)
     assert np.linalg.norm(off, axis=1).max() <= 3.0 + 1e-6
     assert places[:, 0].min() < 29 and places[:, 0].max() > 51  # all of it, and what is round it
     seen = laid["places"]
     inside = (
-        (seen["points"][:, 0] > 29) & (seen["points"][:, 0] < 51)
-        & (seen["points"][:, 1] > 19) & (seen["points"][:, 1] < 31)
+        (seen["points"][:, 0] > 29)
+        & (seen["points"][:, 0] < 51)
+        & (seen["points"][:, 1] > 19)
+        & (seen["points"][:, 1] < 31)
     )
     assert (seen["state"][inside] == reachable.GROUND).all()
     far = np.linalg.norm(seen["points"][:, :2] - [40, 25], axis=1) > 35
@@ -142,5 +146,3 @@ def test_a_second_wheel_takes_what_the_first_leaves():
     assert middle.any() and not places["left"][middle].any()
     again, _ = in_turn([(small, settings), (small, settings)])
     assert again[1] is None or len(again[1]["passes"]) < len(again[0]["passes"])
-
-

@@ -227,7 +227,12 @@ class Clearing:
             part["cut"] = (run[0] > 0 or before, run[-1] < len(states) - 1 or after)
             part.pop("own", None)
             result.append(part)
-        if piece["closed"] and len(kept_runs) > 1 and kept_runs[0][0] == 0 and kept_runs[-1][-1] == len(states) - 1:
+        if (
+            piece["closed"]
+            and len(kept_runs) > 1
+            and kept_runs[0][0] == 0
+            and kept_runs[-1][-1] == len(states) - 1
+        ):
             last = result.pop()  # the beginning of a ring is no end
             for name in ("points", "normals", "tangents"):
                 result[0][name] = np.vstack([last[name][:-1], result[0][name]])

@@ -64,7 +64,8 @@ def contact_width(job, settings, surfaces, warnings):
 
 def plane_extents(job, settings):
     """(mm along the pass, mm across it) of the contact on a plane, of the job's wheel under the force. Under
-    position control, the wheel's chord at the depth of the allowance, and a little more, and its width."""
+    position control, the wheel's chord at the depth of the allowance, and a little more, and its width.
+    """
     wheel, compliance, _, options = engine_input.engine_arguments(job)
     machine = job["belt_machine"]
     if machine["control"] != "force" or compliance["model"] == "geometric":

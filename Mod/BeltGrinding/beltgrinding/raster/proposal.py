@@ -145,7 +145,9 @@ def _wheel(job, shape, field, settings, area, extent, notes, context):
     along, across, weights = map(
         np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))
     )
-    hollow_along, hollow_across = (weighted_quantile(np.maximum(-k, 0.0), weights, HOLLOW) for k in (along, across))
+    hollow_along, hollow_across = (
+        weighted_quantile(np.maximum(-k, 0.0), weights, HOLLOW) for k in (along, across)
+    )
     most = min(FIT / hollow_along if hollow_along > 0 else math.inf, max(0.5 * extent, RADII[0]))
     radius = max((r for r in RADII if r <= most), default=RADII[0])
     if most < RADII[0]:
@@ -178,7 +180,8 @@ def _wheel(job, shape, field, settings, area, extent, notes, context):
 
 def _that_fits(job, shape, field, settings, radius, width, context):
     """((radius, width) mm of the largest wheel, not above these, that fits the part nearly everywhere on the faces;
-    share of the area where it does not): the radius comes down first. Where none fits, the best one."""
+    share of the area where it does not): the radius comes down first. Where none fits, the best one.
+    """
     frames, areas = _standing(field, settings["direction"])
     clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
 

@@ -134,9 +134,7 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
     result = passes.assemble(cleared, settings, cell, entry, clearing)
     no_room = not result["passes"] and any(levels)
     if no_room:
-        clearing = Clearing(
-            job, shape, {**settings, "where_it_collides": "warn"}, [], context
-        )
+        clearing = Clearing(job, shape, {**settings, "where_it_collides": "warn"}, [], context)
         result = passes.assemble(levels, settings, cell, entry, clearing)
         _tell_no_room(result, warnings)
     if not result["passes"]:
@@ -263,9 +261,6 @@ def _finer(area, step_over):
     return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
-
-
-
 def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
     """Pieces of passes of all surfaces: list of levels, each a list of the core's lines."""
     levels, laid = [], settings["spacing"]
@@ -383,7 +378,10 @@ def summary(result):
         "area_mm2": result["area_mm2"],
         "along": result["along"],
         "direction": result["direction"] if result["along"] == "direction" else None,
-        "tried": [{**one, "error": str(one["error"]) if one.get("error") else None} for one in result["tried"]],
+        "tried": [
+            {**one, "error": str(one["error"]) if one.get("error") else None}
+            for one in result["tried"]
+        ],
         "ends_without_room": result["beside"],
         "reachable": result["reachable"],
         "check": {k: v for k, v in result["check"].items() if k != "problems"},

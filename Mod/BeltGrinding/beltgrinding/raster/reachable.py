@@ -132,9 +132,7 @@ def touched(points, contacts, wheel, extents):
             some = fine[k : k + BLOCK]
             middle = some[:, :3, 3].mean(axis=0)
             radius = np.linalg.norm(some[:, :3, 3] - middle, axis=1).max() + reach
-            near = np.flatnonzero(
-                ~found & (((points - middle) ** 2).sum(axis=1) <= radius**2)
-            )
+            near = np.flatnonzero(~found & (((points - middle) ** 2).sum(axis=1) <= radius**2))
             if len(near):
                 found[near] = _under(points[near], some, wheel, drop, gap)
     return found

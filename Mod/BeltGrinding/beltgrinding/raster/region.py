@@ -75,7 +75,9 @@ def check(points, faces, margin):
     """Raises InputError if a region's points do not lie on faces that have ``faces`` (m, 3) points, mm."""
     off = reachable.nearest_distance(points, faces)
     far = weighted_quantile(off, np.ones(len(off)), NEAREST)
-    spacing = weighted_quantile(reachable.nearest_distance(faces[:50], faces[50:]), np.ones(50), 0.9)
+    spacing = weighted_quantile(
+        reachable.nearest_distance(faces[:50], faces[50:]), np.ones(50), 0.9
+    )
     if far > APART * max(margin, spacing):
         raise InputError(
             "raster.region_elsewhere",

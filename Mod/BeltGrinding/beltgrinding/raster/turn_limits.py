@@ -32,7 +32,7 @@ def limited(piece, settings):
         start = cut
     result = []
     ring = piece["closed"] and not _seam_backs(points)
-    whole = ring and len(done) == 1
+    whole = ring and len(done) == 1 and not _seam_jumps(*done[0], rate, settings)
     if ring and len(done) > 1 and not _apart(done[-1], done[0], rate):
         # The beginning of a ring is no end.
         last = done.pop()
@@ -92,6 +92,14 @@ def _seam_backs(points):
     steps = np.diff(points, axis=0)
     moves = steps[np.linalg.norm(steps, axis=1) > STILL]
     return len(moves) < 2 or moves[-1] @ moves[0] < BACK
+
+
+def _seam_jumps(points, turns, rate, settings):
+    """Whether the wheel would turn too fast from a ring's end to its second point: a turn that is spread, or a lean
+    that changes, at one side of the seam only."""
+    way, turn = _steps(np.stack([points[-1], points[1]]), np.stack([turns[-1], turns[1]]))
+    limit = min(rate * way[0], math.radians(settings["max_turn_deg"])) / KEPT
+    return turn[0] > limit + NO_TURN
 
 
 def slerp(a, b, shares):

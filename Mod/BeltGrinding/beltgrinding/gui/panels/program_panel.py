@@ -161,7 +161,9 @@ class ProgramPanel(Panel):
         if self.obj.SourceObject is None and self.obj.Source:
             try:
                 rows = program_values.rows(self.obj)
-            except InputError:  # the file beside it has gone bad since; reading the program again tells
+            except (
+                InputError
+            ):  # the file beside it has gone bad since; reading the program again tells
                 pass
         self.values.show_rows(rows)
         if rows:

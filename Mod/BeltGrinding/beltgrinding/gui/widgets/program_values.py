@@ -10,7 +10,8 @@ HEIGHT = 120  # pixels
 
 class ProgramValues(QtGui.QWidget):
     """Asks for the values of a RobotPath's program. ``applied(data)`` and ``saved(data)`` are called with the
-    content of a values file, ``wrong(error)`` with the InputError of a cell, which is chosen then."""
+    content of a values file, ``wrong(error)`` with the InputError of a cell, which is chosen then.
+    """
 
     def __init__(self):
         super().__init__()

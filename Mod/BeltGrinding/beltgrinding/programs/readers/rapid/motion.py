@@ -58,7 +58,9 @@ class State:
         self.texts = {}  # frames in words; cleared when data changes
         self.given = {}  # what a person says: {NAME: number, truth value or six of a frame}
         self.points = set()  # names of targets that are not declared, as far as that is seen
-        self.wanted = None  # type of what a motion takes while it is looked at; None: nobody is asked
+        self.wanted = (
+            None  # type of what a motion takes while it is looked at; None: nobody is asked
+        )
 
     def value(self, row):
         """The value of an expression's tokens. Raises Unknown."""

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from ..engine import InputError, core
+from ..engine import InputError
 
 ROUND = 0.05  # sine, root mean square, between normals and the planes through an axis of revolution
 ALONG_AXIS = 0.7  # share of a normal along the axis, on the mean: faces that lie across it rather than along it
@@ -119,7 +119,7 @@ def _turn(angles):
     return len(np.unique(_sectors(angles))) / SECTORS
 
 
-def sheet(points, normals, triangles, areas, warnings):
+def sheet(points, normals, triangles, areas):
     """dict(scalars (m, 3), angles (n,) rad or None, profile (n,) mm or None) of faces, triangles (m, 3) on points
     (n, 3) with normals and areas, mm: the scalar does not change round them. A helix has angles and the length along
     the profile of a surface of revolution. Raises InputError for faces that do not go round.
@@ -131,14 +131,6 @@ def sheet(points, normals, triangles, areas, warnings):
             "the faces do not go round: they take {share:.0f} % of a turn about their axis; choose all faces round "
             "it, or lay the passes along u, v or a direction",
             share=100.0 * axis.turn,
-        )
-    if axis.turn < CLOSED:
-        warnings.append(
-            core.Fact(
-                "raster.rings_open",
-                "the faces take {share:.0f} % of a turn about their axis: the passes round them are no closed rings",
-                share=100.0 * axis.turn,
-            )
         )
     across = abs(normals @ axis.way)
     weight = areas.astype(float) / areas.sum()

@@ -14,6 +14,7 @@ MOST_SAMPLES = 40_000
 STEP = 0.3  # of the contact's length: from step to step of the simulation
 AS_EVEN = 0.1  # of the residual: so near the best, the quickest is taken
 ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the faces are longest
+ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
 FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
 
 
@@ -25,7 +26,7 @@ def candidates(field):
     mean = (field.normals * weight).sum(axis=0) / weight.sum()
     _, axes = np.linalg.eigh(spread)
     ways = [{"along": "u"}, {"along": "v"}]
-    if around.Axis(points, field.normals.astype(float), field.areas).turn >= around.CLOSED:
+    if around.Axis(points, field.normals.astype(float), field.areas).turn >= ROUND:
         ways.append({"along": "rings"})
     if np.linalg.norm(mean) > FLAT:
         normal = mean / np.linalg.norm(mean)

@@ -28,6 +28,7 @@ POSE_SAMPLES = 3  # between neighbouring poses, at least
 WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
 MOST_POSES = 300_000
 ONE_LEVEL = 1.5
+CLOSED = 0.5  # of the length of rings; less is told
 UNCOVERED = 0.01  # of the area; more is warned of
 
 
@@ -118,6 +119,8 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
+    if settings["along"] == "rings" and settings["order"] != "helix":
+        _tell_open_rings(levels, warnings)
     wanted = _wanted(settings, seen["width_mm"] or step_over)
     if wanted is not None:
         region.check(wanted[0], np.vstack([s["points"] for s in sheets]), wanted[1])
@@ -162,6 +165,21 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
         if added:
             result.update(passes.assemble(cleared + added, settings, cell, entry, clearing))
     return result, levels, clearing
+
+
+def _tell_open_rings(levels, warnings):
+    pieces = [piece for level in levels for piece in level]
+    closed = sum(passes.length(piece["points"]) for piece in pieces if piece["closed"])
+    share = closed / max(sum(passes.length(piece["points"]) for piece in pieces), 1e-9)
+    if share < CLOSED:
+        warnings.append(
+            core.Fact(
+                "raster.rings_open",
+                "of the length of the passes round the faces {share:.0f} % are closed rings; the others end at "
+                "borders or sharp edges",
+                share=100.0 * share,
+            )
+        )
 
 
 def _overlap(result):

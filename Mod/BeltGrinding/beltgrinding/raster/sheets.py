@@ -22,7 +22,7 @@ def surfaces(job, shape, faces, spacing, settings, warnings, context):
             "raster.faces_too_small", "the faces are too small for the sampling; lower sampling_mm"
         )
     if along == "rings":
-        found = around.sheet(points, normals, triangles, field.areas, warnings)
+        found = around.sheet(points, normals, triangles, field.areas)
         whole = {"points": points, "normals": normals, "triangles": triangles}
         return [{**whole, **found, "period": 0.0, "name": ""}]
     if along == "direction":

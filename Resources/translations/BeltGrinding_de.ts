@@ -3632,6 +3632,10 @@ im Mittel {} abgetragen</translation>
         <source>Writes NAME.values.json beside the program, too</source>
         <translation>Schreibt auch NAME.values.json neben das Programm</translation>
     </message>
+    <message>
+        <source>Only what other passes leave</source>
+        <translation>Nur was andere Bahnen lassen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

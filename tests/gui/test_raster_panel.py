@@ -170,6 +170,20 @@ assert path.LeftTriangles and path.ViewObject.Proxy.left.whichChild.getValue() =
 screenshot("left.png")
 field("WhereItCollides").setCurrentIndex(2)  # only warn
 wait(lambda: path.LeftOut == 0)
+field("WhereItCollides").setCurrentIndex(1)
+wait(lambda: path.LeftOut > 5)
+press("OK")
+first = doc.RasterPath
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Corner", f"Face{top}")
+menu("Raster path...")
+path = doc.RasterPath001
+wait(lambda: path.PassCount > 0)
+assert path.GroundLength.Value > 0 and not path.RegionPoints
+field("regionOthers").click()
+assert path.RegionPoints, field("note").text()
+assert {tuple(p) for p in path.RegionPoints} == {tuple(p) for p in first.LeftPoints}
+assert min(p.y for p in path.RegionPoints) > 15  # beside the wall at y = 40
 path.ViewObject.Visibility = False
 assert path.ViewObject.Proxy.left.whichChild.getValue() == -1
 press("Cancel")

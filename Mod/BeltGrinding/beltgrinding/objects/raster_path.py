@@ -214,6 +214,28 @@ def to_what_is_left(obj):
     set_region(obj, region.of_field(field, data, where=simulation.Label)[0])
 
 
+def to_what_others_leave(obj):
+    """Restricts a raster path to where the wheels of all other raster paths on its faces, whichever job they are of, do
+    not get to or have no pass. Raises InputError."""
+    chosen = {(part.Name, name) for part, names in obj.Faces for name in names}
+    others = [
+        other
+        for other in obj.Document.Objects
+        if other is not obj
+        and isinstance(getattr(other, "Proxy", None), RasterPath)
+        and chosen <= {(part.Name, name) for part, names in other.Faces for name in names}
+    ]
+    if not others:
+        raise InputError("raster.no_others", "no other raster path lies on these faces")
+    left = None
+    for other in others:
+        mine = {tuple(point) for point in other.LeftPoints}
+        left = mine if left is None else left & mine
+    if not left:
+        raise InputError("raster.others_leave_nothing", "the other raster paths leave nothing")
+    set_region(obj, sorted(left))
+
+
 def set_region(obj, points):
     """Restricts a raster path to the surroundings of points (n, 3) mm; to none: everywhere."""
     obj.RegionPoints = [tuple(point) for point in np.asarray(points, dtype=float).tolist()]

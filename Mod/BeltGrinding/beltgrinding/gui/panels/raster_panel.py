@@ -71,6 +71,11 @@ class RasterPanel(Panel):
         rows.addWidget(self.region)
         for name, text, clicked in (
             ("regionLeft", translate("BeltGrinding", "Only what is left"), self.take_left),
+            (
+                "regionOthers",
+                translate("BeltGrinding", "Only what other passes leave"),
+                self.take_others,
+            ),
             ("regionAll", translate("BeltGrinding", "Everywhere"), self.take_all),
         ):
             button = QtGui.QPushButton(text)
@@ -95,8 +100,15 @@ class RasterPanel(Panel):
 
     def take_left(self):
         """Lays passes only where the last result is above the tolerance."""
+        self._take(raster_path.to_what_is_left)
+
+    def take_others(self):
+        """Lays passes only where other wheels do not get to."""
+        self._take(raster_path.to_what_others_leave)
+
+    def _take(self, region):
         try:
-            raster_path.to_what_is_left(self.obj)
+            region(self.obj)
         except InputError as error:
             self.tell(error_text(error), True)
             return

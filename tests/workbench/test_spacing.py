@@ -122,3 +122,25 @@ def test_the_chosen_spacing_is_that_of_the_run_and_its_convergence(parts, capsys
     assert json.dumps(runs.run(with_it).summary["deviation_mm"]) == json.dumps(
         result.summary["deviation_mm"]
     )
+
+
+def test_what_is_too_coarse_is_told_before_anything_is_ground(parts):
+    job = job_of(parts / "block.brep", [6])
+    job["programs"] = [
+        {
+            "poses": [
+                {"x_mm": x, "y_mm": 20.0, "z_mm": 20.2, "qw": 0.0, "qx": 1.0, "qy": 0.0, "qz": 0.0}
+                for x in (20.0, 26.0)
+            ]
+        }
+    ]
+    job["sampling"] = {"spacing_mm": 6.0}
+    recording, early = core.Recording(), []
+
+    def listen(warnings):
+        early.append((warnings, recording.duration))
+
+    result = runs.run(load.validate(job), recording=recording, early=listen)
+    ((told, seconds),) = early
+    assert "job.few_samples_in_contact" in [fact.code for fact in told] and seconds == 0
+    assert result.summary["warnings"][: len(told)] == told and recording.duration > 0

@@ -28,19 +28,27 @@ def _run(arguments):
     outputs.check(arguments, [arguments.belt], [arguments.job, *files])
     if arguments.belt and Path(arguments.belt).exists():
         given["belt_machine"]["belt"] = law.read_belt(arguments.belt)
-    result = background.run(lambda context: runs.run(given, context), arguments.quiet)
+    said = []
+
+    def early(warnings):
+        if not arguments.quiet:
+            arguments.messages.print_warnings(warnings)
+            said.extend(warnings)
+
+    result = background.run(lambda context: runs.run(given, context, early=early), arguments.quiet)
     result.write(arguments.output, arguments.force, used)
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
-        _report(result, arguments)
+        _report(result, arguments, len(said))
 
 
-def _report(result, arguments):
+def _report(result, arguments, said):
+    """Prints what came out; ``said``: how many of its warnings have been printed."""
     from ..inspection import verdict
 
     summary = result.summary
-    arguments.messages.print_warnings(summary["warnings"])
+    arguments.messages.print_warnings(summary["warnings"][said:])
     deviation = summary["deviation_mm"]
     chosen = ", chosen" if summary["spacing_chosen"] else ""
     print_text(

@@ -35,14 +35,15 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None, recording=None):
+def run(job, context=None, recording=None, early=None):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
-    ``recording``: an empty core.Recording that is to follow it, program after program.
+    ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
+    with a list of the first of its warnings before anything is ground.
     """
     warnings = []
     phases = _Phases()
     try:
-        return _run(job, context or core.RunContext(), warnings, recording, phases)
+        return _run(job, context or core.RunContext(), warnings, recording, phases, early)
     except MemoryError:
         raise _out_of_memory(phases.seconds) from None
     except InputError as error:
@@ -78,7 +79,7 @@ def _out_of_memory(ended):
     )
 
 
-def _run(job, context, warnings, recording, phases):
+def _run(job, context, warnings, recording, phases, early):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
@@ -103,6 +104,8 @@ def _run(job, context, warnings, recording, phases):
     phases.end("stock")
     met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3), reached)
     phases.end("collisions")
+    if early is not None:
+        early(list(warnings))
 
     options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))
     shifts = np.zeros((field.size, len(options["shifted_laws"])))

@@ -255,6 +255,19 @@ def test_the_best_way_goes_where_the_wheel_fits_in():
     assert json.loads(json.dumps(raster.summary({**found, "warnings": []})))["tried"]
 
 
+def test_the_best_way_of_a_rigid_tool_goes_by_the_stock():
+    job = job_of(
+        plate(),
+        stock={"kind": "allowance", "allowance_mm": 0.2},
+        law={"model": "geometric"},
+    )
+    job["belt_machine"]["control"] = "position"
+    found = raster.raster(job, {"along": "auto", "step_over_mm": 4.0})
+    residuals = [one["residual"] for one in found["tried"]]
+    assert all(math.isfinite(value) and 0 < value < 2 for value in residuals), residuals
+    assert found["along"] != "auto"
+
+
 def test_the_solved_width_is_that_of_the_contact_there():
     """On a cylinder both ways to the width agree; on a part of two curvatures the solved one keeps to the narrow."""
     radius = 50.0

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine import InputError, core
 from ..job import engine_input
+from ..job.workpiece import apply_stock
 from . import around, path_check
 
 SAMPLES = 6_000  # on the faces, about
@@ -87,6 +88,9 @@ def _judged(job, shape, faces, area, settings, path, context):
     spacing = max(min(math.sqrt(area / SAMPLES), width / ACROSS), math.sqrt(area / MOST_SAMPLES))
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
     wheel, compliance, law, options = engine_input.engine_arguments(job)
+    if not options["force_control"]:  # the stock decides what comes off
+        apply_stock(field, job["stock"], [], context)
+    before = field.height.astype(float)
     step = STEP * max(path["contact_length_mm"], spacing)
     options.update(
         force=settings["force_N"] or options["force"],
@@ -99,7 +103,8 @@ def _judged(job, shape, faces, area, settings, path, context):
     names = "feeds", "forces", "rapid", "lines", "zones"
     tool_path = core.ToolPath(frames=path["contacts"], **{name: path[name] for name in names})
     core.simulate(field, tool_path, wheel, compliance, law, options, context)
-    removed, weight = -field.height.astype(float), field.areas.astype(float)
+    removed, weight = before - field.height, field.areas.astype(float)
+    removed[~np.isfinite(removed)] = 0.0
     mean = (removed * weight).sum() / weight.sum()
     spread = math.sqrt(((removed - mean) ** 2 * weight).sum() / weight.sum())
     untouched = weight[field.trace["peak_pressure"] <= 0].sum() / weight.sum()

@@ -146,3 +146,31 @@ def test_a_second_wheel_takes_what_the_first_leaves():
     assert middle.any() and not places["left"][middle].any()
     again, _ = in_turn([(small, settings), (small, settings)])
     assert again[1] is None or len(again[1]["passes"]) < len(again[0]["passes"])
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"sampling_mm": 1000.0},
+        {"region_points": [[40, 20, 0]], "region_mm": 1e-12},
+        {"region_points": [[1e308, 0, 0]]},
+        {"region_points": [[9e5, 0, 0]]},
+        {"clearance_mm": 1e300},
+        {"lead_mm": 1e300},
+        {"run_out_mm": -1e4},
+        {"order": "helix"},
+        {"force_N": 1e300},
+    ],
+    ids=lambda one: next(iter(one)),
+)
+def test_nonsense_is_an_error_that_says_so(settings):
+    with pytest.raises(InputError):
+        raster_path.raster(job_of(plate((25.0, 35.0, 6.0))), {**X, "step_over_mm": 0.0, **settings})
+
+
+@pytest.mark.parametrize(
+    "key", ["clearance_mm", "lead_mm", "run_out_mm", "offset_mm", "approach_mm"]
+)
+def test_large_lengths_give_a_path(key):
+    laid = raster_path.raster(job_of(plate()), {**X, key: 1e4})
+    assert len(laid["passes"]) and np.isfinite(laid["frames"]).all()

@@ -87,6 +87,8 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     all but the longest; widths, lengths (k,) mm), or None where fewer than ``FEWEST`` places have a contact that is
     whole on the faces. Raises InputError, Cancelled.
     """
+    if not any(levels):
+        return None
     wheel, compliance, _, options = engine_input.engine_arguments(job)
     frames = _places(levels, settings)
     area = sum(shape.face_area(face) for face in faces)

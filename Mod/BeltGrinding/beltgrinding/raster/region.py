@@ -13,6 +13,7 @@ from .clearing import finer, part_of, runs
 
 MOST_POINTS = 5_000  # of a region that is made of samples
 FINE = 0.25  # of the margin: from place to place that is looked at along a pass
+FINEST = 0.05  # mm, of the same
 NEAREST = 0.99  # of a region's points must lie by the faces, or it is another part's
 APART = 2.0  # of the margin: farther than that off the faces is elsewhere
 
@@ -90,15 +91,15 @@ def check(points, faces, margin):
 def restricted(levels, points, margin):
     """The pieces of passes by level, as ``clearing.cleared`` takes them, cut to where they are no farther than
     ``margin`` mm from one of ``points`` (n, 3). Shorter gaps than that are kept."""
-    result = []
+    result, step = [], max(FINE * margin, FINEST)
     for pieces in levels:
         kept = []
         for piece in pieces:
-            fine = finer(piece, FINE * margin)
+            fine = finer(piece, step)
             near = reachable.nearest_distance(fine["points"], points) <= margin
             for gap in runs(~near):
                 inner = gap[0] > 0 and gap[-1] < len(near) - 1
-                if inner and len(gap) * FINE * margin < margin:
+                if inner and len(gap) * step < margin:
                     near[gap] = True
             if near.all():
                 kept.append(piece)

@@ -49,10 +49,11 @@ class Frame:
 
 
 class Frames:
-    """Tools or bases by their words. ``given``: as ``write_program`` takes them."""
+    """Tools or bases by their words. ``given``: as ``write_program`` takes them; ``told``: {words: 4 x 4 in mm}
+    of those that the program tells."""
 
-    def __init__(self, given, what):
-        self.given, self.what = given, what
+    def __init__(self, given, what, told):
+        self.given, self.what, self.told = given, what, told
         self.rows, self.numbers = [], {}
 
     def row(self, words):
@@ -63,7 +64,9 @@ class Frames:
 
     def frame(self, words):
         given = self.given.get(words) if isinstance(self.given, dict) else self.given
-        known = frame_in_words(words)
+        known = self.told.get(words)
+        if known is None:
+            known = frame_in_words(words)
         if given is None:
             return Frame(self.what, words, known)
         if isinstance(given, (str, int)) and given != AS_KNOWN:

@@ -17,7 +17,7 @@ MOST = 64  # characters of a name
 
 
 def text(sheet):
-    """The bytes of a .script file."""
+    """The bytes of a .script file. The poses are in one base (``one_base``)."""
     if sheet.part_in_hand:
         raise ProgramError(
             "programs.writers.part_in_hand",
@@ -25,11 +25,6 @@ def text(sheet):
             "{language}: the path speed would be another one; write RAPID, or the "
             "poses of the part in the room",
             language="URScript",
-        )
-    if len(sheet.bases) > 1:
-        raise ProgramError(
-            "programs.writers.one_frame",
-            "a URScript program has its poses in one frame; write one a base",
         )
     check_all_set(sheet.tools, "URScript")
     for one in (*sheet.bases, *sheet.tools):

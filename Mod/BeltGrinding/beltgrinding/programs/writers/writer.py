@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import one_frame
 from ..program import Motion, Program, ProgramError
+from . import one_base
 from .frames import Frames, checked
 from .text import printable
 from .turned import resolved
@@ -79,7 +80,7 @@ def write_program(
     which. A name or a number: the controller's own (KRL: n of TOOL_DATA[n], BASE_DATA[n]; RAPID: the
     name of a tooldata or wobjdata that is declared there; URScript has none). A 4 x 4 in mm, tools
     being flange_from_tcp, bases robot_from_base: these numbers. "as-known": the numbers that
-    ``Motion.tool``, ``Motion.base`` tell.
+    the program knows of them, or ``Motion.tool``, ``Motion.base`` tell.
     speed_mm_s: of path motions without a speed; ptp_speed_mm_s: of PTP where the language has it.
     blend_mm: how far from a pose the robot may round the corner; 0: it stops.
     part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
@@ -89,29 +90,36 @@ def write_program(
     by PTP: nothing is ground on a way that is not known.
 
     A CSV has all poses in the frames that most are in; those of which the way there is not known are left out.
+    URScript has them in the base that most is ground in; a base of which the way there is not known is refused.
 
-    Returns a list of Facts: which frames the program leaves to the controller, and what is left out.
+    Returns a list of Facts: which frames the program leaves to the controller, what is left out, and which poses
+    are written in another base than the source's.
     """
     path = Path(path)
     suffix = (language or path.suffix).lower()
     writer = _writer(suffix, path)
     motions, turns = resolved(motions_of(program))
-    left_out = []
+    left_out, joined = [], []
+    known = Program("", "", motions)
+    if isinstance(program, Program):
+        known = replace(program, motions=motions)
     if suffix == ".csv":  # a table has no frames
-        known = Program("", "", motions)
-        if isinstance(program, Program):
-            known = replace(program, motions=motions)
         motions, left_out = one_frame.motions(known)
+    elif suffix == ".script":
+        motions, joined = one_base.in_one_base(known, bases, "URScript")
     used = {m.base for m in motions} | {m.tool for m in motions}
     if part_in_hand is None:
         part_in_hand = any(words.endswith(IN_HAND) for words in used)
-    sheet = _sheet(motions, tools, bases)
+    sheet = _sheet(
+        motions, Frames(tools, "tool", known.tool_frames), Frames(bases, "base", known.base_frames)
+    )
     sheet.name = name or path.stem
     head = [comment] if comment else []
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
         head += [f"not followed there: {problem}" for problem in program.problems[:20]]
     head += [str(fact) for _, _, fact in left_out]
+    head += one_base.comments(joined)
     sheet.comments = [printable(text) for text in head]
     sheet.speed_mm_s, sheet.ptp_speed_mm_s = float(speed_mm_s), float(ptp_speed_mm_s)
     sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
@@ -119,7 +127,7 @@ def write_program(
     from ...base.files import write_whole
 
     write_whole(path, data)
-    return [*sheet.notes, *turns, *(fact for _, _, fact in left_out)]
+    return [*sheet.notes, *turns, *joined, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix, path):
@@ -158,9 +166,8 @@ def motions_of(program):
     return motions
 
 
-def _sheet(motions, tools, bases):
-    """Motions as Steps, poses as arrays."""
-    tool_rows, base_rows = Frames(tools, "tool"), Frames(bases, "base")
+def _sheet(motions, tool_rows, base_rows):
+    """Motions as Steps, poses as arrays; the rows are Frames."""
     poses, steps, aux, gap = [], [], None, []
     for number, motion in enumerate(motions):
         if motion.pose is None:

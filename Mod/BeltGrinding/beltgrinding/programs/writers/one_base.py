@@ -1,0 +1,97 @@
+"""The poses of a program that changes between bases in one of them, for languages that have but one."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.frames import in_words
+from .. import one_frame
+from ..program import Fact, ProgramError
+from .frames import NOT_TOLD, frame_in_words
+
+
+def in_one_base(program, given, language):
+    """(motions, Facts): the motions of a Program with all poses in the base that most is ground in, each of
+    its own tool.
+
+    given: ``bases`` as ``write_program`` takes them. Where the bases lie to each other: by the 4 x 4 of a dict
+    given for them (robot_from_base, mm), else by what the program knows, else by the words of its motions. The
+    Facts say which poses are in another base than in the source. Raises ProgramError where a base lies nobody
+    knows where to the other: left out, the program would skip what it grinds.
+    """
+    used = list(dict.fromkeys(m.base for m in program.motions if m.pose is not None))
+    if len(used) < 2:
+        return program.motions, []
+    chosen, _ = one_frame.reference(program)
+    known = {words: _numbers(program, given, words) for words in used}
+    found, counts = [], dict.fromkeys(used, 0)
+    for motion in program.motions:
+        if motion.pose is not None and motion.base != chosen:
+            counts[motion.base] += not motion.aux
+            way = _way(known, program.held, chosen, motion.base, language)
+            motion = replace(motion, pose=way @ motion.pose, base=chosen)
+        found.append(motion)
+    facts = []
+    for words in used:
+        if words != chosen:
+            pose = _way(known, program.held, chosen, words, language)
+            facts.append(
+                Fact(
+                    "programs.writers.in_one_base",
+                    "{count} poses of the base {base} are written in the base {reference}, in which it lies at "
+                    "{pose}: {language} programs are written with one base",
+                    count=counts[words],
+                    base=words or NOT_TOLD["base"],
+                    reference=chosen or NOT_TOLD["base"],
+                    pose=in_words(pose),
+                    language=language,
+                )
+            )
+    return found, facts
+
+
+def comments(facts):
+    """What the program's head says of the facts of ``in_one_base``."""
+    lines = []
+    for fact in facts:
+        told = fact.arguments
+        lines.append(f"{told['count']} poses of the source are in another base: {told['base']}")
+        lines.append(
+            f"  here they are written in this one, in which that one lies at {told['pose']}"
+        )
+    return lines
+
+
+def _numbers(program, given, words):
+    """4 x 4 robot_from_base in mm, or None."""
+    told = given.get(words) if isinstance(given, dict) else None
+    if told is not None and not isinstance(told, (str, int)):
+        pose = np.asarray(told, dtype=float)
+        if pose.shape == (4, 4):  # what is none is refused with the frames
+            return pose
+    return program.base_frames.get(words, frame_in_words(words))
+
+
+def _way(known, held, chosen, words, language):
+    """4 x 4 from a base's poses to the chosen one's."""
+    for one in (chosen, words):
+        if known[one] is None:
+            raise ProgramError(
+                "programs.writers.bases_not_known",
+                "the program changes between bases ({names}), and {language} programs are written with one, but "
+                "where the base '{base}' lies is not known; give its numbers in a values file beside the "
+                "program, or write one program each",
+                names=", ".join(f"'{name or NOT_TOLD['base']}'" for name in list(known)[:5]),
+                language=language,
+                base=one or NOT_TOLD["base"],
+            )
+    if (chosen in held) != (words in held):
+        raise ProgramError(
+            "programs.writers.held_and_not",
+            "the program holds the part in some poses (base '{held}') and the tool in others (base '{other}'); "
+            "{language} programs are written with one base: write one program each",
+            held=words if words in held else chosen,
+            other=chosen if words in held else words,
+            language=language,
+        )
+    return np.linalg.inv(known[chosen]) @ known[words]

@@ -145,13 +145,15 @@ def test_inputs_that_changed_since_the_run_are_told(ground, tmp_path):
         (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
     file = tmp_path / "out" / "summary.json"
     summary = unseal(tmp_path / "out")
-    assert "changed since" not in made(tmp_path / "out").text
+    text = made(tmp_path / "out").text
+    assert "changed since" not in text and "not among the run's hashes" not in text
     summary["inputs"][1]["sha256"] = "0" * 64
     file.write_text(json.dumps(summary))
     assert "changed since the run" in made(tmp_path / "out").text
     summary["inputs"][1]["file"] = "/absent"
     file.write_text(json.dumps(summary))
     assert "no longer there" in made(tmp_path / "out").text
+    assert "not among the run's hashes" in made(tmp_path / "out").text  # the file that is read now
 
 
 def test_the_nearest_bodies_of_the_cell_are_told(tmp_path):

@@ -56,7 +56,7 @@ def _inputs(job):
 
 
 def _program_files(path, values=None):
-    from ..programs.registry import values_beside
+    from ..programs.registry import side_files, values_beside
 
     path = Path(path)
     if isinstance(values, dict):  # part of the job, and so of its own digest
@@ -69,11 +69,12 @@ def _program_files(path, values=None):
     except OSError:
         near = []
     stem = path.stem.lower()
-    return [path, *given] + [
+    beside = [
         p
         for p in near
         if p != path and p.stem.lower() == stem and p.suffix.lower() in BESIDE and p.is_file()
     ]
+    return [path, *given, *beside, *(p for p in side_files(path) if p not in beside)]
 
 
 def canonical(data):

@@ -14,6 +14,7 @@ from .given import beside as values_beside  # noqa: F401
 from .given import parsed as check_values  # noqa: F401
 from .program import MAX_FILE, ProgramError
 from .readers.roll import lay
+from .readers.side_files import side_files  # noqa: F401
 from .readers.speeds import told as told_problems  # noqa: F401
 
 

@@ -63,11 +63,14 @@ def _hashes(result, words):
     then = result.summary.get("inputs")
     now = inputs.digests(result.job)
     current = {(one["what"], one["file"]): one["sha256"] for one in now}
+    kept = {(one["what"], one["file"]) for one in then or now}
+    beside = [one for one in now if one["file"] and (one["what"], one["file"]) not in kept]
     rows = []
-    for one in then or now:
-        state = None
-        after = current.get((one["what"], one["file"]))
-        if then and one["file"] is not None and after != one["sha256"]:
+    for one in [*(then or now), *beside]:
+        state, after = None, current.get((one["what"], one["file"]))
+        if one in beside:
+            state = element("b", " " + words("not among the run's hashes"), class_="bad")
+        elif then and one["file"] is not None and after != one["sha256"]:
             text = words("changed since the run") if after else words("no longer there")
             state = element("b", " " + text, class_="bad")
         name = Path(one["file"]).name if one["file"] else words("in the job file")

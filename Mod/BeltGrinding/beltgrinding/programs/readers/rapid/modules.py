@@ -25,11 +25,28 @@ def others(path):
     """[(file's name, outermost nodes)] of the other modules in the folder of ``path``: those of the .pgf that
     lists it, or all. Damaged ones are left out: what they would have told is reported where it is missed.
     """
+    found = []
+    for one in _modules(path)[0]:
+        try:
+            found.append((name_of(one), tree(one)))
+        except (ProgramError, OSError, RecursionError):
+            continue
+    return found
+
+
+def looked_at(path):
+    """The files whose content decides what ``others`` gives: the modules, and the .pgf that lists them."""
+    found, listing = _modules(path)
+    return found + ([listing] if listing else [])
+
+
+def _modules(path):
+    """(paths of the other modules, at most ``MAX_MODULES`` of ``MAX_BYTES``; the .pgf that lists them or None)."""
     if not path.parent.is_dir():
-        return []
+        return [], None
     near = sorted(path.parent.glob("*"))
     found, size = [], 0
-    wanted = _listed(path, near)
+    listing, wanted = _listed(path, near)
     for one in near:
         if one.suffix.lower() not in SUFFIXES or one.name.lower() == path.name.lower():
             continue
@@ -37,12 +54,12 @@ def others(path):
             continue
         try:
             size += one.stat().st_size
-            if len(found) >= MAX_MODULES or size > MAX_BYTES:
-                break
-            found.append((name_of(one), tree(one)))
-        except (ProgramError, OSError, RecursionError):
+        except OSError:
             continue
-    return found
+        if len(found) >= MAX_MODULES or size > MAX_BYTES:
+            break
+        found.append(one)
+    return found, listing
 
 
 def files(path):
@@ -54,7 +71,7 @@ def files(path):
 
 
 def _listed(path, near):
-    """Names of the modules in the .pgf that names this one, in lower case; None without such a file."""
+    """(the .pgf that names this module, the names in it in lower case); (None, None) without such a file."""
     for one in near:
         if one.suffix.lower() == ".pgf":
             try:
@@ -65,5 +82,5 @@ def _listed(path, near):
                 name.replace("\\", "/").rsplit("/", 1)[-1].lower() for name in LISTED.findall(text)
             }
             if path.name.lower() in names:
-                return names
-    return None
+                return one, names
+    return None, None

@@ -214,15 +214,7 @@ class Program:
                 [pose, speed, force, rapid, motion.line, joints, 0, math.inf] for pose in poses
             ]
             rows[-len(poses)][-2] = gap
-            if len(rows) > MAX_POSES:
-                raise ProgramError.at(
-                    motion.file,
-                    motion.line,
-                    "programs.too_many_poses",
-                    "the path has more than {limit} poses, chords of its arcs among them; split "
-                    "the program, or give smaller arcs",
-                    limit=MAX_POSES,
-                )
+            check_count(len(rows), motion)
             rows[-1][-1] = _zone(motion, following)
             previous, aux, lost, gap = poses[-1], None, False, 0
         columns = list(zip(*rows)) if rows else [[] for _ in range(8)]
@@ -239,6 +231,19 @@ class Program:
         if pose_of is not None:
             arrays["joints"] = np.array(columns[5], dtype=float).reshape(-1, 6)
         return arrays
+
+
+def check_count(count, motion):
+    """Raises ProgramError in the line of a Motion with which a path has too many poses."""
+    if count > MAX_POSES:
+        raise ProgramError.at(
+            motion.file,
+            motion.line,
+            "programs.too_many_poses",
+            "the path has more than {limit} poses, chords of its arcs among them; split "
+            "the program, or give smaller arcs",
+            limit=MAX_POSES,
+        )
 
 
 def joint_angles(values, scale=1.0):

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.stopping import check
-from ..program import MAX_POSES, ProgramError, _arc
+from ..program import _arc, check_count
 
 TURNING = 20.0  # mm of way over which the roll turns round a corner
 CORNER = math.radians(45.0)  # between two motions; less is a curve
@@ -31,15 +31,7 @@ def with_chords(motions):
             continue
         if through is not None and previous is not None and motion.pose is not None:
             *chords, last = _arc(previous.pose, through.pose, motion.pose)
-            if len(found) + len(chords) > MAX_POSES:
-                raise ProgramError.at(
-                    motion.file,
-                    motion.line,
-                    "programs.too_many_poses",
-                    "the path has more than {limit} poses, chords of its arcs among them; split "
-                    "the program, or give smaller arcs",
-                    limit=MAX_POSES,
-                )
+            check_count(len(found) + len(chords), motion)
             for pose in chords:
                 found.append(replace(motion, kind="LIN", pose=pose, zone_mm=math.inf))
             motion = replace(motion, kind="LIN", pose=last)

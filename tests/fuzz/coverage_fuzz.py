@@ -120,8 +120,12 @@ def _again(name, files, folder):
 
 
 def renamed(seed):
-    """A seed's files, named as those of the corpus: 'a' and their suffixes."""
-    return {"a" + Path(name).suffix.lower(): data for name, data in seed.files.items()}
+    """A seed's files, those with its name named as those of the corpus: 'a' and their suffixes."""
+    own = Path(seed.name).stem.lower()
+    return {
+        "a" + Path(name).suffix.lower() if Path(name).stem.lower() == own else name: data
+        for name, data in seed.files.items()
+    }
 
 
 def made(parents, dice, words):

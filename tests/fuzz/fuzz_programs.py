@@ -17,6 +17,7 @@ import math
 import multiprocessing
 import os
 import random
+import re
 import resource
 import signal
 import sys
@@ -46,6 +47,9 @@ OWN = HERE / "programs"
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", "/nowhere")) / "data" / "programs"
 SHORT = 4000  # bytes; a program up to here is cut at every place
 CUTS = 0.25  # part of the inputs that are files cut off, compared with the whole file
+CONTROLLERS = re.compile(
+    r"(?:BASE|TOOL)_DATA\[\d+\]"
+)  # a frame of which a program has the name only
 BRACKETS = {ord("("): 1, ord("["): 1, ord("{"): 1, ord(")"): -1, ord("]"): -1, ord("}"): -1}
 
 
@@ -65,16 +69,20 @@ class Finding(Exception):
 
 
 def seeds(folders=None):
-    """{suffix: [Seed]} of the languages there are readers for."""
+    """{suffix: [Seed]} of the languages there are readers for. A folder that is named as a file in it is one
+    program with all that lies beside it."""
     found = collections.defaultdict(list)
     folders = folders or [OWN, SHARED / "real", SHARED / "same_path_crs_part5"]
     for folder in folders:
         paths = sorted(folder.glob("*")) if folder.is_dir() else []
         for path in paths:
-            if path.suffix.lower() in READERS and path.name != "truth.csv":
+            if path.suffix.lower() in READERS and path.name != "truth.csv" and path.is_file():
                 beside = [p for p in paths if p.stem.lower() == path.stem.lower()]
                 files = {p.name: p.read_bytes() for p in beside if p.suffix.lower() in MATES[path]}
                 found[path.suffix.lower()].append(Seed(path.name, files))
+        for path in (p for p in paths if p.is_dir() and (p / p.name).is_file()):
+            files = {p.name: p.read_bytes() for p in sorted(path.iterdir())}
+            found[path.suffix.lower()].append(Seed(path.name, files))
     return dict(found)
 
 
@@ -201,10 +209,15 @@ def compare(part, whole, place):
     said = max((problem.line for problem in new), default=0)
     known = collections.defaultdict(set)
     for motion in whole.motions:
-        known[motion.file, motion.line].add(_key(motion))
+        key = _key(motion)
+        known[motion.file, motion.line] |= {key, (*key[:-1], None), (*key[:-2], None, key[-1])}
+        known[motion.file, motion.line].add((*key[:-2], None, None))
     for motion in part.motions:
         here = motion.file == place[0] and said >= motion.line
-        if not here and _key(motion) not in known[motion.file, motion.line]:
+        key = _key(motion)
+        if motion.file != place[0]:  # what a list no longer has of a frame is the controller's
+            key = (*key[:-2], *(None if CONTROLLERS.fullmatch(name) else name for name in key[-2:]))
+        if not here and key not in known[motion.file, motion.line]:
             raise Finding("cut", f"{motion.file}:{motion.line}: {motion.kind} is another, silently")
 
 

@@ -56,6 +56,20 @@ def test_an_undamaged_seed_is_read(seed, tmp_path):
     assert sum(motion.pose is not None for motion in program.motions) >= 2
 
 
+@pytest.mark.parametrize(
+    "name, idle", [("cell.mod", {"cell.pgf"}), ("lists.src", set())], ids=["RAPID", "KRL"]
+)
+def test_what_lies_beside_a_seed_is_read(name, idle, tmp_path):
+    """Else its damage would be no test of the reader. The list of modules is all of the folder, here."""
+    (seed,) = [one for one in SEEDS if one.name == name]
+    whole, _ = fuzzing.read(seed.files, name, tmp_path)
+    assert not whole.problems, whole.problems
+    for other in seed.files.keys() - {name} - idle:
+        less, _ = fuzzing.read({k: v for k, v in seed.files.items() if k != other}, name, tmp_path)
+        assert less.problems, other
+    assert len(seed.files) == 4
+
+
 def test_every_language_has_a_seed():
     assert fuzzing.uncovered([fuzzing.OWN]) == []
     assert {Path(seed.name).suffix for seed in SEEDS} <= set(READERS)
@@ -82,6 +96,16 @@ def test_another_pose_after_a_cut_is_a_finding():
     whole.problems.append(Problem("a.src", 2, "test.cut", "it is cut"))  # no news: it does not tell
     with pytest.raises(fuzzing.Finding):
         fuzzing.compare(cut, whole, ("a.src", 2))
+
+
+def test_a_frame_that_a_cut_list_no_longer_has_is_the_controllers():
+    whole = program(motion(base="X 1", tool="T"))
+    fuzzing.compare(program(motion(base="BASE_DATA[3]", tool="T")), whole, ("other.dat", 2))
+    for wrong in (motion(base="X 2", tool="T"), motion(x=2.0, base="BASE_DATA[3]", tool="T")):
+        with pytest.raises(fuzzing.Finding):
+            fuzzing.compare(program(wrong), whole, ("other.dat", 2))
+    with pytest.raises(fuzzing.Finding):  # its own text has the number
+        fuzzing.compare(program(motion(base="BASE_DATA[3]", tool="T")), whole, ("a.src", 2))
 
 
 @pytest.mark.parametrize(

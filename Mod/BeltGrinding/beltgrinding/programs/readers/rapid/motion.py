@@ -41,6 +41,9 @@ def spec_of(word):
     return KINDS[kind], kind == "absj", bool(match["search"]), before, to_tool
 
 
+SCALARS = ("num", "dnum", "bool", "string")  # of which no frame in words changes when they do
+
+
 class State:
     """Data by name: [type, value (None: not known), line and text of a value not asked for yet].
 
@@ -164,7 +167,8 @@ class State:
         if entry is None:
             entry = self.globals[name] = [PREDEFINED.get(name, ("",))[0], None]
         entry[1:] = [value]
-        self.texts.clear()
+        if entry[0] not in SCALARS:
+            self.texts.clear()
 
     def forget(self, name, why=ASSIGNED):
         """Whoever uses the data from here on reports ``why``."""
@@ -174,7 +178,8 @@ class State:
         self.reasons[name] = why
         if entry is not None:
             entry[1:] = [None]
-            self.texts.clear()
+            if entry[0] not in SCALARS:
+                self.texts.clear()
         elif name in PREDEFINED and name.startswith("reg"):
             self.globals[name] = ["num", None]
 

@@ -137,11 +137,16 @@ class _Interpreter(Control):
         kept = self.file, self.own, self.routines, self.functions, self.locals
         self.file, self.own = home.file, home.data
         self.routines, self.functions = home.routines, home.functions
-        self.texts.clear()
+        self.other_names()
         try:
             yield
         finally:
             self.file, self.own, self.routines, self.functions, self.locals = kept
+            self.other_names()
+
+    def other_names(self):
+        """The names of frames may mean others from here on; in functions nothing moves."""
+        if not self.evaluating:
             self.texts.clear()
 
     def entry(self, name):
@@ -187,7 +192,6 @@ class _Interpreter(Control):
         try:
             with self.within(self.homes.get(id(head))):
                 self.locals = inner
-                self.texts.clear()
                 self.block(body)
             fact = Fact("programs.rapid.no_return", "no RETURN is reached")
         except Return as found:
@@ -201,7 +205,6 @@ class _Interpreter(Control):
         finally:
             self.calls, self.evaluating = self.calls - 1, self.evaluating - 1
             self.locals = kept
-            self.texts.clear()
         stack = list(body)  # what it may have changed is not known
         while stack:
             node = stack.pop()
@@ -305,7 +308,7 @@ class _Interpreter(Control):
     def declare(self, node, scope):
         storage, kind, name, dimensions, text = DECLARATION.match(node.text).groups()
         kind, name = kind.lower(), name.lower()
-        self.texts.clear()
+        self.other_names()
         scope[name] = [kind, None]
         if storage.lower() == "const" and scope is self.globals:
             self.constants.add(name)

@@ -90,14 +90,16 @@ def from_abc(position, abc_deg):
     """4 x 4 from a position in mm and KUKA's A, B, C in degrees: Rz(A) Ry(B) Rx(C)."""
     a, b, c = (math.radians(angle) for angle in abc_deg)
     ca, sa, cb, sb, cc, sc = (f(v) for v in (a, b, c) for f in (math.cos, math.sin))
-    frame = np.eye(4)
-    frame[:3, :3] = [
-        [ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc],
-        [sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc],
-        [-sb, cb * sc, cb * cc],
-    ]
-    frame[:3, 3] = position
-    return frame
+    x, y, z = position
+    return np.array(
+        [
+            [ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc, x],
+            [sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc, y],
+            [-sb, cb * sc, cb * cc, z],
+            [0.0, 0.0, 0.0, 1.0],
+        ],
+        dtype=float,
+    )
 
 
 def to_abc(frame):

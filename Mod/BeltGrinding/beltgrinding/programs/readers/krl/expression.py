@@ -1,5 +1,6 @@
 """Values of KUKA KRL: numbers, aggregates and static expressions over them."""
 
+import functools
 import math
 import re
 
@@ -26,11 +27,21 @@ FUNCTIONS = {
 }
 MAX_DEPTH = 50
 MAX_COMPONENTS = 100  # of an aggregate
+KEPT = 1000  # characters of a statement whose tokens are kept
 MAX_LENGTH = 1e12  # mm; products of frames stay finite
 
 
 def tokens(text):
-    """List of (kind, text) of a statement. Raises Unknown on anything that is no token."""
+    """List of (kind, text) of a statement, not to be changed. Raises Unknown on anything that is no token."""
+    return _kept(text) if len(text) <= KEPT else _tokens(text)
+
+
+@functools.lru_cache(maxsize=256)  # loops meet their statements again and again
+def _kept(text):
+    return _tokens(text)
+
+
+def _tokens(text):
     result, at = [], 0
     text = text.rstrip()
     while at < len(text):
@@ -224,6 +235,15 @@ class Reader:
                 values=str(arguments),
             ) from None
 
+    def component(self):
+        """An expression; most are a mere number, which needs no look for operators."""
+        signed = self.at + (self.peek() == "-")
+        if signed + 1 < len(self.tokens) and self.tokens[signed][0] == "number":
+            if self.tokens[signed + 1][1] in (",", "}"):
+                negative, self.at = signed > self.at, signed
+                return -self.primary() if negative else self.primary()
+        return self.expression()
+
     def aggregate(self):
         """{[TYPE:] name value, ...}; names in lower case."""
         result = {}
@@ -247,7 +267,7 @@ class Reader:
                     "the component {name} occurs twice",
                     name=name.upper(),
                 )
-            result[name] = self.expression()
+            result[name] = self.component()
             if len(result) > MAX_COMPONENTS:
                 raise Unknown(
                     "programs.krl.components",

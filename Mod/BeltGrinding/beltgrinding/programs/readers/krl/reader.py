@@ -90,6 +90,7 @@ class _Interpreter:
         self.file = name
         self.values = Values()
         self.named = {}  # $tool, $base: the controller's own, by name
+        self.in_words = {}  # of $TOOL and $BASE: the aggregate, its values' types, the words
         self.here = None  # components of the current pose, None: unknown
         self.speed = self.around = None  # around: before the spline block
         self.spline = False  # within a SPLINE block
@@ -730,6 +731,17 @@ class _Interpreter:
             return components_of(frame_of(self.here) @ frame_of(step))
         return {name: self.here[name] + given.get(name, 0.0) for name in FRAME}
 
+    def components_in_words(self, name, value):
+        """The numbers of an aggregate; most motions are in the frame of the one before."""
+        kinds = [*map(type, value.values())]  # TRUE is 1.0
+        last = self.in_words.get(name)
+        if last is None or last[:2] != (value, kinds):
+            told = " ".join(
+                f"{k.upper()} {v:.9g}" for k, v in value.items() if isinstance(v, float)
+            )
+            last = self.in_words[name] = dict(value), kinds, told
+        return last[2]
+
     def frames_now(self):
         """The words of $TOOL and $BASE; what they are is kept in the program."""
         program, words = self.program, []
@@ -738,14 +750,12 @@ class _Interpreter:
             if not isinstance(value, dict):
                 told = self.named.get(name, "")
             else:
-                told = " ".join(
-                    f"{k.upper()} {v:.9g}" for k, v in value.items() if isinstance(v, float)
-                )
+                told = self.components_in_words(name, value)
             if self.held:  # $IPO_MODE is #TCP: the part is on the flange
                 side = "fixed in the room" if name == "$tool" else "held by the robot"
                 told = f"{told} {side}".strip()
-            if isinstance(value, dict) and all(isinstance(value.get(k), float) for k in FRAME):
-                if told not in kept:
+            if isinstance(value, dict) and told not in kept:
+                if all(isinstance(value.get(k), float) for k in FRAME):
                     kept[told] = frame_of({k: value[k] for k in FRAME})
             words.append(told)
         if self.held:

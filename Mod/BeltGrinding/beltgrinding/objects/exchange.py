@@ -8,11 +8,13 @@ from pathlib import Path
 import FreeCAD
 import Part
 
+from ..base import schemas
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError
 from ..examples import blade, knife, tap, vane
 from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
+from ..programs import given
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
 from .geometry import placement_from_job
 from .properties import from_job
@@ -88,6 +90,15 @@ def open_example(folder, name="blade"):
     return open_job(FreeCAD.newDocument(name.capitalize()), EXAMPLES[name].make(folder))
 
 
+def _values(program):
+    """What a job gives of its program, as ``load_program`` takes it."""
+    values = program.get("values")
+    if isinstance(values, str) and values:
+        given.load(Path(values))
+        return schemas.read_json(Path(values))
+    return values or None
+
+
 def _open_job(doc, data, path, made):
     shape = workpiece.read_design(data["design"])
     part = doc.addObject("Part::Feature", "Design")
@@ -116,7 +127,7 @@ def _open_job(doc, data, path, made):
         from_job(machine.Belt, belts.KEYS, data)
     for i, program in enumerate(data["programs"]):
         if "file" in program:
-            robot = import_program(job, program["file"])
+            robot = import_program(job, program["file"], given=_values(program))
         else:
             arrays = listed_poses(program["poses"], f"programs[{i}]")
             robot = robot_path.make_robot_path(doc, arrays, program.get("name", "Program"))

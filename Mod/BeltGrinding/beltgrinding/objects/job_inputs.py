@@ -14,6 +14,7 @@ from . import bodies
 from .belt_machine import BeltMachine
 from .geometry import faces_digest
 from .job_data import KEYS, child, children, design, flips, required
+from .program_values import no_path
 from .properties import to_job
 from .robot_path import RobotPath
 from .stock import Stock
@@ -89,6 +90,10 @@ def to_data(job, folder, meshes=None):
         program["poses"] = list_poses({**path.Proxy.arrays(path), "gaps": path.Proxy.gaps(path)})
         program["unresolved"] = len(path.Problems)
         if len(program["poses"]) < 2:
+            for why in no_path(path):
+                raise InputError(
+                    "objects.no_path_of", "{object}: {why}", object=path.Label, why=why
+                )
             raise InputError(
                 "objects.too_few_poses",
                 "{object}: {count} poses; two make a path",

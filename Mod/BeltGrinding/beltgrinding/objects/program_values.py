@@ -8,11 +8,12 @@ from typing import Any
 from ..base import schemas
 from ..base.files import write_whole
 from ..base.regular_files import open_regular
-from ..engine import InputError
+from ..engine import Fact, InputError
 from ..programs import given
 from ..programs.program import MAX_FILE
 
 KINDS = ("bases", "tools", "variables")
+SHOWN = 8  # names in a sentence
 TRUTH = {"true": True, "false": False, "wahr": True, "falsch": False}
 
 
@@ -94,6 +95,33 @@ def rows(obj):
             elif value is not None:
                 row.frame, row.value = False, value
     return found
+
+
+def no_path(obj):
+    """[Fact] that a RobotPath whose program asks for values has no path yet, and which are missing; [] where it
+    has one. Raises InputError of the file beside the program."""
+    count = len(obj.Poses)
+    if count > 1 or not obj.Asked or obj.SourceObject is not None:
+        return []
+    missing = [row.name for row in rows(obj) if row.value is None]
+    if not missing:
+        return [
+            Fact(
+                "objects.no_path_with_values",
+                "no path yet: two poses make one, the program has {count}, though all values that it asks for are "
+                "given; the other problems say why",
+                count=count,
+            )
+        ]
+    return [
+        Fact(
+            "objects.no_path_yet",
+            "no path yet: two poses make one, the program has {count}; give what only the controller knows on the "
+            "page Values: {names}",
+            count=count,
+            names=", ".join(missing[:SHOWN]) + (", ..." if len(missing) > SHOWN else ""),
+        )
+    ]
 
 
 def _key(kind, name):

@@ -174,6 +174,7 @@ class RobotPath(Proxy):
         arrays = self.arrays(obj)
         if len(arrays["frames"]) < 2:
             obj.Path = Path.Path()
+            obj.PoseCount, obj.PathLength, obj.Duration = len(arrays["frames"]), 0.0, 0.0
             return
         feeds = arrays["feeds"]
         if obj.FeedOverride.Value > 0:
@@ -234,8 +235,9 @@ def roll_text(obj):
 
 def read_arrays(path, roll=None, direction=None, values=None):
     """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
-    and Cancelled where a person cancels it. ``roll``, ``direction``: as ``readers.roll.lay`` takes them;
-    ``values``: as ``read_program`` does.
+    and Cancelled where a person cancels it; fewer than two poses are refused unless the program asks for values
+    that may bring more. ``roll``, ``direction``: as ``readers.roll.lay`` takes them; ``values``: as
+    ``read_program`` does.
     """
 
     def work(context):
@@ -246,7 +248,7 @@ def read_arrays(path, roll=None, direction=None, values=None):
     text = FreeCAD.Qt.translate("BeltGrinding", "Reading {}").format(os.path.basename(path))
     program, arrays = wait(work, text)
     count = len(arrays["frames"])
-    if count < 2:
+    if count < 2 and not program_values.asked(program, path):
         why = ""
         if program.problems:
             why = core.Fact("job.first_problem", " ({problem})", problem=program.problems[0])
@@ -291,7 +293,8 @@ def load_program(obj, path, given=None, **values):
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed.
 
     ``given``: what only the controller knows, as in a values file, from now on; without it what the object
-    holds of this file, or what lies beside it.
+    holds of this file, or what lies beside it. With too little of it the object has no path yet; its first
+    problem says so.
     """
     kept = "" if os.path.abspath(path) != obj.Source else obj.Values
     if given is not None:
@@ -305,7 +308,8 @@ def load_program(obj, path, given=None, **values):
     obj.Source = os.path.abspath(path)
     obj.Values, obj.Asked = kept, program_values.asked(program, path)
     obj.Language = program.language
-    stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
+    told = told_problems(program, DEFAULT_FEED)
+    stored_facts.store(obj, "Problems", [*program_values.no_path(obj), *told])
     set_by_name(obj, values)
 
 

@@ -150,6 +150,8 @@ class ProgramPanel(Panel):
             text = translate("BeltGrinding", "Problems ({})").format(len(obj.Problems))
             self.table.addTab(self.trouble, text)
         self.show_values()
+        if len(obj.Poses) < 2 and self.table.indexOf(self.values) >= 0:
+            self.table.setCurrentWidget(self.values)  # where it gets them from
         self.describe()
 
     def show_values(self):
@@ -188,6 +190,10 @@ class ProgramPanel(Panel):
         obj = self.obj
         if "Touched" in obj.State:
             obj.recompute()
+        missing = stored_facts.sentences(obj, "Problems", language(), 1)
+        if len(obj.Poses) < 2 and obj.Asked and missing:
+            self.tell(missing[0], True)
+            return
         text = translate("BeltGrinding", "{} poses, {:.1f} mm, {:.1f} s ({})").format(
             obj.PoseCount, obj.PathLength.Value, obj.Duration, obj.Language
         )

@@ -20,7 +20,7 @@ class PoseWalk(QtGui.QWidget):
 
     def __init__(self, document, machine, paths):
         super().__init__()
-        self.paths = paths
+        self.paths, self.count = paths, 0
         self.moved = lambda index: None
         self.view = CellView(document, machine)
         self.picking = []
@@ -73,6 +73,7 @@ class PoseWalk(QtGui.QWidget):
             widget.setRange(1, max(count, 1))
         self.slider.setPageStep(max(count // 20, 1))
         self.setEnabled(count > 0)
+        self.count = count
         self.number.setValue(1)
         self.arrange()
 
@@ -88,6 +89,8 @@ class PoseWalk(QtGui.QWidget):
         self.number.setValue(index + 1)
 
     def _go(self, number):
+        if number > self.count:  # there is none
+            return
         self.view.set_pose(number - 1)
         self.moved(number - 1)
 

@@ -5,6 +5,7 @@ import pytest
 from support import freecad as windows
 
 BODY = """
+import json
 import beltgrinding
 from support.hands import *
 start()
@@ -19,6 +20,16 @@ beltgrinding.import_program(job, "pass.csv")
 beltgrinding.make_raster(job)
 beltgrinding.simulate(job)
 beltgrinding.make_deviation(job)
+# Programs that ask for what only the controller knows: one has a path without it, one has none yet.
+from pathlib import Path
+line = "LIN {X %d,Y 0,Z 30,A 0,B 0,C 180}\\n"
+asked = "LIN XAPPROACH_OF_FIXTURE_LEFT\\n$BASE=BASE_DATA[17]\\n" + line % 7 + "LIN_REL {Z STEPOVER_OF_THE_LAST_ROW}\\n"
+Path("some.src").write_text("DEF some()\\n" + line % 1 + line % 2 + asked + "END\\n")
+Path("none.src").write_text("DEF none()\\n" + asked + "END\\n")
+Path("some.values.json").write_text(json.dumps({"bases": {"BASE_DATA[17]": dict(zip(
+    ("x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg"), (1234.5678, -2345.6789, 3456.789, 123.45678, -89.98765, 179.1234)))}}))
+programs = [beltgrinding.import_program(job, name) for name in ("some.src", "none.src")]
+assert len(programs[0].Poses) >= 2 and len(programs[1].Poses) < 2 and all(p.Asked for p in programs)
 assert QtGui.QGuiApplication.primaryScreen().size().width() <= 1368
 wide = {}
 
@@ -47,6 +58,18 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath", "RasterPath
     view = doc.getObject(name).ViewObject
     view.Proxy.doubleClicked(view)
     look(name)
+for program in programs:
+    view = program.ViewObject
+    view.Proxy.doubleClicked(view)
+    settle()
+    tabs = field("poseTabs", QtGui.QTabWidget)
+    page = field("programValues") if len(program.Poses) < 2 else tabs.findChild(QtGui.QTableWidget, "programValues")
+    tabs.setCurrentIndex([k for k in range(tabs.count()) if tabs.widget(k).isAncestorOf(page)][0])
+    settle()
+    assert page.isVisible() and page.rowCount() >= 2, page.rowCount()
+    look(program.Label)
+for program in programs:
+    doc.removeObject(program.Name)
 for command in ("Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan"):
     Gui.runCommand("BeltGrinding_" + command)
     look(command)

@@ -1,5 +1,7 @@
 """Base of the task panels: one undo transaction each, accepted or taken back."""
 
+import re
+
 import FreeCAD
 import FreeCADGui as Gui
 
@@ -10,6 +12,9 @@ from ..common.messages import error_text
 from ..common.theme import warning_style
 from ..widgets.fold import slim
 from ..widgets.form import Form
+
+LONG = re.compile(r"\S{20,}")  # names and paths that may be wider than the dock
+BREAK = "\u200b"  # where a line may end; it has no width
 
 
 class Panel:
@@ -39,7 +44,7 @@ class Panel:
 
     def tell(self, text, error=False):
         """A message in the panel; '' hides it."""
-        self.note.setText(text)
+        self.note.setText(LONG.sub(lambda word: word.group().replace("_", "_" + BREAK), text))
         self.note.setStyleSheet(warning_style(error))
         self.note.setVisible(bool(text))
 

@@ -1203,6 +1203,14 @@
         <source>zigzag: every other pass backwards; one_way: all passes in one direction; helix: rings are one pass, which goes on by a step-over at each turn (surfaces of revolution)</source>
         <translation>zigzag: jede zweite Bahn rückwärts; one_way: alle Bahnen in einer Richtung; helix: die Ringe sind eine Bahn, die mit jeder Drehung um einen Bahnabstand weitergeht (Drehflächen)</translation>
     </message>
+    <message>
+        <source>the values that the program asks for</source>
+        <translation>die Werte, nach denen das Programm fragt</translation>
+    </message>
+    <message>
+        <source>what only the controller knows of the program, as in NAME.values.json; empty: that file&apos;s, where it lies beside the program</source>
+        <translation>was nur die Steuerung über das Programm weiß, wie in NAME.values.json; leer: das dieser Datei, wenn sie neben dem Programm liegt</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

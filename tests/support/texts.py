@@ -9,7 +9,15 @@ from pathlib import Path
 
 MARKED = ("translate", "QT_TRANSLATE_NOOP")
 PROPERTY = "App::Property"  # the context in which FreeCAD looks for what is said of a property
-TABLES = ("SETTINGS", "LISTS", "LINKS", "HELD", "FRAMES", "BODIES", "ROBOT_FRAMES")  # their rows end so
+TABLES = (
+    "SETTINGS",
+    "LISTS",
+    "LINKS",
+    "HELD",
+    "FRAMES",
+    "BODIES",
+    "ROBOT_FRAMES",
+)  # their rows end so
 SCHEMAS = Path(__file__).resolve().parents[2] / "Resources" / "schema"
 
 

@@ -1,11 +1,17 @@
 """Where the wheel gets to: all faces of the part may stand in its way."""
 
-import pytest
+import json
 
+import numpy as np
+import pytest
+from PIL import Image
+
+from beltgrinding import cli
 from beltgrinding.engine import core
 from beltgrinding.job import load, workpiece
-from beltgrinding.raster import raster_path, reachable
+from beltgrinding.raster import drawing, raster_path, reachable
 from beltgrinding.raster.clearing import Clearing
+from support.freecad import SHARED
 
 
 @pytest.fixture
@@ -110,3 +116,53 @@ def test_a_raster_tells_it(parts):
     free = raster_path.raster(job_of(parts / "wall.brep", faces=top[:1]), {"along": "u"})
     assert free["reachable"] == {"share": 1.0, "faces": {}, "left_out": 0.0, "no_pass": 0.0}
     assert not [fact for fact in free["warnings"] if fact.code.startswith("raster.not_reach")]
+
+
+def test_the_picture_shows_passes_and_what_is_left_out(parts, tmp_path, capsys):
+    shape = workpiece.read_design(job_of(parts / "wall.brep")["design"])
+    floor = face_with(shape, 80 * 60) + 1
+    job = {
+        "design": {"file": str(parts / "wall.brep"), "faces": [floor]},
+        "belt_machine": {"wheel": {"radius_mm": 20, "width_mm": 10}, "force_N": 20},
+    }
+    (tmp_path / "job.json").write_text(json.dumps(job))
+    file, program = tmp_path / "seen.png", tmp_path / "path.src"
+    command = ["raster", str(tmp_path / "job.json"), "-o", str(program), "--picture", str(file)]
+    along = ["--set", "along=direction"]
+    assert cli.main([*command, *along]) == 0, capsys.readouterr().err
+    told = json.loads(capsys.readouterr().out)["reachable"]
+    pixels = np.asarray(Image.open(file).convert("RGB")).astype(int)
+    red, green, blue = np.moveaxis(pixels, 2, 0)
+    magenta = (red > 1.6 * green + 30) & (blue > 1.4 * green + 20)
+    floor_like = (abs(red - green) < 30) & (blue > red + 4) & (red > 120)
+    # Both lie in one plane: their areas in the picture are as on the part, but for the passes' lines.
+    share = magenta.sum() / (magenta.sum() + floor_like.sum())
+    assert 0.5 * told["left_out"] < share < 2.0 * told["left_out"] and told["left_out"] > 0.01
+    assert (pixels == np.array(drawing.PASS)).all(axis=2).sum() > 500
+    before = program.read_bytes()
+    for more in (["--then", str(tmp_path / "job.json"), str(tmp_path / "b.src")], []):
+        assert cli.main([*command, *more, *along]) == 2  # one wheel only; files are there already
+        assert program.read_bytes() == before and not (tmp_path / "b.src").exists()
+    capsys.readouterr()
+
+
+def test_a_strip_along_a_border_gets_its_passes():
+    """A concave fillet of the crank: the wheel gets to strips along its borders only, narrower than a pass."""
+    file = SHARED / "data" / "cad" / "crank_arm.brep"
+    if not file.is_file():
+        pytest.skip(f"no data at {file}")
+    job = load.validate(
+        {
+            "design": {"file": str(file), "faces": [13]},
+            "belt_machine": {
+                "wheel": {"radius_mm": 20, "width_mm": 15, "crown_radius_mm": 60},
+                "force_N": 30,
+            },
+            "programs": [{"poses": []}],
+        }
+    )
+    laid = raster_path.raster(job, {})
+    seen = laid["places"]
+    reached = seen["areas"][seen["fits"]].sum()
+    ground = seen["areas"][seen["fits"] & (seen["state"] == reachable.GROUND)].sum()
+    assert ground > 0.8 * reached, (ground, reached)

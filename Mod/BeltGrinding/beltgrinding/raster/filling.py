@@ -5,9 +5,9 @@ import numpy as np
 
 from . import passes, reachable, region
 
-DENSER = 5  # passes in a step-over, that are tried
+DENSER = (5, 25)  # passes in a step-over, that are tried, in turn: strips along borders are narrow
 LEAST = 0.005  # of the area: less is left as it is
-GAIN = 0.05  # of what is to be filled, that a pass must touch
+GAIN = 0.02  # of what is to be filled, that a pass must touch
 MOST = 30  # passes that are added
 
 
@@ -17,29 +17,38 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
     ``levels_of(step_over)``: passes at that distance, as ``clearing.cleared`` takes them; ``seen``: of
     ``reachable.look``; ``step_over``: mm, of the passes that lie; ``extents``: as there.
     """
-    missed = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
-    areas = seen["counted"][missed]
-    if areas.sum() <= LEAST * seen["counted"].sum():
-        return []
-    points = seen["points"][missed]
-    near = region.restricted(levels_of(step_over / DENSER), points, 0.5 * step_over)
-    shortest = max(settings["min_length_mm"], 1e-9)
-    pieces = [
-        piece
-        for level in clearing.cleared([level for level in near if level])
-        for piece in level
-        if passes.length(piece["points"]) >= shortest
-    ]
-    touched = [
-        reachable.touched(points, [clearing.frames(piece)], clearing.wheel, extents)
-        for piece in pieces
-    ]
-    left, found = np.ones(len(points), dtype=bool), []
-    while touched and len(found) < MOST:
+    left = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
+    found = []
+    for denser in DENSER:
+        if seen["counted"][left].sum() <= LEAST * seen["counted"].sum() or len(found) >= MOST:
+            break
+        points, areas = seen["points"][left], seen["counted"][left]
+        near = region.restricted(levels_of(step_over / denser), points, 0.5 * step_over)
+        pieces = [
+            piece
+            for level in clearing.cleared([level for level in near if level])
+            for piece in level
+            if passes.length(piece["points"]) >= max(settings["min_length_mm"], 1e-9)
+        ]
+        touched = [
+            reachable.touched(points, [clearing.frames(piece)], clearing.wheel, extents)
+            for piece in pieces
+        ]
+        some, missed = _best(touched, areas, MOST - len(found))
+        found += [[pieces[k]] for k in some]
+        left[np.flatnonzero(left)[~missed]] = False
+    return found
+
+
+def _best(touched, areas, most):
+    """(numbers of pieces, at most ``most``, each the one that touches most of what is left, (n,) bool: left by them);
+    ``touched``: of each piece (n,) bool; ``areas`` (n,)."""
+    left, chosen = np.ones(len(areas), dtype=bool), []
+    while touched and len(chosen) < most:
         gains = [areas[mine & left].sum() for mine in touched]
         best = int(np.argmax(gains))
         if gains[best] < GAIN * areas.sum():
             break
-        found.append([pieces[best]])
+        chosen.append(best)
         left &= ~touched[best]
-    return found
+    return chosen, left

@@ -18,6 +18,7 @@ SAMPLES = 100_000  # on the faces, at most
 NARROW = 0.2  # of the places have a contact that is narrower than is said
 LONG = 0.8  # of the places have one that is shorter
 MOST_CELLS = 100  # across the wheel
+MOST_OF_GAPS = 0.98  # of the cells of a contact have a smaller one
 COVERED = 0.5  # of a cell that is on the faces
 
 
@@ -84,7 +85,8 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
 
     ``levels``: the passes, lists of dict(points, normals, tangents (n, 3)); ``plain``: mm, of its width, about.
     Returns dict(width_mm: across the pass, that of all but the narrowest share ``NARROW``; length_mm: along it, of
-    all but the longest; widths, lengths (k,) mm), or None where fewer than ``FEWEST`` places have a contact that is
+    all but the longest; gap_mm: how far from the undeformed wheel, placed on the design, the outermost of the faces
+    are that it touches, of all but the share with the least; widths, lengths (k,) mm), or None where fewer than ``FEWEST`` places have a contact that is
     whole on the faces. Raises InputError, Cancelled.
     """
     if not any(levels):
@@ -106,11 +108,12 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
         zones=np.full(len(frames), -1.0),
     )
     angle = -math.radians(settings["belt_angle_deg"])
-    sizes = []
+    sizes, gaps = [], []
     poses = list(range(len(frames)))
     for found in core.contacts_at(field, path, poses, wheel, compliance, options, context):
         if found is not None and _whole(found):
             sizes.append(contact_extents.extents(found, angle))
+            gaps.append(_outermost_gap(found))
     if len(sizes) < FEWEST:
         return None
     lengths, widths = np.array(sizes).T
@@ -118,6 +121,7 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     return {
         "width_mm": weighted_quantile(widths, even, NARROW),
         "length_mm": weighted_quantile(lengths, even, LONG),
+        "gap_mm": weighted_quantile(np.array(gaps), even, NARROW),
         "widths": widths,
         "lengths": lengths,
     }
@@ -141,6 +145,12 @@ def _places(levels, settings):
         share = (place - ends[k] - s[i]) / steps[i] if steps[i] > 0.0 else 0.0
         found.append(passes.between(frames[k][i], frames[k][i + 1], np.array([share]))[0])
     return np.array(found)
+
+
+def _outermost_gap(contact):
+    """mm between the undeformed wheel and the work, where it touches, beyond that where they are nearest."""
+    gaps = contact["gap"][contact["pressure"] > contact_extents.TOUCHED * contact["pressure"].max()]
+    return float(np.quantile(gaps, MOST_OF_GAPS) - gaps.min())
 
 
 def _whole(contact):

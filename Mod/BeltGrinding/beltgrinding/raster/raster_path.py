@@ -213,11 +213,12 @@ def _places(job, shape, faces, settings, result, levels, clearing, context):
 
 
 def _extents(job, settings, result):
-    """(mm along, mm across the belt's travel) of the contact."""
+    """(mm along, mm across the belt's travel, mm of the gap at its edge or None) of the contact."""
     along = result["contact_length_mm"]
     across = result["contact_width_mm"] or plane_extents(job, settings)[1]
     turn = abs(math.sin(math.radians(settings["belt_angle_deg"])))
-    return (along, across) if turn < math.sqrt(0.5) else (across, along)
+    gap = result["footprint"].get("gap_mm")
+    return (along, across, gap) if turn < math.sqrt(0.5) else (across, along, gap)
 
 
 def _tell_ends(result, settings, warnings):

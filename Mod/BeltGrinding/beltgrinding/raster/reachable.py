@@ -39,8 +39,9 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
 
     ``levels``: the passes as they would lie if the wheel fitted everywhere, lists of dict(points, tangents (n, 3));
     ``contacts``: the poses of each pass that is left, list of (n, 4, 4) work_from_contact; ``clearing``: a
-    clearing.Clearing; ``extents``: (length, width) mm of the contact along and across the belt's travel; ``wanted``: (points of a
-    region, mm round them), None: everywhere.
+    clearing.Clearing; ``extents``: (length, width) mm of the contact along and across the belt's travel, and the gap
+    mm at its edge (None: that of such a contact on a plane); ``wanted``: (points of a region, mm round them), None:
+    everywhere.
 
     Returns dict(points, normals (n, 3), areas (n,), triangles (m, 3), faces (n,) from 0, fits (n,) bool, state (n,): GROUND,
     NO_ROOM (the wheel would stand in the part, with its belt as the passes want it, however it is leaned), NO_PASS
@@ -119,11 +120,12 @@ def nearest_distance(points, others):
 
 
 def touched(points, contacts, wheel, extents):
-    """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the ends of a
-    contact of these extents (mm) on a plane."""
+    """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the edge of a
+    contact of these extents (as ``look`` has them)."""
     length, width = max(extents[0], LEAST_CONTACT), min(extents[1], wheel["width"])
     drop = _drop(wheel)
-    gap = max(length**2 / (8.0 * wheel["radius"]), float(np.interp(0.5 * width, *drop)))
+    on_plane = max(length**2 / (8.0 * wheel["radius"]), float(np.interp(0.5 * width, *drop)))
+    gap = on_plane if extents[2] is None else extents[2]
     found = np.zeros(len(points), dtype=bool)
     reach = wheel["width"] + length
     for poses in contacts:

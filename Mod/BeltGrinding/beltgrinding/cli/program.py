@@ -70,6 +70,11 @@ def add(commands):
         metavar=("JOB", "OUTPUT"),
         help="a job with another wheel, and the program for where the wheels before do not get to",
     )
+    raster.add_argument(
+        "--picture",
+        metavar="FILE",
+        help="PNG of the passes on the part from two sides, and of what is left out and why",
+    )
     _add_frames(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
@@ -217,7 +222,11 @@ def _raster(arguments):
     from ..engine import InputError
     from ..raster import in_turn, raster_path as raster, region
 
-    written = [arguments.output, *(file for _, file in arguments.then)]
+    if arguments.picture and arguments.then:
+        raise InputError(
+            "cli.picture_of_one", "--picture shows one wheel's passes; leave out --then"
+        )
+    written = [arguments.output, arguments.picture, *(file for _, file in arguments.then)]
     read = [arguments.job, arguments.settings, *(job for job, _ in arguments.then)]
     outputs.check(arguments, written, read, arguments.region)
     settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
@@ -242,8 +251,12 @@ def _raster(arguments):
         raise InputError("cli.region_of_what", "--above and --cluster need --region RESULT")
     job = raster.load_job(arguments.job)
     if not arguments.then:
-        found = background.run(lambda context: raster.raster(job, settings, context), quiet=True)
+        found, drawn = background.run(
+            lambda context: _laid_and_drawn(job, settings, arguments.picture, context), quiet=True
+        )
         _write_raster(arguments, arguments.output, job, found)
+        if drawn is not None:
+            _write_picture(arguments.picture, drawn)
         print(json.dumps(raster.summary(found)))
         return
     steps = [(job, settings)] + [(raster.load_job(one), settings) for one, _ in arguments.then]
@@ -255,6 +268,22 @@ def _raster(arguments):
     left = float(places["areas"][places["left"]].sum() / places["areas"].sum())
     summaries = [None if found is None else raster.summary(found) for found in laid]
     print(json.dumps({"wheels": summaries, "left_by_all": left}))
+
+
+def _laid_and_drawn(job, settings, picture, context):
+    from ..raster import drawing, raster_path as raster
+
+    found = raster.raster(job, settings, context)
+    return found, drawing.draw(job, found, context) if picture else None
+
+
+def _write_picture(file, data):
+    from ..base.files import cannot_be_written, write_whole
+
+    try:
+        write_whole(file, data)
+    except OSError as error:
+        raise cannot_be_written(file, error) from None
 
 
 def _write_raster(arguments, file, job, found):

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple, Optional
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from ..engine import InputError, core
 from ..job.spacing import curvatures
@@ -16,7 +16,7 @@ SAMPLES = 60_000  # over the part
 OF_A_FACE = 300  # at least, for its radii
 SHARE = 0.05  # of a face's area: what is more curved is left out of its radii
 FLAT = 20.0  # of a face's size: with a larger radius it is as good as flat
-FONT, SIZES = "DejaVuSans-Bold.ttf", (26, 14)  # pixels
+SIZES = 26, 14  # of letters, pixels
 MOST_NEIGHBOURS = 12  # in the table
 ROOM = 0.62  # of a label's size, between its middle and the face's border in the picture
 HUE = 0.381966  # of a turn from colour to colour: the golden section
@@ -148,7 +148,7 @@ def draw(shape, context=None):
     numbers = np.asarray(field.faces)
     studio = picture.Studio(field, _colours(shape.face_count)[numbers], None, context)
     views = studio.both(context)
-    fonts, named, sides = {size: _font(size) for size in SIZES}, set(), []
+    fonts, named, sides = {size: picture.font(size) for size in SIZES}, set(), []
     for view in views:
         image = Image.fromarray(view.pixels)
         pen = ImageDraw.Draw(image)
@@ -196,13 +196,6 @@ def _places(field, view):
         if fitting:
             found[int(face)] = (*tried[best], fitting[0])
     return found
-
-
-def _font(size):
-    try:
-        return ImageFont.truetype(FONT, size)
-    except OSError:  # not installed: the small one that comes with Pillow
-        return ImageFont.load_default()
 
 
 def _label(pen, text, x, y, font):

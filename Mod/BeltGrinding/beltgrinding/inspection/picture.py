@@ -8,7 +8,7 @@ import io
 from typing import NamedTuple
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageFont
 
 from ..engine import core
 from . import sight
@@ -25,6 +25,7 @@ AROUND, SAME_SIDE = 200, 0.2  # samples around a spot, at most; cosine between n
 STEEP = 30.0  # degrees from an axis within which it cannot be up
 CLOSE_UP = 40  # samples from the lower to the upper border of a close-up, at least
 CLOSEST_SHARE = 0.3  # of the field's diagonal, at most
+FONT = "DejaVuSans-Bold.ttf"
 HIDDEN = 2.0  # samples that a point may lie behind what the picture shows there
 
 
@@ -217,6 +218,14 @@ def _up_for(out, field):
         return np.array([0.0, 0.0, 1.0])
     lengths = np.ptp(field.points, axis=0)
     return np.eye(3)[0 if lengths[0] < lengths[1] and abs(out[0]) < 0.7 else 1]
+
+
+def font(size):
+    """Pillow's font for what is written on pictures, of ``size`` pixels."""
+    try:
+        return ImageFont.truetype(FONT, size)
+    except OSError:  # not installed: the small one that comes with Pillow
+        return ImageFont.load_default()
 
 
 def png(pixels):

@@ -31,7 +31,8 @@ LETTERS, ROW = 24, 34  # pixels
 
 def draw(job, result, context=None):
     """Bytes of a PNG: the part from two sides with the passes of ``raster_path.raster``'s result, a dot where
-    each begins, and the faces in the colour of what is ground and why the rest is not. Raises InputError, Cancelled."""
+    each begins, and the faces in the colour of what is ground and why the rest is not. Raises InputError, Cancelled.
+    """
     shape = read_design(job["design"], context)
     places = result["places"]
     faces = np.unique(places["faces"]).tolist()

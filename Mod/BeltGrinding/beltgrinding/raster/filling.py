@@ -6,7 +6,7 @@ import numpy as np
 from . import passes, reachable, region
 
 DENSER = (5, 25)  # passes in a step-over, that are tried, in turn: strips along borders are narrow
-LEAST = 0.005  # of the area: less is left as it is
+LEAST = 0.02  # of what the wheel gets to: less is left as it is, for a pass grinds what lies beside it once more
 GAIN = 0.02  # of what is to be filled, that a pass must touch
 MOST = 30  # passes that are added
 
@@ -18,9 +18,10 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
     ``reachable.look``; ``step_over``: mm, of the passes that lie; ``extents``: as there.
     """
     left = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
+    enough = LEAST * seen["counted"][seen["fits"]].sum()
     found = []
     for denser in DENSER:
-        if seen["counted"][left].sum() <= LEAST * seen["counted"].sum() or len(found) >= MOST:
+        if seen["counted"][left].sum() <= enough or len(found) >= MOST:
             break
         points, areas = seen["points"][left], seen["counted"][left]
         near = region.restricted(levels_of(step_over / denser), points, 0.5 * step_over)
@@ -34,17 +35,18 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
             reachable.touched(points, [clearing.frames(piece)], clearing.wheel, extents)
             for piece in pieces
         ]
-        some, missed = _best(touched, areas, MOST - len(found))
+        some, missed = _best(touched, areas, enough, MOST - len(found))
         found += [[pieces[k]] for k in some]
         left[np.flatnonzero(left)[~missed]] = False
     return found
 
 
-def _best(touched, areas, most):
-    """(numbers of pieces, at most ``most``, each the one that touches most of what is left, (n,) bool: left by them);
-    ``touched``: of each piece (n,) bool; ``areas`` (n,)."""
+def _best(touched, areas, enough, most):
+    """(numbers of pieces, at most ``most``, each the one that touches most of what is left, until no more than
+    ``enough`` is, (n,) bool: left by them); ``touched``: of each piece (n,) bool; ``areas`` (n,).
+    """
     left, chosen = np.ones(len(areas), dtype=bool), []
-    while touched and len(chosen) < most:
+    while touched and len(chosen) < most and areas[left].sum() > enough:
         gains = [areas[mine & left].sum() for mine in touched]
         best = int(np.argmax(gains))
         if gains[best] < GAIN * areas.sum():

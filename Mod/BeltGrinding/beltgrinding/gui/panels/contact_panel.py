@@ -14,7 +14,7 @@ from ..common.runner import Background
 from ..widgets.steady import steady
 
 WAIT = 300  # ms after the last move of the slider
-PICTURE = 220  # pixels, of the longer side
+PICTURE = 200  # pixels, of the longer side; more is too wide beside a scroll bar
 # From nothing to the highest pressure; lightness falls all the way, so that grey shows it too.
 COLOURS = np.array(
     [(255, 255, 255), (254, 217, 118), (253, 141, 60), (227, 26, 28), (128, 0, 38)], dtype=float

@@ -11,6 +11,7 @@ from beltgrinding.programs.writers.writer import write_program
 from test_frames import (
     DATA,
     FRAMES,
+    LONG,
     PLAN,
     POINTS,
     SHORT,
@@ -136,3 +137,32 @@ def test_urscript_with_a_base_that_lies_nobody_knows_where_is_refused(tmp_path):
     given = {"BASE_DATA[1]": matrix(TOP), "BASE_DATA[2]": matrix(SIDE)}
     write_program(out, None, program, tools=matrix(SHORT), bases=given)
     np.testing.assert_allclose(flanges_of(read_program(out))[3], flange_poses()[3], atol=1e-5)
+
+
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script"])
+def test_one_base_for_a_program_of_several_is_that_of_most_poses(tmp_path, suffix):
+    program = sources(tmp_path)["krl numbers"]
+    (tmp_path / "out").mkdir()
+    out = tmp_path / "out" / f"w{suffix}"
+    notes = write_program(out, None, program, tools="as-known", bases=matrix(TOP))
+    assert [note.code for note in notes] == ["programs.writers.in_one_base"]
+    again = read_program(out)
+    np.testing.assert_allclose(flanges_of(again), flange_poses(), atol=1e-5)
+    assert len({m.base for m in again.motions}) == 1
+    notes = write_program(out, None, program, tools=matrix(SHORT), bases=matrix(TOP))
+    codes = [note.code for note in notes]
+    assert codes == ["programs.writers.in_one_base", "programs.writers.one_for_all"]
+    assert "TOOL_DATA" in str(notes[1]) or "X 10 " in str(notes[1])
+
+
+@pytest.mark.parametrize("suffix, base", [(".src", "5"), (".mod", "wPart"), (".src", matrix(TOP))])
+def test_one_base_for_several_that_are_not_known_is_told(tmp_path, suffix, base):
+    program = read(tmp_path, "p.src", krl_program(krl_by_number))
+    (tmp_path / "out").mkdir()
+    out = tmp_path / "out" / f"w{suffix}"
+    tools = {"TOOL_DATA[3]": matrix(SHORT), "TOOL_DATA[4]": matrix(LONG)}
+    notes = write_program(out, None, program, tools=tools, bases=base)
+    (told,) = [note for note in notes if note.code == "programs.writers.one_for_all"]
+    assert "'BASE_DATA[1]', 'BASE_DATA[2]'" in str(told)
+    for mine, (_, _, k) in zip(read_program(out).motions, PLAN):
+        np.testing.assert_allclose(mine.pose, frames.from_abc(POINTS[k], TURN), atol=1e-5)

@@ -1,4 +1,5 @@
-"""The poses of a program that changes between bases in one of them, for languages that have but one."""
+"""The poses of a program that changes between bases in one of them, for languages that have but one, and where one
+is set for all."""
 
 from dataclasses import replace
 
@@ -7,7 +8,7 @@ import numpy as np
 from ...base.frames import in_words
 from .. import one_frame
 from ..program import Fact, ProgramError
-from .frames import NOT_TOLD, frame_in_words
+from .frames import AS_KNOWN, NOT_TOLD, WHAT, frame_in_words
 
 
 def in_one_base(program, given, language):
@@ -39,15 +40,37 @@ def in_one_base(program, given, language):
                 Fact(
                     "programs.writers.in_one_base",
                     "{count} poses of the base {base} are written in the base {reference}, in which it lies at "
-                    "{pose}: {language} programs are written with one base",
+                    "{pose}",
                     count=counts[words],
                     base=words or NOT_TOLD["base"],
                     reference=chosen or NOT_TOLD["base"],
                     pose=in_words(pose),
-                    language=language,
                 )
             )
     return found, facts
+
+
+def one_for_all(program, given, what):
+    """[Fact] where one tool or base (``what``) is set for the poses of several."""
+    used = {getattr(m, what): 0 for m in program.motions if m.pose is not None}
+    as_known = isinstance(given, str) and given == AS_KNOWN
+    if len(used) < 2 or given is None or as_known or isinstance(given, dict):
+        return []
+    return [
+        Fact(
+            "programs.writers.one_for_all",
+            "the {what} that is given is set for all poses; the source has them in several ({names}): if these "
+            "are not the same, give each its own, or as-known",
+            what=WHAT[what],
+            names=", ".join(f"'{words or NOT_TOLD[what]}'" for words in list(used)[:5]),
+        )
+    ]
+
+
+def all_known(program, given):
+    """Whether it is known where all bases of a Program lie."""
+    used = {m.base for m in program.motions if m.pose is not None}
+    return all(_numbers(program, given, words) is not None for words in used)
 
 
 def comments(facts):

@@ -75,7 +75,8 @@ def write_program(
     base_from_tcp in mm), ``feed_mm_s`` and, optionally, ``force_N``: the first pose of a pass is
     reached by PTP, the others by LIN.
     name: of the module, None: the stem of ``path``. comment: a text for its head.
-    tools, bases: what the program sets, for all motions, or a dict by ``Motion.tool``, ``Motion.base``.
+    tools, bases: what the program sets, for all motions, or a dict by ``Motion.tool``, ``Motion.base``. One base for
+    all is that of the base that most is ground in; the poses of others are written in it where the way is known.
     None: nothing; the controller must have the right one in force, and the head of the program says
     which. A name or a number: the controller's own (KRL: n of TOOL_DATA[n], BASE_DATA[n]; RAPID: the
     name of a tooldata or wobjdata that is declared there; URScript has none). A 4 x 4 in mm, tools
@@ -99,7 +100,7 @@ def write_program(
     suffix = (language or path.suffix).lower()
     writer = _writer(suffix, path)
     motions, turns = resolved(motions_of(program))
-    left_out, joined = [], []
+    left_out, joined, given = [], [], []
     known = Program("", "", motions)
     if isinstance(program, Program):
         known = replace(program, motions=motions)
@@ -107,6 +108,13 @@ def write_program(
         motions, left_out = one_frame.motions(known)
     elif suffix == ".script":
         motions, joined = one_base.in_one_base(known, bases, "URScript")
+        given = one_base.one_for_all(known, tools, "tool")
+    else:
+        given = one_base.one_for_all(known, bases, "base")
+        if given and one_base.all_known(known, bases):
+            motions, joined = one_base.in_one_base(known, bases, suffix[1:].upper())
+            given = []
+        given += one_base.one_for_all(known, tools, "tool")
     used = {m.base for m in motions} | {m.tool for m in motions}
     if part_in_hand is None:
         part_in_hand = any(words.endswith(IN_HAND) for words in used)
@@ -127,7 +135,7 @@ def write_program(
     from ...base.files import write_whole
 
     write_whole(path, data)
-    return [*sheet.notes, *turns, *joined, *(fact for _, _, fact in left_out)]
+    return [*sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix, path):

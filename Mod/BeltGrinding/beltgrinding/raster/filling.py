@@ -5,9 +5,13 @@ import numpy as np
 
 from . import passes, reachable, region
 
-DENSER = (5, 25)  # passes in a step-over, that are tried, in turn: strips along borders are narrow
+DENSER = (
+    5,
+    25,
+    100,
+)  # passes in a step-over, that are tried, in turn: strips along borders are narrow
 LEAST = 0.02  # of what the wheel gets to: less is left as it is, for a pass grinds what lies beside it once more
-GAIN = 0.02  # of what is to be filled, that a pass must touch
+GAIN = 0.005  # of what is to be filled, that a pass must touch
 MOST = 30  # passes that are added
 
 

@@ -56,6 +56,7 @@ void bind_surrogate(py::module_& m);
 void bind_calibration(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_simulation(py::module_& m);
+void bind_planning(py::module_& m);
 void bind_inspection(py::module_& m);
 void bind_ground_mesh(py::module_& m);
 void bind_section(py::module_& m);

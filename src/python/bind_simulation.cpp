@@ -88,6 +88,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.resolution.max_travel = take(d, "max_travel", o.resolution.max_travel);
     o.resolution.max_angle = take(d, "max_angle", o.resolution.max_angle);
     o.outputs.trace = take(d, "trace", o.outputs.trace);
+    o.outputs.influence = take(d, "influence", o.outputs.influence);
     o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
@@ -314,6 +315,8 @@ void bind_simulation(py::module_& m) {
                                   context != nullptr ? *context : RunContext());
             }
             py::dict d = to_dict(result);
+            d["influence"] =
+                o.outputs.influence ? py::cast(std::move(result.influence)) : py::none();
             d["compliance"] = result.model;
             d["law"] = removal->describe() + ", " + o.process.wear.describe();
             return d;
@@ -323,7 +326,7 @@ void bind_simulation(py::module_& m) {
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
         py::arg("recording") = nullptr,
         "Grinds field along path; see simulation/simulation.h for units. A recording goes on with "
-        "the path.");
+        "the path. With the option influence: an Influence; else None.");
     m.def(
         "contact_at",
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,

@@ -89,6 +89,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_events(m);
     bind_recording(m);
     bind_simulation(m);
+    bind_planning(m);
     bind_inspection(m);
     bind_ground_mesh(m);
     bind_section(m);

@@ -131,6 +131,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     ProcessMonitor monitor(field, path, process, options.limits, law);
     std::optional<TraceKeeper> trace;
     if (options.outputs.trace) trace.emplace(field);
+    std::optional<InfluenceKeeper> influence;
+    if (options.outputs.influence) influence.emplace(field.height);
     std::unique_ptr<SegmentTree> tree;
     {
         const Stopwatch watch(wall.build);
@@ -195,6 +197,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             const Stopwatch watch(wall.trace);
             trace->remove(field, changed, options.outputs.first_motion + step.pose);
         }
+        if (influence && !changed.empty()) influence->remove(field.height, changed, step.pose);
         if (recording != nullptr) {
             recording->add_step(field, changed, step.time + 0.5 * step.duration);
         }
@@ -216,6 +219,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     result.belt = grinding.belt();
     result.integrated_rate = grinding.integrated_rate();
     result.shifts = grinding.take_shifts();
+    if (influence) result.influence = influence->take(path.poses().size());
     wall += pressing.times();
     wall += grinding.times();
     if (recording != nullptr) recording->end(field);

@@ -29,7 +29,7 @@ class Result:
     as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
     ``recording`` (core.Recording of the heights, or None), ``convergence`` (dict as in
     convergence.json, or None), ``motions`` (as ``motions.of_paths`` gives them, or None), ``verdict``
-    (dict as in verdict.json, or None).
+    (dict as in verdict.json, or None), ``influence`` (core.Influence, only of a run that was asked for it).
     """
 
     VERDICT = "verdict.json"
@@ -38,6 +38,7 @@ class Result:
     convergence = None
     motions = None
     verdict = None
+    influence = None
 
     def __init__(self, job, field, summary, events, steps, recording=None):
         self.job = job

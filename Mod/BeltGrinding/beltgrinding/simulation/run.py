@@ -35,15 +35,17 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None, recording=None, early=None):
+def run(job, context=None, recording=None, early=None, influence=False):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
-    with a list of the first of its warnings before anything is ground.
+    with a list of the first of its warnings before anything is ground; ``influence``: the result has a
+    core.Influence, what every motion of all programs removed where.
     """
     warnings = []
     phases = _Phases()
     try:
-        return _run(job, context or core.RunContext(), warnings, recording, phases, early)
+        context = context or core.RunContext()
+        return _run(job, context, warnings, recording, phases, early, influence)
     except MemoryError:
         raise _out_of_memory(phases.seconds) from None
     except InputError as error:
@@ -79,7 +81,7 @@ def _out_of_memory(ended):
     )
 
 
-def _run(job, context, warnings, recording, phases, early):
+def _run(job, context, warnings, recording, phases, early, influence):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
@@ -107,7 +109,10 @@ def _run(job, context, warnings, recording, phases, early):
     if early is not None:
         early(list(warnings))
 
-    options.update(first_motion=0, lower_limits=verdicts.lower_limits(job, field))
+    removed = core.Influence() if influence else None
+    options.update(
+        first_motion=0, influence=influence, lower_limits=verdicts.lower_limits(job, field)
+    )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
     found, steps, process_time, models = [], None, 0.0, {}
     for i, path in enumerate(paths):
@@ -122,6 +127,8 @@ def _run(job, context, warnings, recording, phases, early):
         lists = [one[i]["events"] for one in (reached, met) if one]
         lists.append(gaps.events(path, left_out[i]))
         found.append((i, process_time, sum(lists, result["events"])))
+        if influence:
+            removed.append(result["influence"])
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
         rows["time"] = rows["time"] + process_time
@@ -159,6 +166,7 @@ def _run(job, context, warnings, recording, phases, early):
     )
     result = Result(job, field, summary, events, steps, recording)
     result.motions = ways
+    result.influence = removed
     phases.restart()
     result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
     phases.end("verdict")

@@ -11,6 +11,7 @@
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/event.h"
 #include "beltgrinding/height_field.h"
+#include "beltgrinding/influence.h"
 #include "beltgrinding/removal_law.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
@@ -83,6 +84,7 @@ struct OutputRequest {
     /// The law, moved by one standard deviation along each direction in which it is uncertain: for
     /// `SimulationResult::shifts`.
     std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws = {};
+    bool influence = false;  ///< keep what every motion removed where
 };
 
 /// How a simulation is done.
@@ -120,8 +122,9 @@ struct SimulationResult {
     /// order (the pressures as they are). Independent: they add up as squares.
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
-    std::string model;             ///< what the contact model says of itself as it was used
-    PhaseTimes wall;               ///< of this call
+    Influence influence;  ///< of the path's motions, from that to its first pose; if asked for
+    std::string model;    ///< what the contact model says of itself as it was used
+    PhaseTimes wall;      ///< of this call
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only

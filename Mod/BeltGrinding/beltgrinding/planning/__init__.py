@@ -1,0 +1,5 @@
+"""Plans: the feeds with which a job's programs keep the tolerance. What macros call is ``plan``."""
+
+from .plan import Plan, plan
+
+__all__ = ["Plan", "plan"]

@@ -1,0 +1,260 @@
+"""Plans a job's feeds: simulates it, sees what every motion removed where, slows down or speeds up, and simulates
+again.
+
+One simulation gives how much every motion removed at every sample. A motion that takes x times as long removes x
+times as much, at first order; ``core.plan_dwell`` finds the x with which the heights come into the tolerance's band,
+within the limits of feed. The contact changes with the surface, so that the figures hold near their own run only:
+rounds, as Gauss and Newton's. What is told is not what was predicted, but what the last simulation found.
+"""
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base import schemas
+from ..engine import InputError, core
+from ..inspection import verdict as verdicts
+from ..job import spacing
+from ..job.workpiece import check_faces, read_design
+from ..simulation import convergence, run as runs
+from . import levels, reasons
+from .commands import Commands
+
+STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
+STALLED = 2  # rounds without a gain
+WORSE = 1e-9  # of the area
+
+
+class Plan(NamedTuple):
+    """What was planned."""
+
+    job: dict  # the job with the planned feeds, its programs pose by pose
+    before: object  # simulation Result of the job as it was
+    after: object  # of the planned one; the same as ``before`` if nothing better was found
+    rounds: list  # dicts: in_tolerance (share), rms_mm, process_time_s, predicted_in_tolerance, residual, seconds
+    better: bool
+    commands: Commands
+    old: np.ndarray  # (commands,) mm/s
+    new: np.ndarray  # (commands,) mm/s
+    why: dict  # as ``reasons.find``
+    checked: dict  # figures of the same job at half the spacing and step, before and after; {}: not asked for
+
+
+def schema():
+    """The JSON Schema of the settings, as a dict."""
+    return schemas.schema("plan")
+
+
+def validate(settings):
+    """A copy of ``settings`` with all defaults filled in. Raises InputError naming the key."""
+    settings = schemas.checked(settings, schema(), "plan")
+    if settings["feed_min_mm_s"] > settings["feed_max_mm_s"]:
+        raise InputError(
+            "planning.feeds",
+            "{key}: {least:g} mm/s is above plan.feed_max_mm_s, {most:g}",
+            key="plan.feed_min_mm_s",
+            least=settings["feed_min_mm_s"],
+            most=settings["feed_max_mm_s"],
+        )
+    return settings
+
+
+def plan(job, settings=None, context=None, told=None):
+    """Plans the feeds of a validated job's programs. ``settings``: Resources/schema/plan.schema.json;
+    ``told(round)``: is called after each round with its dict.
+
+    Returns a ``Plan``. It is never worse than the job: where no round brings more of the area into tolerance, the old
+    feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
+    matters to, limits that contradict each other), Cancelled.
+    """
+    settings = validate(settings or {})
+    context = context or core.RunContext()
+    _refuse(job)
+    commands = Commands(job, settings)
+    job = _settled(job, context)
+    old = commands.feed()
+    tries = settings["rounds"] + 1
+    whole = tries + (16.0 if settings["check"] else 0.0)  # a run at half the spacing and step is eight
+    feeds, rounds, best = old, [], None
+    before, stalled = None, 0
+    for number in range(tries):
+        begun = time.perf_counter()
+        part = context.part(number / whole, (number + 1) / whole)
+        tried = commands.with_feeds(feeds)
+        result = runs.run(tried, part, influence=True)
+        one = _figures(result)
+        rounds.append(one)
+        before = before or result
+        if best is None or _score(one) > _score(best["figures"]) + WORSE:
+            gain = 1.0 if best is None else one["in_tolerance"] - best["figures"]["in_tolerance"]
+            best = {"figures": one, "feeds": feeds, "result": result, "job": tried}
+        else:
+            gain = 0.0
+        stalled = 0 if gain >= settings["least_gain"] else stalled + 1
+        ends = number + 1 == tries or stalled >= STALLED
+        if not ends:
+            feeds, found = _next(commands, result, feeds, settings, context)
+            one.update(found)
+        one["seconds"] = time.perf_counter() - begun
+        result.influence = result.influence if result is best["result"] else None
+        if told is not None:
+            told(one)
+        if ends:
+            break
+    if settings["levels"]:
+        best = _in_levels(commands, best, settings, rounds, told, context)
+    better = _score(best["figures"]) > _score(rounds[0]) + WORSE
+    if not better:
+        best = {"feeds": old, "result": before, "job": commands.with_feeds(old)}
+    why = reasons.find(best["result"], commands, best["feeds"], settings)
+    checked = {}
+    if settings["check"]:
+        done = len(rounds) / whole
+        jobs = {"before": commands.with_feeds(old), "after": best["job"]}
+        for k, (name, one) in enumerate(jobs.items()):
+            part = context.part(done + (1 - done) * k / 2, done + (1 - done) * (k + 1) / 2)
+            checked[name] = _figures(runs.run(convergence.scaled(one, "fine"), part))
+    context.report(1.0)
+    return Plan(
+        best["job"],
+        before,
+        best["result"],
+        rounds,
+        better,
+        commands,
+        old,
+        best["feeds"],
+        why,
+        checked,
+    )
+
+
+def _refuse(job):
+    if job["law"]["model"] == "geometric":
+        raise InputError(
+            "planning.rigid",
+            "plan: a geometric (rigid) tool takes all that it reaches, at any feed; nothing can be planned",
+        )
+    if feed_exponent(job) > STEEPEST:
+        raise InputError(
+            "planning.feed_decides_nothing",
+            "plan: by the law, {key} {value:g}, a faster feed removes no less; nothing can be planned by feeds",
+            key="law.feed_exponent",
+            value=feed_exponent(job),
+        )
+    if job["law"]["model"] == "general" and job["law"].get("feed_curve"):
+        raise InputError(
+            "planning.feed_curve",
+            "plan: laws with a curve over the feed are not planned yet; give law.feed_exponent in its place",
+        )
+
+
+def feed_exponent(job):
+    """gamma of the job's law: the rate of removal goes with the feed to this power."""
+    law = job["law"]
+    return float(law["feed_exponent"]) if law["model"] not in ("hammann", "local_linear") else 0.0
+
+
+def _settled(job, context):
+    """The job with its spacing chosen, so that all rounds have the same samples."""
+    if job["sampling"]["spacing_mm"] != 0:
+        return job
+    shape = read_design(job["design"], context.part(0.0, 0.0))
+    check_faces(job, shape)
+    return spacing.settled(job, shape, [], context.part(0.0, 0.0))[0]
+
+
+def _figures(result):
+    summary = result.summary
+    return {
+        "in_tolerance": summary["in_tolerance_area_share"],
+        "above": summary["above_tolerance_area_share"],
+        "below": summary["below_tolerance_area_share"],
+        "rms_mm": summary["deviation_mm"]["rms"],
+        "process_time_s": summary["process_time_s"],
+    }
+
+
+def _score(figures):
+    return figures["in_tolerance"]
+
+
+def _next(commands, result, feeds, settings, context):
+    """(feeds (commands,) for the next round, what is told of it)."""
+    begun = time.perf_counter()
+    field, job = result.field, result.job
+    lower, upper = verdicts.limits(job, field)
+    height = np.asarray(field.height, dtype=float)
+    seen = (np.asarray(field.flags) & core.MISSED) == 0
+    weight = np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
+    influence = result.influence.grouped(commands.group, len(commands))
+    power = 1.0 - feed_exponent(job)  # removed depth goes with the time to this power
+    change = settings["most_change"]
+    slowest = np.clip(feeds / settings["feed_min_mm_s"], 1.0 / change, change)
+    fastest = np.clip(feeds / settings["feed_max_mm_s"], 1.0 / change, change)
+    fastest, slowest = np.minimum(fastest, slowest) ** power, slowest**power
+    fixed = commands.kept
+    fastest[fixed] = slowest[fixed] = 1.0
+    found = core.plan_dwell(
+        influence,
+        height - 0.5 * (lower + upper),
+        0.5 * (upper - lower),
+        weight,
+        fastest,
+        slowest,
+        1.0 / feeds,
+        {"smoothing": settings["smoothing"]},
+        context.part(0.0, 0.0),
+    )
+    new = feeds * found["factor"] ** (-1.0 / power)
+    moved = np.asarray(np.diff(influence.first) > 0) & ~fixed
+    new = np.where(moved, np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"]), feeds)
+    inside = abs(found["excess"]) <= 0.5 * (upper - lower)
+    return new, {
+        "predicted_in_tolerance": float(weight[inside].sum() / weight.sum()),
+        "residual": found["residual"],
+        "iterations": found["iterations"],
+        "planning_seconds": time.perf_counter() - begun,
+    }
+
+
+def _in_levels(commands, best, settings, rounds, told, context):
+    """The best feeds in few steps, simulated."""
+    lasts = np.bincount(commands.group, minlength=len(commands)).astype(float)
+    free = ~commands.kept & (best["feeds"] > 0)
+    feeds = best["feeds"].copy()
+    feeds[free] = levels.quantised(feeds[free], lasts[free], settings["levels"])
+    tried = commands.with_feeds(feeds)
+    begun = time.perf_counter()
+    result = runs.run(tried, context.part(1.0, 1.0), influence=True)
+    one = {**_figures(result), "levels": settings["levels"], "seconds": time.perf_counter() - begun}
+    rounds.append(one)
+    if told is not None:
+        told(one)
+    return {"figures": one, "feeds": feeds, "result": result, "job": tried}
+
+
+def summary(found):
+    """The figures of a ``Plan``, as JSON has them."""
+    return {
+        "better": found.better,
+        "before": _figures(found.before),
+        "after": _figures(found.after),
+        "checked": found.checked,
+        "rounds": [
+            {
+                k: (None if isinstance(v, float) and not math.isfinite(v) else v)
+                for k, v in one.items()
+            }
+            for one in found.rounds
+        ],
+        "out_of_tolerance": found.why["shares"],
+        "commands": len(found.commands),
+        "changed": int((abs(found.new - found.old) > 1e-9 * found.old).sum()),
+        "feed_mm_s": {
+            "least": float(found.new.min()),
+            "greatest": float(found.new.max()),
+        },
+    }

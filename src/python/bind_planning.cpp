@@ -1,0 +1,83 @@
+#include "arrays.h"
+#include "beltgrinding/dwell.h"
+#include "dict.h"
+
+namespace beltgrinding::python {
+namespace {
+
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::vector<T> vector_of(const Array<T>& values) {
+    return std::vector<T>(values.data(), values.data() + values.size());
+}
+
+}  // namespace
+
+void bind_planning(py::module_& m) {
+    py::class_<Influence>(m, "Influence", "How much every motion of a path removed where.")
+        .def(py::init<>())
+        .def(py::init([](const Array<std::size_t>& first, const Array<std::uint32_t>& sample,
+                         const Array<float>& depth) {
+                 Influence influence;
+                 influence.first = vector_of(first);
+                 influence.sample = vector_of(sample);
+                 influence.depth = vector_of(depth);
+                 return influence;
+             }),
+             py::arg("first"), py::arg("sample"), py::arg("depth"),
+             "first (motions + 1,), sample, depth (entries,) mm: column by column.")
+        .def("append", &Influence::append, py::arg("next"), "Goes on with the next path's motions.")
+        .def(
+            "grouped",
+            [](const Influence& i, const Array<std::uint32_t>& group, std::size_t count) {
+                return i.grouped({group.data(), static_cast<std::size_t>(group.size())}, count);
+            },
+            py::arg("group"), py::arg("count"),
+            "That of groups of motions that change together; group (motions,): each one's number.")
+        .def("__len__", &Influence::motions)
+        .def_property_readonly(
+            "first", [](const Influence& i) { return own(std::vector<std::size_t>(i.first)); })
+        .def_property_readonly(
+            "sample", [](const Influence& i) { return own(std::vector<std::uint32_t>(i.sample)); })
+        .def_property_readonly("depth",
+                               [](const Influence& i) { return own(std::vector<float>(i.depth)); });
+    m.def(
+        "plan_dwell",
+        [](const Influence& influence, const Eigen::ArrayXd& excess, const Eigen::ArrayXd& half,
+           const Eigen::ArrayXd& weight, const Eigen::ArrayXd& lower, const Eigen::ArrayXd& upper,
+           const Eigen::ArrayXd& pace, const py::dict& given, const RunContext* context) {
+            const DwellProblem problem{&influence, excess, half, weight, lower, upper, pace};
+            DwellSettings settings;
+            py::dict d = copy_of(given);
+            settings.inner_share = take(d, "inner_share", settings.inner_share);
+            settings.inner_cost = take(d, "inner_cost", settings.inner_cost);
+            settings.smoothing = take(d, "smoothing", settings.smoothing);
+            settings.reweightings = take(d, "reweightings", settings.reweightings);
+            settings.accuracy = take(d, "accuracy", settings.accuracy);
+            settings.iterations = take(d, "iterations", settings.iterations);
+            refuse_rest(d, "settings");
+            DwellSolution solution;
+            {
+                const py::gil_scoped_release release;
+                solution = plan_dwell(problem, settings,
+                                      context != nullptr ? *context : RunContext());
+            }
+            py::dict found;
+            found["factor"] = solution.factor;
+            found["excess"] = solution.excess;
+            found["price"] = solution.price;
+            found["residual"] = solution.residual;
+            found["objective"] = solution.objective;
+            found["iterations"] = solution.iterations;
+            return found;
+        },
+        py::arg("influence"), py::arg("excess"), py::arg("half"), py::arg("weight"),
+        py::arg("lower"), py::arg("upper"), py::arg("pace"), py::arg("settings") = py::dict(),
+        py::arg("context") = nullptr,
+        "How many times as long each motion should take: see planning's dwell.h. Returns "
+        "dict(factor, price (motions,), excess (samples,) mm, residual, objective, iterations).");
+}
+
+}  // namespace beltgrinding::python

@@ -12,16 +12,17 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kInside = 0.01;     // of the way between the bounds, where the first x keeps
-constexpr double kToBound = 0.995;   // of the way to a bound, at most, in a step
+constexpr double kInside = 0.01;      // of the way between the bounds, where the first x keeps
+constexpr double kToBound = 0.995;    // of the way to a bound, at most, in a step
 constexpr double kBarrierFall = 0.2;  // of the barrier, from one to the next
 constexpr double kBarrierPower = 1.5;
 constexpr double kSolvedFor = 10.0;  // times the barrier: so well a barrier's problem is solved
 constexpr double kFirstBarrier = 0.1;
-constexpr double kLoose = 1e-3;      // accuracy before the last reweighting
+constexpr double kLoose = 1e-3;  // accuracy before the last reweighting
 constexpr double kArmijo = 1e-4;
 constexpr int kHalvings = 40;
-constexpr double kRidge = 1e-12;  // of the largest diagonal element, for motions that cannot be told apart
+constexpr double kRidge =
+    1e-12;  // of the largest diagonal element, for motions that cannot be told apart
 
 void refuse_unless(bool good, const char* name) {
     if (!good) {
@@ -41,14 +42,14 @@ class Cost {
           trust_(Eigen::ArrayXd::Ones(problem.weight.size())) {}
 
     void reweigh(const Eigen::ArrayXd& e) {
-        trust_ = 1.0 / (1.0 + ((e.abs() - problem_.half).max(0.0) / (4.0 * problem_.half)).square());
+        trust_ = 1.0 / (1.0 + ((e.abs() - problem_.half).max(0.0) / problem_.half).square());
     }
     double value(const Eigen::ArrayXd& e) const {
         const Eigen::ArrayXd outer = (e.abs() - inner_).max(0.0);
-        return 0.5 * (weight_ * trust_ *
-                      (settings_.inner_cost * e.square() +
-                       (1.0 - settings_.inner_cost) * outer.square()))
-                         .sum();
+        return 0.5 *
+               (weight_ * trust_ *
+                (settings_.inner_cost * e.square() + (1.0 - settings_.inner_cost) * outer.square()))
+                   .sum();
     }
     Eigen::ArrayXd slope(const Eigen::ArrayXd& e) const {
         const Eigen::ArrayXd outer = (e.abs() - inner_).max(0.0);
@@ -57,8 +58,7 @@ class Cost {
     }
     Eigen::ArrayXd curvature(const Eigen::ArrayXd& e) const {
         const Eigen::ArrayXd beyond = (e.abs() > inner_).cast<double>();
-        return weight_ * trust_ *
-               (settings_.inner_cost + (1.0 - settings_.inner_cost) * beyond);
+        return weight_ * trust_ * (settings_.inner_cost + (1.0 - settings_.inner_cost) * beyond);
     }
 
   private:
@@ -106,7 +106,10 @@ class Interior {
   public:
     Interior(const DwellProblem& problem, const DwellSettings& settings, const Variables& variables,
              NormalMatrix& normal, const RunContext& context)
-        : settings_(settings), v_(variables), normal_(normal), context_(context),
+        : settings_(settings),
+          v_(variables),
+          normal_(normal),
+          context_(context),
           cost_(problem, settings) {
         const Eigen::ArrayXd span = v_.upper - v_.lower;
         x_ = Eigen::ArrayXd::Ones(v_.lower.size())
@@ -214,8 +217,9 @@ class Interior {
         while (error(0.0) > accuracy) {
             const double least = 0.1 * accuracy * scale_;
             while (error(barrier) <= kSolvedFor * barrier / scale_ && barrier > least) {
-                barrier = std::max(least, std::min(kBarrierFall * barrier,
-                                                   scale_ * std::pow(barrier / scale_, kBarrierPower)));
+                barrier =
+                    std::max(least, std::min(kBarrierFall * barrier,
+                                             scale_ * std::pow(barrier / scale_, kBarrierPower)));
             }
             if (iterations_ >= settings_.iterations) {
                 throw InputError("planning.not_solved",

@@ -14,8 +14,8 @@ class NormalMatrix {
   public:
     using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-    /// `free`: numbers of the motions that are variables, rising. `chained[k]`: variables k and k + 1
-    /// are neighbours, and (k + 1, k) is kept in the pattern. Keeps a reference to the influence.
+    /// `free`: numbers of the motions that are variables, rising. `chained[k]`: variables k and k +
+    /// 1 are neighbours, and (k + 1, k) is kept in the pattern. Keeps a reference to the influence.
     NormalMatrix(const Influence& influence, std::size_t samples, std::vector<std::uint32_t> free,
                  const std::vector<char>& chained, const RunContext& context);
 

@@ -61,8 +61,8 @@ void bind_planning(py::module_& m) {
             DwellSolution solution;
             {
                 const py::gil_scoped_release release;
-                solution = plan_dwell(problem, settings,
-                                      context != nullptr ? *context : RunContext());
+                solution =
+                    plan_dwell(problem, settings, context != nullptr ? *context : RunContext());
             }
             py::dict found;
             found["factor"] = solution.factor;

@@ -63,7 +63,8 @@ void InfluenceKeeper::remove(const std::vector<double>& heights,
 
 // Ends the running motion, and those up to `motion` that removed nothing.
 void InfluenceKeeper::close(std::size_t motion) {
-    influence_.first.resize(std::max(influence_.first.size(), motion + 1), influence_.sample.size());
+    influence_.first.resize(std::max(influence_.first.size(), motion + 1),
+                            influence_.sample.size());
     std::sort(touched_.begin(), touched_.end());
     for (const std::uint32_t s : touched_) {
         influence_.sample.push_back(s);

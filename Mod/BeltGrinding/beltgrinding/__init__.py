@@ -24,6 +24,17 @@ def run(job, context=None, recording=None):
     return runs.run(job, context, recording)
 
 
+def plan(job, settings=None, context=None, told=None):
+    """Plans the feeds of a job (a dict, or the path of a job.json) so that the ground part keeps its tolerance; see
+    ``planning.plan``.
+    """
+    from .job import load as jobs
+    from .planning import rounds as plans
+
+    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
+    return plans.plan(job, settings, context, told)
+
+
 def report(result, output=None, pdf=None, language="en", title=None, context=None):
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
     from .reporting import report as reporting

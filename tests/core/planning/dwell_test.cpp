@@ -11,14 +11,15 @@
 namespace beltgrinding {
 namespace {
 
-/// Passes over a strip: every motion removes on samples around its own, and a little on those of the
-/// next pass.
+/// Passes over a strip: every motion removes on samples around its own, and a little on those of
+/// the next pass.
 Influence strip(int motions, int around, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> depth(0.02F, 0.06F);
     Influence a;
     for (int j = 0; j < motions; ++j) {
-        for (int s = std::max(0, 3 * (j - around)); s < std::min(3 * motions, 3 * (j + around)); ++s) {
+        for (int s = std::max(0, 3 * (j - around)); s < std::min(3 * motions, 3 * (j + around));
+             ++s) {
             a.sample.push_back(static_cast<std::uint32_t>(s));
             a.depth.push_back(depth(random));
         }
@@ -36,7 +37,8 @@ struct Case {
         std::uniform_real_distribution<double> uneven(-0.15, 0.15);
         const int samples = 3 * motions;
         problem.influence = &influence;
-        problem.excess = Eigen::ArrayXd::NullaryExpr(samples, [&] { return excess + uneven(random); });
+        problem.excess =
+            Eigen::ArrayXd::NullaryExpr(samples, [&] { return excess + uneven(random); });
         problem.half = Eigen::ArrayXd::Constant(samples, 0.05);
         problem.weight = Eigen::ArrayXd::Ones(samples);
         problem.lower = Eigen::ArrayXd::Constant(motions, 0.3);
@@ -64,8 +66,8 @@ double cost(const DwellProblem& p, const DwellSettings& s, const Eigen::ArrayXd&
     double sum = 0.0;
     for (Eigen::Index i = 0; i < e.size(); ++i) {
         const double beyond = std::max(0.0, std::abs(e[i]) - s.inner_share * p.half[i]);
-        sum += p.weight[i] *
-               (s.inner_cost * e[i] * e[i] + (1.0 - s.inner_cost) * beyond * beyond) / 2.0;
+        sum += p.weight[i] * (s.inner_cost * e[i] * e[i] + (1.0 - s.inner_cost) * beyond * beyond) /
+               2.0;
     }
     return sum / p.weight.sum();
 }
@@ -161,7 +163,7 @@ TEST(Dwell, SmoothingEvensThePace) {
 TEST(Dwell, LeavesGivenMotionsAndThoseThatRemoveNothing) {
     Case one(20, 13);
     one.problem.lower[4] = one.problem.upper[4] = 1.0;
-    one.problem.lower[5] = one.problem.upper[5] = 2.0;  // given, and other than it was
+    one.problem.lower[5] = one.problem.upper[5] = 2.0;          // given, and other than it was
     one.influence.first.push_back(one.influence.first.back());  // removes nothing
     for (Eigen::ArrayXd* a : {&one.problem.lower, &one.problem.upper, &one.problem.pace}) {
         a->conservativeResize(21);

@@ -12,7 +12,8 @@
 namespace beltgrinding {
 namespace {
 
-constexpr float kOfDeepest = 0.05F;  // what is removed at the contact's edge changes with the contact
+constexpr float kOfDeepest =
+    0.05F;  // what is removed at the contact's edge changes with the contact
 
 PathPose pressing_down(double x, double y, double feed, bool rapid = false) {
     PathPose pose;

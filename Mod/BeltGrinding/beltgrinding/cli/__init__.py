@@ -20,6 +20,7 @@ from . import (
     inspect,
     lists,
     measure,
+    plan,
     press,
     program,
     report,
@@ -29,7 +30,7 @@ from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
-TOPICS = (grind, press, program, faces, calibrate, inspect, measure, report, view, lists)
+TOPICS = (grind, plan, press, program, faces, calibrate, inspect, measure, report, view, lists)
 
 
 JSON_ERRORS = "--json-errors"

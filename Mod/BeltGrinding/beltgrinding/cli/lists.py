@@ -13,7 +13,17 @@ def add(commands):
     printed.add_argument(
         "name",
         nargs="?",
-        choices=("job", "contact", "presets", "raster", "events", "summary", "values", "verdict"),
+        choices=(
+            "job",
+            "contact",
+            "presets",
+            "raster",
+            "plan",
+            "events",
+            "summary",
+            "values",
+            "verdict",
+        ),
         default="job",
     )
     printed.set_defaults(do=_schema)

@@ -1,5 +1,5 @@
 """Plans: the feeds with which a job's programs keep the tolerance. What macros call is ``plan``."""
 
-from .plan import Plan, plan
+from .rounds import Plan, plan
 
 __all__ = ["Plan", "plan"]

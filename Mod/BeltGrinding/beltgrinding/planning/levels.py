@@ -7,7 +7,8 @@ ROUNDS = 200
 
 def quantised(feeds, weights, count):
     """(n,) each feed (n,) mm/s replaced by one of at most ``count``, so that the weighted squares of the logarithms'
-    differences are as small as moving the borders makes them (Lloyd, IEEE Trans. Inf. Theory 28, 1982)."""
+    differences are as small as moving the borders makes them (Lloyd, IEEE Trans. Inf. Theory 28, 1982).
+    """
     values, inverse = np.unique(feeds, return_inverse=True)
     if len(values) <= count:
         return feeds.copy()

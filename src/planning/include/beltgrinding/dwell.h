@@ -27,12 +27,12 @@ struct DwellProblem {
 };
 
 struct DwellSettings {
-    double inner_share = 0.7;   ///< of the band, within which deviations cost `inner_cost` only
-    double inner_cost = 0.3;    ///< of what they cost outside
-    double smoothing = 1e-3;    ///< cost of unequal paces, against that of the deviations at first
-    int reweightings = 6;       ///< of the samples that no motion can mend
-    double accuracy = 1e-8;     ///< of the conditions of optimality, relative
-    int iterations = 200;       ///< at most, in all
+    double inner_share = 0.7;  ///< of the band, within which deviations cost `inner_cost` only
+    double inner_cost = 0.3;   ///< of what they cost outside
+    double smoothing = 1e-3;   ///< cost of unequal paces, against that of the deviations at first
+    int reweightings = 6;      ///< of the samples that no motion can mend
+    double accuracy = 1e-8;    ///< of the conditions of optimality, relative
+    int iterations = 200;      ///< at most, in all
 
     /// Throws InputError naming the setting that is none.
     void validate() const;
@@ -41,7 +41,8 @@ struct DwellSettings {
 struct DwellSolution {
     Eigen::ArrayXd factor;  ///< (motions) x
     Eigen::ArrayXd excess;  ///< (samples) mm, e(x) at first order
-    Eigen::ArrayXd price;   ///< (motions) multiplier of the bound that x lies at: > 0 lower, < 0 upper
+    Eigen::ArrayXd
+        price;  ///< (motions) multiplier of the bound that x lies at: > 0 lower, < 0 upper
     double residual = 0.0;  ///< of the conditions of optimality (Karush, Kuhn, Tucker), relative
     double objective = 0.0;
     int iterations = 0;
@@ -49,11 +50,11 @@ struct DwellSolution {
 
 /// The x of least cost: sum of weight * r * cost(e(x)) over the samples, and the smoothing. cost is
 /// that of a deviation: inner_cost e^2 / 2, and (1 - inner_cost) (|e| - inner_share half)^2 / 2 of
-/// what is beyond. r = 1 / (1 + (beyond / (4 half))^2), anew by each reweighting, lets go of what no
-/// motion can mend, `beyond` what |e| is beyond the band. For given r the problem is convex;
-/// it is solved by a primal-dual interior-point method (Waechter and Biegler, Mathematical
-/// Programming 106, 2006, without the filter). The same bits on any number of threads. Throws
-/// InputError and Cancelled.
+/// what is beyond. r = 1 / (1 + (beyond / (4 half))^2), anew by each reweighting, lets go of what
+/// no motion can mend, `beyond` what |e| is beyond the band. For given r the problem is convex; it
+/// is solved by a primal-dual interior-point method (Waechter and Biegler, Mathematical Programming
+/// 106, 2006, without the filter). The same bits on any number of threads. Throws InputError and
+/// Cancelled.
 DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& settings,
                          const RunContext& context = {});
 

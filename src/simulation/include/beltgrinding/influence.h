@@ -16,8 +16,8 @@ struct Influence {
     std::size_t motions() const { return first.size() - 1; }
     /// Goes on with the motions of `next`, the same field's, which come after these.
     void append(const Influence& next);
-    /// That of groups of motions, which are changed together: `group` has the number of each motion's,
-    /// below `count`. Throws InputError where the numbers do not fit.
+    /// That of groups of motions, which are changed together: `group` has the number of each
+    /// motion's, below `count`. Throws InputError where the numbers do not fit.
     Influence grouped(std::span<const std::uint32_t> group, std::size_t count) const;
 };
 

@@ -76,7 +76,9 @@ def plan(job, settings=None, context=None, told=None):
     job = _settled(job, context)
     old = commands.feed()
     tries = settings["rounds"] + 1
-    whole = tries + (16.0 if settings["check"] else 0.0)  # a run at half the spacing and step is eight
+    whole = tries + (
+        16.0 if settings["check"] else 0.0
+    )  # a run at half the spacing and step is eight
     feeds, rounds, best = old, [], None
     before, stalled = None, 0
     for number in range(tries):

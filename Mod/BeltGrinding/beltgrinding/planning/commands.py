@@ -59,7 +59,7 @@ class Commands:
                 raise InputError(
                     "planning.keep_nothing",
                     "{key}: program {program} has no motion in lines {first} to {last}",
-                    key=f"plan.keep[{number}]",
+                    key=f"keep[{number}]",
                     program=one["program"],
                     first=first,
                     last=last,

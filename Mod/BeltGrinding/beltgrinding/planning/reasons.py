@@ -20,7 +20,8 @@ NEAR = 4.0  # samples from a border
 
 
 def find(result, commands, feeds, settings):
-    """dict(state (samples,) of the above, shares: {word: of the area, where it is out of tolerance})."""
+    """dict(state (samples,) of the above, reached (samples,) bool: some motion removes something, shares: {word: of the
+    area, where it is out of tolerance})."""
     field, influence = result.field, result.influence
     lower, upper = verdicts.limits(result.job, field)
     height, areas = np.asarray(field.height, dtype=float), np.asarray(field.areas, dtype=float)
@@ -47,7 +48,7 @@ def find(result, commands, feeds, settings):
     state[above & (total <= 0.0)] = NOT_REACHED
     whole = max(areas[seen].sum(), 1e-300)
     shares = {word: float(areas[seen & (state == k)].sum() / whole) for k, word in WORDS.items()}
-    return {"state": state, "shares": shares}
+    return {"state": state, "reached": total > 0.0, "shares": shares}
 
 
 def _near(field, border):

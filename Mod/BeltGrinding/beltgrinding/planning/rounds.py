@@ -53,8 +53,8 @@ def validate(settings):
     if settings["feed_min_mm_s"] > settings["feed_max_mm_s"]:
         raise InputError(
             "planning.feeds",
-            "{key}: {least:g} mm/s is above plan.feed_max_mm_s, {most:g}",
-            key="plan.feed_min_mm_s",
+            "{key}: {least:g} mm/s is above feed_max_mm_s, {most:g}",
+            key="feed_min_mm_s",
             least=settings["feed_min_mm_s"],
             most=settings["feed_max_mm_s"],
         )
@@ -146,7 +146,7 @@ def _refuse(job):
             key="law.feed_exponent",
             value=feed_exponent(job),
         )
-    if job["law"]["model"] == "general" and job["law"].get("feed_curve"):
+    if job["law"]["model"] == "local" and job["law"]["feed_curve"]:
         raise InputError(
             "planning.feed_curve",
             "plan: laws with a curve over the feed are not planned yet; give law.feed_exponent in its place",
@@ -156,7 +156,7 @@ def _refuse(job):
 def feed_exponent(job):
     """gamma of the job's law: the rate of removal goes with the feed to this power."""
     law = job["law"]
-    return float(law["feed_exponent"]) if law["model"] not in ("hammann", "local_linear") else 0.0
+    return float(law["feed_exponent"]) if law["model"] == "local" else 0.0
 
 
 def _settled(job, context):

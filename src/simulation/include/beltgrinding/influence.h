@@ -13,6 +13,7 @@ struct Influence {
     std::vector<std::uint32_t> sample;     ///< rising within a motion
     std::vector<float> depth;              ///< mm, above 0
 
+    /// How many there are, those that removed nothing among them.
     std::size_t motions() const { return first.size() - 1; }
     /// Goes on with the motions of `next`, the same field's, which come after these.
     void append(const Influence& next);
@@ -24,6 +25,7 @@ struct Influence {
 /// Collects an influence during a simulation, whose motions come one after the other.
 class InfluenceKeeper {
   public:
+    /// `heights`: mm (samples), before the first motion.
     explicit InfluenceKeeper(const std::vector<double>& heights)
         : height_(heights), removed_(heights.size(), 0.0) {}
 

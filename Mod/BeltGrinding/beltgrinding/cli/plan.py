@@ -1,0 +1,112 @@
+"""Planning a job's feeds."""
+
+import json
+from pathlib import Path
+
+from . import background, outputs
+from .messages import print_text
+
+
+def add(commands):
+    """Adds the command to the parser's ``commands``."""
+    plan = commands.add_parser(
+        "plan", help="feeds with which a job's programs keep the tolerance (docs/planning.md)"
+    )
+    plan.add_argument("job", help="job.json")
+    plan.add_argument(
+        "-o", "--output", required=True, help="folder for the planned programs, job and result"
+    )
+    plan.add_argument("--settings", help="JSON file of the settings")
+    plan.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
+    )
+    plan.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outputs.add(plan)
+    plan.set_defaults(do=_plan)
+
+
+def _plan(arguments):
+    from ..job import inputs, load as jobs
+    from ..planning import apply, rounds as plans
+
+    settings = plans.validate(_settings(arguments))
+    job = jobs.load(arguments.job)
+    read = [arguments.job, *inputs.files(job)]
+    apply.check(job, arguments.output, read, arguments.force)
+
+    def told(one):
+        if not arguments.quiet:
+            print_text(_line(one))
+
+    found = background.run(
+        lambda context: plans.plan(job, settings, context, told), arguments.quiet
+    )
+    written, warnings = apply.write(found, arguments.output, read, arguments.force)
+    arguments.messages.print_warnings(warnings)
+    if not arguments.quiet:
+        print_text(text(plans.summary(found)))
+        names = ", ".join(written) if written else "poses in job.json"
+        print_text(f"programs: {names}; results in {arguments.output}")
+
+
+def _settings(arguments):
+    from ..base import schemas
+    from ..engine import InputError
+
+    settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
+    if not isinstance(settings, dict):
+        raise InputError(
+            "cli.settings_no_object",
+            "{file}: the settings are no object of keys",
+            file=arguments.settings,
+        )
+    for one in arguments.set:
+        key, equals, value = one.partition("=")
+        if not equals:
+            raise InputError("cli.set_without_value", "--set {given}: write KEY=VALUE", given=one)
+        try:
+            settings[key] = json.loads(value)
+        except ValueError:
+            settings[key] = value
+    return settings
+
+
+def _line(one):
+    kind = f"in {one['levels']} levels: " if "levels" in one else ""
+    return (
+        f"{kind}{100 * one['in_tolerance']:.1f} % of the area in tolerance, "
+        f"{100 * one['above']:.1f} % too much left, {100 * one['below']:.1f} % cut too deep, "
+        f"rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s of grinding"
+    )
+
+
+WORDS = {
+    "no_motion": "no motion removes anything there",
+    "border": "along the border of the faces",
+    "slowest_feed": "too much left at the least feed",
+    "fastest_feed": "cut too deep at the greatest feed",
+    "kept": "its motions must not be changed",
+    "shared": "its motions also grind what needs the contrary",
+}
+
+
+def text(summary):
+    """A plan's summary in words."""
+    if not summary["better"]:
+        lines = ["nothing better was found: the feeds stay as they are"]
+    else:
+        before, after = summary["before"], summary["after"]
+        if summary["checked"]:
+            before, after = (summary["checked"][k] for k in ("before", "after"))
+        lines = [f"before: {_line(before)}", f"planned: {_line(after)}"]
+        if summary["checked"]:
+            lines[1] += " (both at half the spacing and step)"
+    out = {k: v for k, v in summary["out_of_tolerance"].items() if v > 0.0005}
+    for word, share in sorted(out.items(), key=lambda pair: -pair[1]):
+        lines.append(f"  out of tolerance, {100 * share:.1f} %: {WORDS[word]}")
+    feeds = summary["feed_mm_s"]
+    lines.append(
+        f"feeds {feeds['least']:.3g} to {feeds['greatest']:.3g} mm/s; {summary['changed']} of "
+        f"{summary['commands']} commands changed"
+    )
+    return "\n".join(lines)

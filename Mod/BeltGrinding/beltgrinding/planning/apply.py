@@ -1,0 +1,177 @@
+"""A plan as files: the programs with their new feeds, the job that grinds them, what was planned."""
+
+import csv
+import io
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+
+from ..base.files import cannot_be_written, write_whole
+from ..engine import InputError, core
+from ..job.poses import program_name
+from ..programs.patch.patch import patch
+from . import rounds as plans
+
+JOB = "job.json"
+PLAN = "plan.json"
+FEEDS = "feeds.csv"
+RESULT = "result"
+SAME = 1e-9  # relative, of a feed
+
+
+def write(found, folder, read=(), force=False):
+    """Writes a ``Plan`` into ``folder``: job.json (the job with the planned programs), the programs' files with new
+    feeds and nothing else changed, feeds.csv, plan.json, and the result in the folder ``result``. Never over a file
+    of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``.
+
+    Returns (names of the program files that were written, warnings: why a program's file could not be). Such a
+    program stands in job.json pose by pose. Raises InputError.
+    """
+    folder = Path(folder)
+    sources, names = check(found.commands.job, folder, read, force)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_be_written(folder, error) from None
+    programs, written, warnings = [], [], []
+    for k, (planned, source, name) in enumerate(zip(found.job["programs"], sources, names)):
+        entry, reason = planned, None
+        if source is not None:
+            entry, reason = _patched(found, k, source, folder / name, planned)
+        if reason is not None:
+            warnings.append(
+                core.Fact(
+                    "planning.not_patched",
+                    "{program}: its file was not written, for not all feeds can be put into it ({reason}); {job} has "
+                    "its poses with their feeds",
+                    program=program_name(found.commands.job, k),
+                    reason=reason,
+                    job=JOB,
+                )
+            )
+        elif source is not None:
+            written.append(name)
+        programs.append(entry)
+    job = json.dumps({**found.job, "programs": programs}, indent=1)
+    found.after.write(folder / RESULT, force, read)
+    for name, data in (
+        (JOB, job),
+        (FEEDS, feeds_csv(found)),
+        (PLAN, json.dumps(plans.summary(found), indent=1)),
+    ):
+        try:
+            write_whole(folder / name, (data if data.endswith("\n") else data + "\n").encode())
+        except OSError as error:
+            raise cannot_be_written(folder / name, error) from None
+    return written, warnings
+
+
+def _names(sources):
+    """A name in the folder for each source, None without one; no two alike."""
+    names, taken = [], {JOB, PLAN, FEEDS, RESULT}
+    for source in sources:
+        if source is None:
+            names.append(None)
+            continue
+        stem, suffix = Path(source).stem, Path(source).suffix
+        name, number = stem + suffix, 1
+        while name.lower() in taken:
+            number += 1
+            name = f"{stem}-{number}{suffix}"
+        taken.add(name.lower())
+        names.append(name)
+    return names
+
+
+def check(job, folder, read=(), force=False):
+    """Raises InputError where a plan of a job in ``folder`` would be written over what it must not be. Returns (the
+    job's program files, None for poses; their names in the folder)."""
+    folder = Path(folder)
+    sources = [program.get("file") for program in job["programs"]]
+    names = _names(sources)
+    read = [*read, *filter(None, sources)]
+    inputs = {os.path.realpath(path): path for path in read}
+    planned = _is_plan(folder / PLAN)
+    for name in (JOB, PLAN, FEEDS, *filter(None, names)):
+        path = folder / name
+        if os.path.realpath(path) in inputs:
+            raise InputError(
+                "planning.own_input",
+                "{file}: the plan would be written over it, and reads it; choose another folder",
+                file=inputs[os.path.realpath(path)],
+            )
+        if os.path.lexists(path) and not (planned or force):
+            raise InputError(
+                "planning.not_of_a_plan",
+                "{file}: is there already, and no plan has written it; choose another folder, or replace it by --force",
+                file=path,
+            )
+    return sources, names
+
+
+def _is_plan(path):
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(found, dict) and {"better", "rounds", "checked"} <= set(found)
+
+
+def _patched(found, number, source, output, planned):
+    """(the job's entry of a program, why its file could not be written or None)."""
+    changes = [
+        {"line": line, "speed_mm_s": feed}
+        for line, _, feed in _changed(found, number)
+        if line > 0
+    ]
+    program = found.commands.job["programs"][number]
+    try:
+        if "values" in program and not isinstance(program["values"], str):
+            raise InputError("planning.inline_values", "its values stand in the job")
+        if changes:
+            patch(source, changes, output)
+        else:
+            write_whole(output, Path(source).read_bytes())
+    except OSError as error:
+        raise cannot_be_written(output, error) from None
+    except InputError as error:
+        return planned, error
+    entry = {**program, "file": output.name}
+    entry.pop("feed_mm_s", None)
+    return entry, None
+
+
+def _changed(found, number):
+    """(line, old, new) of the commands of a program whose feed changes."""
+    commands, rows = found.commands, []
+    for k in np.flatnonzero(commands.program == number):
+        if abs(found.new[k] - found.old[k]) > SAME * found.old[k]:
+            motion = int(np.argmax(commands.group == k))
+            rows.append((int(commands.lines[motion]), float(found.old[k]), float(found.new[k])))
+    return rows
+
+
+def feeds_csv(found):
+    """Every command: program from 1, line, its first pose from 1, old and new feed, mm/s."""
+    commands = found.commands
+    file = io.StringIO()
+    rows = csv.writer(file, lineterminator="\n")
+    rows.writerow(["program", "line", "pose", "feed_mm_s", "planned_feed_mm_s"])
+    first = np.full(len(commands), -1)
+    motions = np.arange(len(commands.group))
+    first[commands.group[::-1]] = motions[::-1]
+    begins = np.searchsorted(commands.of_program, np.arange(len(commands.arrays)))
+    for k in np.argsort(first, kind="stable"):
+        program = int(commands.program[k])
+        rows.writerow(
+            [
+                program + 1,
+                int(commands.lines[first[k]]),
+                int(first[k] - begins[program]) + 1,
+                f"{found.old[k]:.6g}",
+                f"{found.new[k]:.6g}",
+            ]
+        )
+    return file.getvalue()

@@ -1,0 +1,180 @@
+"""Plans of feeds on faces of the real parts of shared/data/cad, with even and uneven stock, before and after.
+
+tools/bench plan [NAME]; `python plan_bench.py [NAME] [--json FILE]` does the same. A raster is laid with default
+settings but a step-over of half the contact and poses every 3 mm; the stock is 0.3 mm, or 0.3 mm +- 0.15 mm in waves
+of 40 to 90 mm; the tolerance +-0.05 mm; the feed, before, the default one. Columns:
+
+before, after   of the area, in tolerance, %
+one feed        the same with the one feed for all that leaves no more on the mean: what a calculation by hand gives
+reached         of the area, that any motion removes something from, %
+cut             of what was reached and out of tolerance before, that is in tolerance after, %
+checked         after, at half the spacing and step, %
+rounds          simulations
+plan            of a simulation's time, that planning takes between two of them, %
+"""
+
+import argparse
+import json
+import math
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+
+from beltgrinding import planning  # noqa: E402
+from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.inspection import verdict as verdicts  # noqa: E402
+from beltgrinding.job import load as jobs, poses, workpiece  # noqa: E402
+from beltgrinding.raster import raster_path  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+
+PARTS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "cad"
+SETS = (
+    ("blade_marine_upper", [1]),
+    ("blade_airfoil_periodic", [1]),
+    ("casting_3flange_open_shell", [9]),
+    ("crank_arm", [2]),
+    ("housing_with_spout", [93]),
+    ("propeller_3blade", [38]),
+    ("pump_cover", [6]),
+    ("pump_cover", [1]),
+)
+WHEEL = {"radius_mm": 20, "width_mm": 15, "crown_radius_mm": 60}
+FORCE, STOCK, WAVES = 30.0, 0.3, 0.15  # N, mm, mm
+SAMPLES = 25_000
+HEAD = ("before", "one feed", "after", "reached", "cut", "checked", "rounds", "plan", "s")
+
+
+def uneven(shape, faces, folder):
+    """A PLY file of the faces with uneven stock: waves of 40 to 90 mm in three directions."""
+    area = sum(shape.face_area(k - 1) for k in faces)
+    field, _ = core.sample_faces(shape, [k - 1 for k in faces], math.sqrt(area / 60_000))
+    points = np.asarray(field.points)
+    waves = sum(
+        np.sin(2 * math.pi * (points @ np.array(way)) / length + phase)
+        for way, length, phase in (
+            ((1.0, 0.0, 0.0), 40.0, 0.3),
+            ((0.0, 0.8, 0.6), 63.0, 1.1),
+            ((0.3, -0.5, 0.81), 90.0, 2.0),
+        )
+    )
+    height = STOCK + WAVES * waves / 3.0 * 1.5
+    points = points + height[:, None] * np.asarray(field.normals)
+    triangles = np.asarray(field.triangles)
+    path = Path(folder) / "stock.ply"
+    head = (
+        "ply\nformat binary_little_endian 1.0\n"
+        f"element vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    rows = np.zeros(len(triangles), dtype=[("n", "u1"), ("k", "<i4", 3)])
+    rows["n"], rows["k"] = 3, triangles
+    path.write_bytes(head.encode() + points.astype("<f4").tobytes() + rows.tobytes())
+    return path
+
+
+def job_of(file, faces, stock):
+    """(validated job with its raster, poses every 3 mm)."""
+    shape = workpiece.read_design({"file": str(file), "unit_mm": 1.0})
+    area = sum(shape.face_area(k - 1) for k in faces)
+    given = {
+        "design": {"file": str(file), "faces": faces},
+        "sampling": {"spacing_mm": min(math.sqrt(area / SAMPLES), 1.0)},
+        "stock": stock,
+        "belt_machine": {"wheel": WHEEL, "force_N": FORCE},
+        "cell": {"check_collisions": False},
+        "programs": [{"poses": []}],
+    }
+    laid = raster_path.raster(
+        jobs.validate(given), {"step_over_share": 0.5, "max_distance_mm": 3.0}
+    )
+    given["programs"] = [{"poses": poses.list_poses(laid)}]
+    return jobs.validate(given)
+
+
+def measure(file, faces, stock):
+    """The figures of HEAD."""
+    begun = time.perf_counter()
+    job = job_of(file, faces, stock)
+    plan = planning.plan(job)
+    before, after = plan.before, plan.after
+    lower, upper = verdicts.limits(before.job, before.field)
+    areas = np.asarray(before.field.areas, dtype=float)
+
+    def out(result):
+        height = np.asarray(result.field.height)
+        return (height < lower) | (height > upper)
+
+    reached = plan.why["reached"]
+    was, left = areas[reached & out(before)].sum(), areas[reached & out(after)].sum()
+    rounds = [one for one in plan.rounds if "planning_seconds" in one]
+    share = sum(r["planning_seconds"] for r in rounds) / sum(
+        r["seconds"] - r["planning_seconds"] for r in rounds
+    )
+    return {
+        "before": 100.0 * plan.rounds[0]["in_tolerance"],
+        "one feed": 100.0 * hand(plan),
+        "after": 100.0 * after.summary["in_tolerance_area_share"],
+        "reached": 100.0 * areas[reached].sum() / areas.sum(),
+        "cut": 100.0 * (was - left) / max(was, 1e-12),
+        "checked": 100.0 * plan.checked["after"]["in_tolerance"],
+        "rounds": len(plan.rounds),
+        "plan": 100.0 * share,
+        "s": time.perf_counter() - begun,
+    }
+
+
+def hand(plan):
+    """Share in tolerance with one feed for all: the mean of what is reached comes into the middle of the band."""
+    before = plan.before
+    lower, upper = verdicts.limits(before.job, before.field)
+    areas, reached = np.asarray(before.field.areas, dtype=float), plan.why["reached"]
+    excess = np.asarray(before.field.height, dtype=float) - 0.5 * (lower + upper)
+    more = (areas * excess)[reached].sum() / before.summary["removed_volume_mm3"]
+    feeds = plan.old / max(1.0 + more, 0.05)
+    return runs.run(plan.commands.with_feeds(feeds)).summary["in_tolerance_area_share"]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("name", nargs="?", default="", help="only parts whose name has this in it")
+    parser.add_argument("--json", help="file for Google Benchmark's JSON")
+    arguments = parser.parse_args()
+    if not PARTS.is_dir():
+        print(f"plan: no data at {PARTS}")
+        return
+    print(f"| part | faces | stock | {' | '.join(HEAD)} |\n|{' --- |' * (len(HEAD) + 3)}", flush=True)
+    benchmarks = []
+    for name, faces in SETS:
+        if arguments.name not in name:
+            continue
+        file = next(f for f in sorted(PARTS.iterdir()) if f.stem == name)
+        shape = workpiece.read_design({"file": str(file), "unit_mm": 1.0})
+        with tempfile.TemporaryDirectory() as folder:
+            stocks = {
+                "even": {"allowance_mm": STOCK},
+                "uneven": {"kind": "mesh", "file": str(uneven(shape, faces, folder))},
+            }
+            for kind, stock in stocks.items():
+                label = f"{name} | {', '.join(map(str, faces))} | {kind}"
+                try:
+                    found = measure(file, faces, stock)
+                except InputError as error:
+                    print(f"| {label} |{' |' * len(HEAD)} {error}", flush=True)
+                    continue
+                cells = [f"{v:.1f}" if isinstance(v, float) else str(v) for v in found.values()]
+                print(f"| {label} | {' | '.join(cells)} |", flush=True)
+                row = {"name": f"plan/{name}/{faces}/{kind}", "real_time": found.pop("s")}
+                benchmarks.append({**row, "time_unit": "s", **found})
+    if arguments.json:
+        Path(arguments.json).write_text(json.dumps({"context": {}, "benchmarks": benchmarks}))
+
+
+if __name__ == "__main__":
+    main()

@@ -149,7 +149,9 @@ def main():
     if not PARTS.is_dir():
         print(f"plan: no data at {PARTS}")
         return
-    print(f"| part | faces | stock | {' | '.join(HEAD)} |\n|{' --- |' * (len(HEAD) + 3)}", flush=True)
+    print(
+        f"| part | faces | stock | {' | '.join(HEAD)} |\n|{' --- |' * (len(HEAD) + 3)}", flush=True
+    )
     benchmarks = []
     for name, faces in SETS:
         if arguments.name not in name:

@@ -252,6 +252,21 @@ def test_a_line_run_through_twice_has_one_feed(job, tmp_path):
     assert written == ["twice.src"] and not warnings
 
 
+def test_a_feed_that_the_job_sets_is_written_into_every_line(job, tmp_path):
+    given = copy.deepcopy(job)
+    given["programs"][0]["feed_mm_s"] = 35.0
+    lines = [m.line for m in read_program(job["programs"][0]["file"]).motions if m.kind == "LIN"]
+    keep = [{"first_line": lines[3], "last_line": lines[40]}]
+    plan = planning.plan(jobs.validate(given), {**SETTINGS, "rounds": 1, "keep": keep})
+    apply.write(plan, tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "job.json").read_text())["programs"]
+    assert "feed_mm_s" not in told[0]
+    motions = [m for m in read_program(tmp_path / "out" / "path.src").motions if m.kind == "LIN"]
+    assert [m.speed_mm_s for m in motions[3:41]] == [35.0] * 38
+    ground = beltgrinding.run(tmp_path / "out" / "job.json").summary["in_tolerance_area_share"]
+    assert ground == pytest.approx(plan.after.summary["in_tolerance_area_share"], abs=0.005)
+
+
 def test_the_command_line(job, tmp_path, capsys):
     (tmp_path / "job.json").write_text(json.dumps(job))
     command = ["plan", str(tmp_path / "job.json"), "-o", str(tmp_path / "out")]
@@ -296,7 +311,9 @@ def test_cancel_leaves_the_job_as_it_was(job):
     with pytest.raises(Cancelled):
         planning.plan(job, SETTINGS, context, cancel)
     assert job == before
-    assert rounds.validate({})["rounds"] == schemas.schema("plan")["properties"]["rounds"]["default"]
+    assert (
+        rounds.validate({})["rounds"] == schemas.schema("plan")["properties"]["rounds"]["default"]
+    )
 
 
 def test_the_page_has_every_setting_with_its_default():

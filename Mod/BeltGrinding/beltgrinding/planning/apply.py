@@ -122,9 +122,7 @@ def _is_plan(path):
 def _patched(found, number, source, output, planned):
     """(the job's entry of a program, why its file could not be written or None)."""
     changes = [
-        {"line": line, "speed_mm_s": feed}
-        for line, _, feed in _changed(found, number)
-        if line > 0
+        {"line": line, "speed_mm_s": feed} for line, _, feed in _changed(found, number) if line > 0
     ]
     program = found.commands.job["programs"][number]
     try:
@@ -144,10 +142,13 @@ def _patched(found, number, source, output, planned):
 
 
 def _changed(found, number):
-    """(line, old, new) of the commands of a program whose feed changes."""
+    """(line, old, new) of the commands of a program whose feed is not the file's any more."""
     commands, rows = found.commands, []
-    for k in np.flatnonzero(commands.program == number):
-        if abs(found.new[k] - found.old[k]) > SAME * found.old[k]:
+    overridden = "feed_mm_s" in commands.job["programs"][number]
+    moving = np.zeros(len(commands), dtype=bool)
+    moving[commands.group[~commands.rapid]] = True
+    for k in np.flatnonzero((commands.program == number) & moving):
+        if overridden or abs(found.new[k] - found.old[k]) > SAME * found.old[k]:
             motion = int(np.argmax(commands.group == k))
             rows.append((int(commands.lines[motion]), float(found.old[k]), float(found.new[k])))
     return rows

@@ -286,7 +286,8 @@ def test_the_command_line(job, tmp_path, capsys):
     [
         ({"law": {"model": "geometric"}, "belt_machine.control": "position"}, "rigid"),
         ({"law": {"model": "local", "feed_exponent": 1.0}}, "feed_exponent"),
-        ({"stock": {"kind": "allowance", "allowance_mm": 0.0}}, "touch"),
+        ({"stock": {"kind": "allowance", "allowance_mm": 0.0}}, "there is no stock"),
+        ({"cell": {"base_from_work": {"position_mm": [0, 0, -500]}}}, "never touches"),
     ],
 )
 def test_nonsense_gets_a_clear_answer(job, change, words):
@@ -296,8 +297,6 @@ def test_nonsense_gets_a_clear_answer(job, change, words):
             given["belt_machine"]["control"] = value
         else:
             given[key] = {**given[key], **value} if isinstance(value, dict) else value
-    if words == "touch":  # nothing is there, and the wheel stands far off
-        given["cell"]["base_from_work"] = {"position_mm": [0, 0, -500]}
     with pytest.raises(InputError, match=words):
         planning.plan(jobs.validate(given), SETTINGS)
 

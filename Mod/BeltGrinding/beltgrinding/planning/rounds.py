@@ -25,6 +25,7 @@ from .commands import Commands
 STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
 STALLED = 2  # rounds without a gain
 WORSE = 1e-9  # of the area
+NEARER = 0.95  # of the rms
 
 
 class Plan(NamedTuple):
@@ -88,13 +89,12 @@ def plan(job, settings=None, context=None, told=None):
         result = runs.run(tried, part, influence=True)
         one = _figures(result)
         rounds.append(one)
+        if before is None:
+            _refuse_without_stock(result)
         before = before or result
-        if best is None or _score(one) > _score(best["figures"]) + WORSE:
-            gain = 1.0 if best is None else one["in_tolerance"] - best["figures"]["in_tolerance"]
+        stalled = 0 if best is None or _gains(one, best["figures"], settings) else stalled + 1
+        if best is None or _better(one, best["figures"]):
             best = {"figures": one, "feeds": feeds, "result": result, "job": tried}
-        else:
-            gain = 0.0
-        stalled = 0 if gain >= settings["least_gain"] else stalled + 1
         ends = number + 1 == tries or stalled >= STALLED
         if not ends:
             feeds, found = _next(commands, result, feeds, settings, context)
@@ -107,7 +107,7 @@ def plan(job, settings=None, context=None, told=None):
             break
     if settings["levels"]:
         best = _in_levels(commands, best, settings, rounds, told, context)
-    better = _score(best["figures"]) > _score(rounds[0]) + WORSE
+    better = _better(best["figures"], rounds[0])
     if not better:
         best = {"feeds": old, "result": before, "job": commands.with_feeds(old)}
     why = reasons.find(best["result"], commands, best["feeds"], settings)
@@ -179,8 +179,24 @@ def _figures(result):
     }
 
 
-def _score(figures):
-    return figures["in_tolerance"]
+def _better(one, other):
+    """Whether figures are better: more in tolerance, or as much and nearer to it."""
+    gain = one["in_tolerance"] - other["in_tolerance"]
+    return gain > WORSE or (gain > -WORSE and one["rms_mm"] < NEARER * other["rms_mm"])
+
+
+def _gains(one, best, settings):
+    """Whether a round leads on: enough comes into tolerance, or all comes nearer to it."""
+    gain = one["in_tolerance"] - best["in_tolerance"]
+    return gain >= settings["least_gain"] or one["rms_mm"] < NEARER * best["rms_mm"]
+
+
+def _refuse_without_stock(result):
+    if not result.summary["stock_volume_mm3"] > 0.0:
+        raise InputError(
+            "planning.no_stock",
+            "plan: there is no stock on the design, so that every motion cuts into it; give the job's stock",
+        )
 
 
 def _next(commands, result, feeds, settings, context):

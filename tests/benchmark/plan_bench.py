@@ -4,11 +4,12 @@ tools/bench plan [NAME]; `python plan_bench.py [NAME] [--json FILE]` does the sa
 settings but a step-over of half the contact and poses every 3 mm; the stock is 0.3 mm, or 0.3 mm +- 0.15 mm in waves
 of 40 to 90 mm; the tolerance +-0.05 mm; the feed, before, the default one. Columns:
 
-before, after   of the area, in tolerance, %
+before, feeds   of the area, in tolerance, %, before and with planned feeds
+forces          the same where forces of 5 to 60 N are planned, too
 one feed        the same with the one feed for all that leaves no more on the mean: what a calculation by hand gives
 reached         of the area, that any motion removes something from, %
-cut             of what was reached and out of tolerance before, that is in tolerance after, %
-checked         after, at half the spacing and step, %
+cut             of what was reached and out of tolerance before, that is in tolerance with feeds and forces, %
+checked         forces, at half the spacing and step, %
 rounds          simulations
 plan            of a simulation's time, that planning takes between two of them, %
 """
@@ -48,7 +49,8 @@ SETS = (
 WHEEL = {"radius_mm": 20, "width_mm": 15, "crown_radius_mm": 60}
 FORCE, STOCK, WAVES = 30.0, 0.3, 0.15  # N, mm, mm
 SAMPLES = 25_000
-HEAD = ("before", "one feed", "after", "reached", "cut", "checked", "rounds", "plan", "s")
+HEAD = ("before", "one feed", "feeds", "forces", "reached", "cut", "checked", "rounds", "plan", "s")
+FORCES = {"force_min_N": 5.0, "force_max_N": 60.0}
 
 
 def uneven(shape, faces, folder):
@@ -102,7 +104,8 @@ def measure(file, faces, stock):
     """The figures of HEAD."""
     begun = time.perf_counter()
     job = job_of(file, faces, stock)
-    plan = planning.plan(job)
+    feeds = planning.plan(job, {"check": False}).after.summary["in_tolerance_area_share"]
+    plan = planning.plan(job, FORCES)
     before, after = plan.before, plan.after
     lower, upper = verdicts.limits(before.job, before.field)
     areas = np.asarray(before.field.areas, dtype=float)
@@ -120,7 +123,8 @@ def measure(file, faces, stock):
     return {
         "before": 100.0 * plan.rounds[0]["in_tolerance"],
         "one feed": 100.0 * hand(plan),
-        "after": 100.0 * after.summary["in_tolerance_area_share"],
+        "feeds": 100.0 * feeds,
+        "forces": 100.0 * after.summary["in_tolerance_area_share"],
         "reached": 100.0 * areas[reached].sum() / areas.sum(),
         "cut": 100.0 * (was - left) / max(was, 1e-12),
         "checked": 100.0 * plan.checked["after"]["in_tolerance"],

@@ -133,6 +133,43 @@ def test_kept_lines_keep_their_feed(job):
         planning.plan(job, {"keep": [{"first_line": 9000}]})
 
 
+def test_forces_take_over_where_feeds_end(job):
+    settings = {**SETTINGS, "feed_max_mm_s": 70.0}
+    feeds = planning.plan(job, settings)
+    plan = planning.plan(job, {**settings, "force_min_N": 8.0})
+    shares = [one.after.summary["in_tolerance_area_share"] for one in (feeds, plan)]
+    assert shares[1] > shares[0] + 0.05
+    changed = plan.factors != 1.0
+    # Only where the feed is at its limit, within the range, and of all of a command alike.
+    assert changed.any() and plan.factors.min() >= 8.0 / 30.0 and plan.factors.max() == 1.0
+    np.testing.assert_allclose(plan.new[changed], 70.0, rtol=1e-3)
+    assert (feeds.factors == 1.0).all()
+    forces = np.array([p.get("force_N", 30.0) for p in plan.job["programs"][0]["poses"]])
+    moved = ~plan.commands.rapid
+    np.testing.assert_allclose(
+        forces[moved], (plan.commands.forces * plan.factors[plan.commands.group])[moved]
+    )
+    given = copy.deepcopy(job)
+    given["belt_machine"]["control"] = "position"
+    with pytest.raises(InputError, match="force_min_N: forces are planned"):
+        planning.plan(jobs.validate(given), {"force_min_N": 8.0})
+
+
+def test_forces_go_into_a_file_that_has_a_place_for_them(job, tmp_path):
+    laid = read_program(job["programs"][0]["file"])
+    write_program(tmp_path / "path.csv", None, laid)
+    given = copy.deepcopy(job)
+    given["programs"] = [{"file": str(tmp_path / "path.csv")}]
+    given["belt_machine"]["force_N"] = 4.0
+    plan = planning.plan(
+        jobs.validate(given), {**SETTINGS, "feed_min_mm_s": 40.0, "force_max_N": 40.0}
+    )
+    written, warnings = apply.write(plan, tmp_path / "out")
+    ground = beltgrinding.run(tmp_path / "out" / "job.json").summary["in_tolerance_area_share"]
+    assert ground == pytest.approx(plan.after.summary["in_tolerance_area_share"], abs=0.005)
+    assert plan.factors.max() > 2.0 and (written == ["path.csv"]) != bool(warnings)
+
+
 def test_few_levels(job):
     plan = planning.plan(job, {**SETTINGS, "rounds": 3, "levels": 6})
     moved = np.unique(plan.commands.group[~plan.commands.rapid])

@@ -18,7 +18,6 @@ JOB = "job.json"
 PLAN = "plan.json"
 FEEDS = "feeds.csv"
 RESULT = "result"
-SAME = 1e-9  # relative, of a feed
 
 
 def write(found, folder, read=(), force=False):
@@ -121,9 +120,7 @@ def _is_plan(path):
 
 def _patched(found, number, source, output, planned):
     """(the job's entry of a program, why its file could not be written or None)."""
-    changes = [
-        {"line": line, "speed_mm_s": feed} for line, _, feed in _changed(found, number) if line > 0
-    ]
+    changes = _changes(found, number)
     program = found.commands.job["programs"][number]
     try:
         if "values" in program and not isinstance(program["values"], str):
@@ -137,29 +134,48 @@ def _patched(found, number, source, output, planned):
     except InputError as error:
         return planned, error
     entry = {**program, "file": output.name}
-    entry.pop("feed_mm_s", None)
+    if any("speed_mm_s" in change for change in changes):
+        entry.pop("feed_mm_s", None)
+    if any("force_N" in change for change in changes):
+        entry.pop("force_N", None)
     return entry, None
 
 
-def _changed(found, number):
-    """(line, old, new) of the commands of a program whose feed is not the file's any more."""
-    commands, rows = found.commands, []
-    overridden = "feed_mm_s" in commands.job["programs"][number]
+def _changes(found, number):
+    """What ``patch`` is to change in a program's file: the feeds and forces that are not the file's any more."""
+    commands, result = found.commands, []
+    program = commands.job["programs"][number]
     moving = np.zeros(len(commands), dtype=bool)
     moving[commands.group[~commands.rapid]] = True
+    differ, forces = plans.changed(found), commands.force(found.factors)
+    pressed = bool((found.factors[commands.program == number] != 1.0).any())
     for k in np.flatnonzero((commands.program == number) & moving):
-        if overridden or abs(found.new[k] - found.old[k]) > SAME * found.old[k]:
-            motion = int(np.argmax(commands.group == k))
-            rows.append((int(commands.lines[motion]), float(found.old[k]), float(found.new[k])))
-    return rows
+        if differ[k] or "feed_mm_s" in program or (pressed and "force_N" in program):
+            change = {"line": int(commands.lines[int(np.argmax(commands.group == k))])}
+            change["speed_mm_s"] = float(found.new[k])
+            if found.factors[k] != 1.0 or (pressed and "force_N" in program):
+                change["force_N"] = float(forces[k])
+            result.append(change)
+    return result
 
 
 def feeds_csv(found):
-    """Every command: program from 1, line, its first pose from 1, old and new feed, mm/s."""
+    """Every command: program from 1, line, its first pose from 1, old and planned feed, mm/s, and force, N."""
     commands = found.commands
+    before, after = (commands.force(f) for f in (np.ones(len(commands)), found.factors))
     file = io.StringIO()
     rows = csv.writer(file, lineterminator="\n")
-    rows.writerow(["program", "line", "pose", "feed_mm_s", "planned_feed_mm_s"])
+    rows.writerow(
+        [
+            "program",
+            "line",
+            "pose",
+            "feed_mm_s",
+            "planned_feed_mm_s",
+            "force_N",
+            "planned_force_N",
+        ]
+    )
     first = np.full(len(commands), -1)
     motions = np.arange(len(commands.group))
     first[commands.group[::-1]] = motions[::-1]
@@ -173,6 +189,8 @@ def feeds_csv(found):
                 int(first[k] - begins[program]) + 1,
                 f"{found.old[k]:.6g}",
                 f"{found.new[k]:.6g}",
+                f"{before[k]:.6g}",
+                f"{after[k]:.6g}",
             ]
         )
     return file.getvalue()

@@ -39,6 +39,10 @@ class Commands:
         self.group = np.array(groups, dtype=np.uint32)  # (motions,), through all programs
         self.program = np.array(programs)  # (commands,) from 0
         self.feeds = np.concatenate([a["feeds"] for a in self.arrays])  # (motions,) mm/s
+        given = np.concatenate([a["forces"] for a in self.arrays])
+        self.forces = np.where(
+            given < 0, float(job["belt_machine"]["force_N"]), given
+        )  # (motions,) N
         self.lines = np.concatenate([a["lines"] for a in self.arrays])
         self.rapid = np.concatenate([a["rapid"] for a in self.arrays])
         self.of_program = np.repeat(
@@ -46,6 +50,9 @@ class Commands:
         )
         self.kept = np.zeros(len(self), dtype=bool)
         self._keep(settings["keep"])
+        self.force_range = self._force_range(
+            settings
+        )  # (commands,) twice: least and greatest factor
 
     def __len__(self):
         return len(self.program)
@@ -66,11 +73,26 @@ class Commands:
                 )
             self.kept[self.group[mine]] = True
 
-    def by_command(self, values, weights):
-        """(commands,) mean of values (motions,), by weights (motions,)."""
-        count = len(self)
-        total = np.bincount(self.group, weights, count)
-        return np.bincount(self.group, values * weights, count) / np.maximum(total, 1e-300)
+    def _force_range(self, settings):
+        """Factors on the forces of commands: a program's greatest force may become what the settings allow, and all
+        others change with it, so that ramps at the ends of passes stay ramps."""
+        least, greatest = np.ones(len(self)), np.ones(len(self))
+        for k in range(len(self.arrays)):
+            mine = (self.of_program == k) & ~self.rapid
+            reference = self.forces[mine].max() if mine.any() else 0.0
+            if reference > 0.0:
+                own = (self.program == k) & ~self.kept
+                if settings["force_min_N"] > 0.0:
+                    least[own] = min(1.0, settings["force_min_N"] / reference)
+                if settings["force_max_N"] > 0.0:
+                    greatest[own] = max(1.0, settings["force_max_N"] / reference)
+        return least, greatest
+
+    def force(self, factors):
+        """(commands,) N: the greatest of a command's motions, with factors (commands,)."""
+        found = np.zeros(len(self))
+        np.maximum.at(found, self.group, self.forces)
+        return found * factors
 
     def feed(self):
         """(commands,) mm/s; that of its last motion that grinds, for a line that has several."""
@@ -79,15 +101,20 @@ class Commands:
         found[self.group[~self.rapid]] = self.feeds[~self.rapid]
         return found
 
-    def with_feeds(self, feeds):
-        """A copy of the job, its programs given pose by pose, with feeds (commands,) mm/s on all but rapid motions."""
+    def with_feeds(self, feeds, factors=None):
+        """A copy of the job, its programs given pose by pose, with feeds (commands,) mm/s on all but rapid motions,
+        and ``factors`` (commands,) on the forces of those."""
         new = np.where(self.rapid, self.feeds, feeds[self.group])
+        given = np.concatenate([a["forces"] for a in self.arrays])
+        factor = np.ones(len(given)) if factors is None else factors[self.group]
+        forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
         job = {**self.job, "programs": []}
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):
             end = begin + len(arrays["feeds"])
             kept = {name: program[name] for name in ("name", "unresolved") if name in program}
-            listed = poses.list_poses({**arrays, "feeds": new[begin:end]})
+            changed = {"feeds": new[begin:end], "forces": forces[begin:end]}
+            listed = poses.list_poses({**arrays, **changed})
             job["programs"].append({**kept, "poses": listed})
             begin = end
         return job

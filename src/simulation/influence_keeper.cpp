@@ -1,4 +1,4 @@
-#include "beltgrinding/influence.h"
+#include "influence_keeper.h"
 
 #include <algorithm>
 #include <utility>

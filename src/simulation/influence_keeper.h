@@ -1,26 +1,12 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "beltgrinding/simulation.h"
+
 namespace beltgrinding {
-
-/// How much every motion of a path removed at every sample: a sparse matrix, motion by motion.
-struct Influence {
-    std::vector<std::size_t> first = {0};  ///< (motions + 1), where a motion's entries begin
-    std::vector<std::uint32_t> sample;     ///< rising within a motion
-    std::vector<float> depth;              ///< mm, above 0
-
-    /// How many there are, those that removed nothing among them.
-    std::size_t motions() const { return first.size() - 1; }
-    /// Goes on with the motions of `next`, the same field's, which come after these.
-    void append(const Influence& next);
-    /// That of groups of motions, which are changed together: `group` has the number of each
-    /// motion's, below `count`. Throws InputError where the numbers do not fit.
-    Influence grouped(std::span<const std::uint32_t> group, std::size_t count) const;
-};
 
 /// Collects an influence during a simulation, whose motions come one after the other.
 class InfluenceKeeper {

@@ -196,7 +196,7 @@ def test_the_step_over_comes_from_the_contact():
 def test_a_wheel_that_cannot_be_is_refused_on_a_plane_too():
     job = job_of(plate())
     job["belt_machine"]["wheel"] = {"radius_mm": 10, "width_mm": 5}
-    with pytest.raises(InputError, match="as thick as the wheel's radius"):
+    with pytest.raises(InputError, match="leave no core in a wheel of 10 mm radius"):
         raster.raster(job, ALONG_X)
 
 

@@ -1211,6 +1211,154 @@
         <source>what only the controller knows of the program, as in NAME.values.json; empty: that file&apos;s, where it lies beside the program</source>
         <translation>was nur die Steuerung über das Programm weiß, wie in NAME.values.json; leer: das dieser Datei, wenn sie neben dem Programm liegt</translation>
     </message>
+    <message>
+        <source>a round has a motion remove more, or less, by no more than this factor</source>
+        <translation>eine Runde lässt eine Bewegung höchstens um diesen Faktor mehr oder weniger abtragen</translation>
+    </message>
+    <message>
+        <source>an input, the tolerance or a setting has changed since</source>
+        <translation>eine Eingabe, die Toleranz oder eine Einstellung hat sich seither geändert</translation>
+    </message>
+    <message>
+        <source>before, as planned and why, from one side</source>
+        <translation>vorher, wie geplant und warum, von einer Seite</translation>
+    </message>
+    <message>
+        <source>before, as planned and why, from two sides</source>
+        <translation>vorher, wie geplant und warum, von zwei Seiten</translation>
+    </message>
+    <message>
+        <source>before, of every pose, N</source>
+        <translation>vorher, jeder Pose, N</translation>
+    </message>
+    <message>
+        <source>before, of every pose, mm/s</source>
+        <translation>vorher, jeder Pose, mm/s</translation>
+    </message>
+    <message>
+        <source>corners of what stays out of tolerance</source>
+        <translation>Ecken dessen, was außer Toleranz bleibt</translation>
+    </message>
+    <message>
+        <source>different feeds in the whole plan, at most; 0: as many as there are motions</source>
+        <translation>verschiedene Vorschübe im ganzen Plan, höchstens; 0: so viele, wie es Bewegungen gibt</translation>
+    </message>
+    <message>
+        <source>figures as JSON</source>
+        <translation>Zahlen als JSON</translation>
+    </message>
+    <message>
+        <source>greatest feed of the programs&apos; tool centre point, mm/s</source>
+        <translation>größter Vorschub des Werkzeugmittelpunkts der Programme, mm/s</translation>
+    </message>
+    <message>
+        <source>greatest force where a slower feed is not enough, N; 0: forces are not raised</source>
+        <translation>größte Kraft, wo ein langsamerer Vorschub nicht genügt, N; 0: Kräfte werden nicht erhöht</translation>
+    </message>
+    <message>
+        <source>hash of the same job with its plan</source>
+        <translation>Prüfsumme desselben Auftrags mit seinem Plan</translation>
+    </message>
+    <message>
+        <source>hash of what was planned</source>
+        <translation>Prüfsumme dessen, was geplant wurde</translation>
+    </message>
+    <message>
+        <source>its feeds and forces come from a plan</source>
+        <translation>seine Vorschübe und Kräfte kommen von einem Plan</translation>
+    </message>
+    <message>
+        <source>least feed of the programs&apos; tool centre point, mm/s</source>
+        <translation>kleinster Vorschub des Werkzeugmittelpunkts der Programme, mm/s</translation>
+    </message>
+    <message>
+        <source>least force that a program&apos;s greatest may become where a faster feed is not enough, N; 0: forces are not lowered</source>
+        <translation>kleinste Kraft, auf die die größte eines Programms sinken darf, wo ein schnellerer Vorschub nicht genügt, N; 0: Kräfte werden nicht gesenkt</translation>
+    </message>
+    <message>
+        <source>more of the area comes into tolerance than before</source>
+        <translation>es kommt mehr von der Fläche in Toleranz als vorher</translation>
+    </message>
+    <message>
+        <source>motions whose feed must not change, by lines of the programs&apos; sources or by poses</source>
+        <translation>Bewegungen, deren Vorschub sich nicht ändern darf, nach Zeilen der Programme oder nach Posen</translation>
+    </message>
+    <message>
+        <source>names of the job&apos;s paths</source>
+        <translation>Namen der Bahnen des Auftrags</translation>
+    </message>
+    <message>
+        <source>nothing is ground on the way to these poses</source>
+        <translation>auf dem Weg zu diesen Posen wird nichts geschliffen</translation>
+    </message>
+    <message>
+        <source>of each path, what changes in its file; JSON</source>
+        <translation>von jeder Bahn, was sich in ihrer Datei ändert; JSON</translation>
+    </message>
+    <message>
+        <source>of the area, that a round must bring into tolerance; two rounds below it end the plan</source>
+        <translation>der Fläche, die eine Runde in Toleranz bringen muss; zwei Runden darunter beenden den Plan</translation>
+    </message>
+    <message>
+        <source>of the corners: as planning.reasons</source>
+        <translation>der Ecken: wie planning.reasons</translation>
+    </message>
+    <message>
+        <source>path of every pose, from 0</source>
+        <translation>Bahn jeder Pose, ab 0</translation>
+    </message>
+    <message>
+        <source>planned, of every pose, N</source>
+        <translation>geplant, jeder Pose, N</translation>
+    </message>
+    <message>
+        <source>planned, of every pose, mm/s</source>
+        <translation>geplant, jeder Pose, mm/s</translation>
+    </message>
+    <message>
+        <source>poses whose force is the belt machine&apos;s still</source>
+        <translation>Posen, deren Kraft weiter die der Bandmaschine ist</translation>
+    </message>
+    <message>
+        <source>share of the area as planned, percent</source>
+        <translation>Anteil der Fläche wie geplant, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the area, percent</source>
+        <translation>Anteil der Fläche, Prozent</translation>
+    </message>
+    <message>
+        <source>simulate the planned programs once more at half the spacing and step; the figures told are that run&apos;s</source>
+        <translation>die geplanten Programme noch einmal mit halbem Abstand und Schritt simulieren; die genannten Zahlen sind die dieses Laufs</translation>
+    </message>
+    <message>
+        <source>simulations from which feeds are planned, at most</source>
+        <translation>Simulationen, aus denen Vorschübe geplant werden, höchstens</translation>
+    </message>
+    <message>
+        <source>the programs of the job have the planned feeds and forces</source>
+        <translation>die Programme des Auftrags haben die geplanten Vorschübe und Kräfte</translation>
+    </message>
+    <message>
+        <source>way of the contact up to every pose, mm</source>
+        <translation>Weg des Kontakts bis zu jeder Pose, mm</translation>
+    </message>
+    <message>
+        <source>what every round found</source>
+        <translation>was jede Runde ergab</translation>
+    </message>
+    <message>
+        <source>what the robot takes as planned, s</source>
+        <translation>was der Roboter wie geplant braucht, s</translation>
+    </message>
+    <message>
+        <source>what unequal feeds of neighbouring motions cost, against the deviations</source>
+        <translation>was ungleiche Vorschübe benachbarter Bewegungen kosten, gegen die Abweichungen</translation>
+    </message>
+    <message>
+        <source>why what is out of tolerance stays so</source>
+        <translation>warum außer Toleranz bleibt, was es ist</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -3644,6 +3792,226 @@ im Mittel {} abgetragen</translation>
         <source>Only what other passes leave</source>
         <translation>Nur was andere Bahnen lassen</translation>
     </message>
+    <message>
+        <source>Apply plan</source>
+        <translation>Plan anwenden</translation>
+    </message>
+    <message>
+        <source>Before</source>
+        <translation>Vorher</translation>
+    </message>
+    <message>
+        <source>Both simulated at half the spacing and step.</source>
+        <translation>Beides mit halbem Abstand und Schritt simuliert.</translation>
+    </message>
+    <message>
+        <source>Check at half the spacing</source>
+        <translation>Bei halbem Abstand prüfen</translation>
+    </message>
+    <message>
+        <source>Click for a larger picture</source>
+        <translation>Für ein größeres Bild klicken</translation>
+    </message>
+    <message>
+        <source>Different feeds</source>
+        <translation>Stufen</translation>
+    </message>
+    <message>
+        <source>Folder for the planned programs</source>
+        <translation>Ordner für die geplanten Programme</translation>
+    </message>
+    <message>
+        <source>Greatest feed</source>
+        <translation>Größter Vorschub</translation>
+    </message>
+    <message>
+        <source>Greatest force</source>
+        <translation>Größte Kraft</translation>
+    </message>
+    <message>
+        <source>In tol.</source>
+        <translation>In Tol.</translation>
+    </message>
+    <message>
+        <source>Least feed</source>
+        <translation>Kleinster Vorschub</translation>
+    </message>
+    <message>
+        <source>Least force</source>
+        <translation>Kleinste Kraft</translation>
+    </message>
+    <message>
+        <source>Least gain of a round</source>
+        <translation>Gewinn, mindestens</translation>
+    </message>
+    <message>
+        <source>Leave these as they are</source>
+        <translation>Diese so lassen</translation>
+    </message>
+    <message>
+        <source>Limits</source>
+        <translation>Grenzen</translation>
+    </message>
+    <message>
+        <source>Made here, so apply the plan and export the program: {}</source>
+        <translation>Hier erzeugt; wenden Sie den Plan an und exportieren Sie das Programm: {}</translation>
+    </message>
+    <message>
+        <source>Most change a round</source>
+        <translation>Größte Änderung</translation>
+    </message>
+    <message>
+        <source>Motions that stay</source>
+        <translation>Was bleibt</translation>
+    </message>
+    <message>
+        <source>Nothing better was found: the feeds stay as they are.</source>
+        <translation>Nichts Besseres gefunden: die Vorschübe bleiben, wie sie sind.</translation>
+    </message>
+    <message>
+        <source>Of the area, what stays out of tolerance:</source>
+        <translation>Von der Fläche bleibt außer Toleranz:</translation>
+    </message>
+    <message>
+        <source>Out of date: an input has changed since; plan again.</source>
+        <translation>Veraltet: eine Eingabe hat sich seither geändert; planen Sie neu.</translation>
+    </message>
+    <message>
+        <source>Plan</source>
+        <translation>Plan</translation>
+    </message>
+    <message>
+        <source>Planned</source>
+        <translation>Geplant</translation>
+    </message>
+    <message>
+        <source>Planning, {}</source>
+        <translation>Planung, {}</translation>
+    </message>
+    <message>
+        <source>Process time, s</source>
+        <translation>Prozesszeit, s</translation>
+    </message>
+    <message>
+        <source>RMS, {}</source>
+        <translation>RMS, {}</translation>
+    </message>
+    <message>
+        <source>Round</source>
+        <translation>Runde</translation>
+    </message>
+    <message>
+        <source>Rounds</source>
+        <translation>Runden</translation>
+    </message>
+    <message>
+        <source>Rounds, at most</source>
+        <translation>Runden, höchstens</translation>
+    </message>
+    <message>
+        <source>Settings of the plan</source>
+        <translation>Einstellungen des Plans</translation>
+    </message>
+    <message>
+        <source>Show plan</source>
+        <translation>Plan zeigen</translation>
+    </message>
+    <message>
+        <source>Smoothing</source>
+        <translation>Glättung</translation>
+    </message>
+    <message>
+        <source>The job is simulated, its feeds are changed, and it is simulated again, a few rounds of that. The programs stay as they are until you apply the plan.</source>
+        <translation>Der Auftrag wird simuliert, seine Vorschübe werden geändert, und er wird wieder simuliert, einige Runden lang. Die Programme bleiben, wie sie sind, bis Sie den Plan anwenden.</translation>
+    </message>
+    <message>
+        <source>The programs have these feeds.</source>
+        <translation>Die Programme haben diese Vorschübe.</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>Write programs...</source>
+        <translation>Programme schreiben...</translation>
+    </message>
+    <message>
+        <source>along the border of the faces</source>
+        <translation>entlang der Ränder der Flächen</translation>
+    </message>
+    <message>
+        <source>any number</source>
+        <translation>beliebig viele</translation>
+    </message>
+    <message>
+        <source>as planned</source>
+        <translation>wie geplant</translation>
+    </message>
+    <message>
+        <source>before</source>
+        <translation>vorher</translation>
+    </message>
+    <message>
+        <source>cut too deep at the greatest feed</source>
+        <translation>zu tief geschliffen beim größten Vorschub</translation>
+    </message>
+    <message>
+        <source>its motions also grind what needs the contrary</source>
+        <translation>seine Bewegungen schleifen auch, was das Gegenteil braucht</translation>
+    </message>
+    <message>
+        <source>its motions must not be changed</source>
+        <translation>seine Bewegungen dürfen nicht geändert werden</translation>
+    </message>
+    <message>
+        <source>motions that keep their feed: lines of the program or, of paths made here, poses; of the second program as 2:7-9</source>
+        <translation>Bewegungen, die ihren Vorschub behalten: Zeilen des Programms oder, bei hier erzeugten Bahnen, Posen; des zweiten Programms als 2:7-9</translation>
+    </message>
+    <message>
+        <source>no motion removes anything there</source>
+        <translation>keine Bewegung trägt dort etwas ab</translation>
+    </message>
+    <message>
+        <source>none, or as 12-40, 2:7</source>
+        <translation>nichts, oder wie 12-40, 2:7</translation>
+    </message>
+    <message>
+        <source>now</source>
+        <translation>jetzt</translation>
+    </message>
+    <message>
+        <source>planned</source>
+        <translation>geplant</translation>
+    </message>
+    <message>
+        <source>positioning: nothing is ground</source>
+        <translation>Zustellung: nichts wird geschliffen</translation>
+    </message>
+    <message>
+        <source>too much left at the least feed</source>
+        <translation>zu viel übrig beim kleinsten Vorschub</translation>
+    </message>
+    <message>
+        <source>way of the wheel, 0…{:.4g} mm</source>
+        <translation>Weg der Scheibe, 0…{:.4g} mm</translation>
+    </message>
+    <message>
+        <source>why it stays out of tolerance</source>
+        <translation>warum es außer Toleranz bleibt</translation>
+    </message>
+    <message>
+        <source>{:.1f} % in tolerance as planned; {:.1f} % before.</source>
+        <translation>{:.1f} % in Toleranz wie geplant; {:.1f} % vorher.</translation>
+    </message>
+    <message>
+        <source>{} feeds</source>
+        <translation>{} Stufen</translation>
+    </message>
+    <message>
+        <source>{}, pose {}</source>
+        <translation>{}, Pose {}</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -3874,6 +4242,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Open job file...</source>
         <translation>Auftragsdatei öffnen...</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Plan</name>
+    <message>
+        <source>Looks for the feeds and forces with which the programs bring the part into tolerance</source>
+        <translation>Sucht die Vorschübe und Kräfte, mit denen die Programme das Teil in Toleranz bringen</translation>
+    </message>
+    <message>
+        <source>Plan feeds...</source>
+        <translation>Vorschübe planen...</translation>
     </message>
 </context>
 <context>

@@ -70,7 +70,8 @@ for program in programs:
     look(program.Label)
 for program in programs:
     doc.removeObject(program.Name)
-for command in ("Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan"):
+beltgrinding.make_plan(job, Rounds=1, Check=False, ForceMax="40 N")
+for command in ("Plan", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan"):
     Gui.runCommand("BeltGrinding_" + command)
     look(command)
 assert not wide, wide

@@ -14,6 +14,7 @@ TABLES = (
     "LISTS",
     "LINKS",
     "HELD",
+    "PICTURES",
     "FRAMES",
     "BODIES",
     "ROBOT_FRAMES",
@@ -69,9 +70,10 @@ def _descriptions(node, of_objects):
 
 
 def _description(key):
-    """What the schema says of a job's dotted key, or of a raster path's."""
+    """What the schema says of a job's dotted key, or of a raster path's or a plan's."""
     first, _, rest = key.partition(".")
-    name, parts = ("raster", rest.split(".")) if first == "raster" else ("job", key.split("."))
+    own = first in ("raster", "plan")
+    name, parts = (first, rest.split(".")) if own else ("job", key.split("."))
     node = json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
     for part in parts:
         if not part.isdigit():

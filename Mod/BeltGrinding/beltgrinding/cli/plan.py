@@ -80,18 +80,10 @@ def _line(one):
     )
 
 
-WORDS = {
-    "no_motion": "no motion removes anything there",
-    "border": "along the border of the faces",
-    "slowest_feed": "too much left at the least feed",
-    "fastest_feed": "cut too deep at the greatest feed",
-    "kept": "its motions must not be changed",
-    "shared": "its motions also grind what needs the contrary",
-}
-
-
 def text(summary):
     """A plan's summary in words."""
+    from ..planning.pictures import WORDS
+
     if not summary["better"]:
         lines = ["nothing better was found: the feeds stay as they are"]
     else:

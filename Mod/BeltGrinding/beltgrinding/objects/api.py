@@ -16,6 +16,7 @@ from .inspection import (
     make_verdict,
     set_zones,
 )
+from .planning_runs import apply_plan, make_plan, write_plan
 from .preferences import apply_threads
 from .proxy import type_of
 from .reports import make_figures, write_report
@@ -33,6 +34,7 @@ from .set_up import (
 )
 
 __all__ = [
+    "apply_plan",
     "check_settings",
     "compare_scan",
     "export_job",
@@ -47,6 +49,7 @@ __all__ = [
     "make_figures",
     "make_ground_mesh",
     "make_job",
+    "make_plan",
     "make_raster",
     "make_section",
     "make_stock",
@@ -58,6 +61,7 @@ __all__ = [
     "simulate",
     "store_result",
     "wear_belt",
+    "write_plan",
     "write_report",
 ]
 

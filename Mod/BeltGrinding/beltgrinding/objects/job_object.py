@@ -8,6 +8,7 @@ from .ground_mesh import GroundMesh
 from .job_data import KEYS, child, children, design, inspection, zones
 from .job_inputs import fingerprint
 from .properties import add_keys, check_limits
+from .plan import Plan
 from .proxy import Proxy
 from .section import Section
 from .simulation import Simulation
@@ -65,6 +66,8 @@ class BeltGrindingJob(Proxy):
             section.Proxy.update(section)
         for verdict in children(obj, Verdict):
             verdict.Proxy.update(verdict)
+        for plan in children(obj, Plan):
+            plan.Proxy.update(plan)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:
             raise InputError(

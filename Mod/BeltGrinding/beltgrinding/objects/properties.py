@@ -14,7 +14,7 @@ from .proxy import type_of
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
 # pressure in kPa.
-AS_IS = ("Bool", "Enumeration", "String", "File")  # kinds without a unit
+AS_IS = ("Bool", "Enumeration", "String", "File", "Integer")  # kinds without a unit
 FACTOR = {"Force": 1000.0, "Pressure": 1000.0}
 
 
@@ -54,9 +54,10 @@ class Output(NamedTuple):
 
 @lru_cache(maxsize=None)
 def _schema():
-    """The job's schema, and under 'raster' that of a raster path's settings."""
+    """The job's schema, and under 'raster' and 'plan' those of a raster path's settings and a plan's."""
     found = schema()
-    found["properties"]["raster"] = schemas.schema("raster")
+    for name in ("raster", "plan"):
+        found["properties"][name] = schemas.schema(name)
     return found
 
 

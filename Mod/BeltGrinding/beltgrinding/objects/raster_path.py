@@ -6,7 +6,7 @@ import json
 import FreeCAD
 import numpy as np
 
-from ..engine import InputError
+from ..engine import InputError, core
 from ..job import load as jobs
 from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster, region
@@ -140,6 +140,14 @@ def generate(obj):
         digest = _inputs(obj)[2]
     else:
         found = raster.raster(job, settings)
+    if obj.Planned:
+        found["warnings"] = [
+            *found["warnings"],
+            core.Fact(
+                "raster.plan_lost",
+                "the passes were laid anew: the feeds that were planned for the former ones are gone; plan again",
+            ),
+        ]
     set_arrays(obj, found)
     obj.Language = "raster"
     obj.PassCount = len(found["passes"])

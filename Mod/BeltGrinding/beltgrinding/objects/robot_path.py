@@ -35,6 +35,7 @@ OUTPUTS = (
     ),
     Output("Problems", "StringList", "Program", "what could not be resolved, by file and line"),
     stored_facts.output("Problems", "Program"),
+    Output("Planned", "Bool", "Program", "its feeds and forces come from a plan"),
 )
 # name, type, text; parallel lists, one value per pose
 LISTS = (
@@ -219,6 +220,7 @@ def set_arrays(obj, arrays):
     zones = arrays.get("zones", np.full(len(matrices), -1.0))
     obj.Zones = np.asarray(zones, dtype=float).tolist()
     obj.Gaps = np.asarray(arrays.get("gaps", np.zeros(len(matrices))), dtype=int).tolist()
+    obj.Planned = False
 
 
 def _roll(obj):
@@ -260,6 +262,11 @@ def read_arrays(path, roll=None, direction=None, values=None):
             why=why,
         )
     return program, arrays
+
+
+def read_again(obj):
+    """The arrays that the file of a RobotPath gives now, as the object reads it. Raises InputError, Cancelled."""
+    return read_arrays(obj.Source, *_roll(obj), json.loads(obj.Values) if obj.Values else None)[1]
 
 
 def follow(obj):

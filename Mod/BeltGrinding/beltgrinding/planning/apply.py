@@ -12,17 +12,18 @@ from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from ..job.poses import program_name
 from ..programs.patch.patch import patch
-from . import rounds as plans
+from . import pictures, rounds as plans
 
 JOB = "job.json"
 PLAN = "plan.json"
 FEEDS = "feeds.csv"
+PICTURE = "plan.png"
 RESULT = "result"
 
 
 def write(found, folder, read=(), force=False):
     """Writes a ``Plan`` into ``folder``: job.json (the job with the planned programs), the programs' files with new
-    feeds and nothing else changed, feeds.csv, plan.json, and the result in the folder ``result``. Never over a file
+    feeds and nothing else changed, feeds.csv, plan.json, plan.png, and the result in the folder ``result``. Never over a file
     of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``.
 
     Returns (names of the program files that were written, warnings: why a program's file could not be). Such a
@@ -55,13 +56,15 @@ def write(found, folder, read=(), force=False):
         programs.append(entry)
     job = json.dumps({**found.job, "programs": programs}, indent=1)
     found.after.write(folder / RESULT, force, read)
+    drawn = pictures.composed(pictures.draw(found), found.why["shares"])
     for name, data in (
-        (JOB, job),
-        (FEEDS, feeds_csv(found)),
-        (PLAN, json.dumps(plans.summary(found), indent=1)),
+        (JOB, (job + "\n").encode()),
+        (FEEDS, feeds_csv(found).encode()),
+        (PLAN, (json.dumps(plans.summary(found), indent=1) + "\n").encode()),
+        (PICTURE, drawn),
     ):
         try:
-            write_whole(folder / name, (data if data.endswith("\n") else data + "\n").encode())
+            write_whole(folder / name, data)
         except OSError as error:
             raise cannot_be_written(folder / name, error) from None
     return written, warnings
@@ -69,7 +72,7 @@ def write(found, folder, read=(), force=False):
 
 def _names(sources):
     """A name in the folder for each source, None without one; no two alike."""
-    names, taken = [], {JOB, PLAN, FEEDS, RESULT}
+    names, taken = [], {JOB, PLAN, FEEDS, PICTURE, RESULT}
     for source in sources:
         if source is None:
             names.append(None)
@@ -93,7 +96,7 @@ def check(job, folder, read=(), force=False):
     read = [*read, *filter(None, sources)]
     inputs = {os.path.realpath(path): path for path in read}
     planned = _is_plan(folder / PLAN)
-    for name in (JOB, PLAN, FEEDS, *filter(None, names)):
+    for name in (JOB, PLAN, FEEDS, PICTURE, *filter(None, names)):
         path = folder / name
         if os.path.realpath(path) in inputs:
             raise InputError(
@@ -120,13 +123,13 @@ def _is_plan(path):
 
 def _patched(found, number, source, output, planned):
     """(the job's entry of a program, why its file could not be written or None)."""
-    changes = _changes(found, number)
+    wanted = changes(found, number)
     program = found.commands.job["programs"][number]
     try:
         if "values" in program and not isinstance(program["values"], str):
             raise InputError("planning.inline_values", "its values stand in the job")
-        if changes:
-            patch(source, changes, output)
+        if wanted:
+            patch(source, wanted, output)
         else:
             write_whole(output, Path(source).read_bytes())
     except OSError as error:
@@ -134,14 +137,14 @@ def _patched(found, number, source, output, planned):
     except InputError as error:
         return planned, error
     entry = {**program, "file": output.name}
-    if any("speed_mm_s" in change for change in changes):
+    if any("speed_mm_s" in change for change in wanted):
         entry.pop("feed_mm_s", None)
-    if any("force_N" in change for change in changes):
+    if any("force_N" in change for change in wanted):
         entry.pop("force_N", None)
     return entry, None
 
 
-def _changes(found, number):
+def changes(found, number):
     """What ``patch`` is to change in a program's file: the feeds and forces that are not the file's any more."""
     commands, result = found.commands, []
     program = commands.job["programs"][number]

@@ -13,9 +13,11 @@ class Commands:
     file, for a line has one feed, however often it is run through and into however many poses its arc is cut. Poses
     that stand in the job have a feed each."""
 
-    def __init__(self, job, settings):
-        """Raises InputError for lines that no motion has."""
+    def __init__(self, job, settings, sources=None):
+        """``sources``: of each program the file whose lines its poses name, or None; by default those that the job
+        names. Raises InputError for lines that no motion has."""
         self.job = job
+        self.sources = sources or [program.get("file") for program in job["programs"]]
         self.arrays = []
         warnings = []
         for k, program in enumerate(job["programs"]):
@@ -29,8 +31,8 @@ class Commands:
                 )
             )
         groups, programs = [], []
-        for k, (program, arrays) in enumerate(zip(job["programs"], self.arrays)):
-            lines = arrays["lines"] if "poses" not in program else np.zeros(len(arrays["lines"]))
+        for k, (source, arrays) in enumerate(zip(self.sources, self.arrays)):
+            lines = arrays["lines"] if source else np.zeros(len(arrays["lines"]))
             names = {}
             for i, line in enumerate(lines.tolist()):
                 name = line if line > 0 else -1 - i
@@ -58,18 +60,36 @@ class Commands:
         return len(self.program)
 
     def _keep(self, wanted):
+        own = np.concatenate([np.arange(1, len(a["feeds"]) + 1) for a in self.arrays])
         for number, one in enumerate(wanted):
-            first, last = one["first_line"], max(one["last_line"], one["first_line"])
-            mine = (self.of_program == one["program"] - 1) & (self.lines >= first)
-            mine &= self.lines <= last
+            what = "line" if one["first_line"] else "pose"
+            first = one[f"first_{what}"]
+            last = max(one[f"last_{what}"], first)
+            if not first or (one["first_line"] and one["first_pose"]):
+                raise InputError(
+                    "planning.keep_what",
+                    "{key}: give either first_line or first_pose",
+                    key=f"keep[{number}]",
+                )
+            numbers = self.lines if what == "line" else own
+            mine = (self.of_program == one["program"] - 1) & (numbers >= first) & (numbers <= last)
             if not mine.any():
+                given = {
+                    "key": f"keep[{number}]",
+                    "program": one["program"],
+                    "first": first,
+                    "last": last,
+                }
+                if what == "pose":
+                    raise InputError(
+                        "planning.keep_no_pose",
+                        "{key}: program {program} has no motion in poses {first} to {last}",
+                        **given,
+                    )
                 raise InputError(
                     "planning.keep_nothing",
                     "{key}: program {program} has no motion in lines {first} to {last}",
-                    key=f"keep[{number}]",
-                    program=one["program"],
-                    first=first,
-                    last=last,
+                    **given,
                 )
             self.kept[self.group[mine]] = True
 

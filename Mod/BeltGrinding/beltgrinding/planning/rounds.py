@@ -70,9 +70,9 @@ def validate(settings):
     return settings
 
 
-def plan(job, settings=None, context=None, told=None):
+def plan(job, settings=None, context=None, told=None, sources=None):
     """Plans the feeds of a validated job's programs. ``settings``: Resources/schema/plan.schema.json;
-    ``told(round)``: is called after each round with its dict.
+    ``told(round)``: is called after each round with its dict; ``sources``: as ``Commands`` takes them.
 
     Returns a ``Plan``. It is never worse than the job: where no round brings more of the area into tolerance, the old
     feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
@@ -81,7 +81,7 @@ def plan(job, settings=None, context=None, told=None):
     settings = validate(settings or {})
     context = context or core.RunContext()
     _refuse(job, settings)
-    commands = Commands(_settled(job, context), settings)
+    commands = Commands(_settled(job, context), settings, sources)
     old = commands.feed()
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)

@@ -17,7 +17,11 @@ TOOLBARS = {  # by step, in the order of work
         paths.ImportProgram,
         paths.RasterPath,
     ),
-    QT_TRANSLATE_NOOP("Workbench", "Belt grinding: run"): (results.Simulate, results.Playback),
+    QT_TRANSLATE_NOOP("Workbench", "Belt grinding: run"): (
+        results.Simulate,
+        results.Playback,
+        results.Plan,
+    ),
     QT_TRANSLATE_NOOP("Workbench", "Belt grinding: judge"): (
         results.Deviation,
         verification.Verdict,
@@ -34,7 +38,13 @@ MENU = (  # the same steps and what else belongs to each, divided
         paths.ReadAgain,
         paths.ExportProgram,
     ),
-    (results.Simulate, results.Playback, results.Contact, report.CheckSettings),
+    (
+        results.Simulate,
+        results.Playback,
+        results.Contact,
+        results.Plan,
+        report.CheckSettings,
+    ),
     (
         results.Deviation,
         verification.Verdict,

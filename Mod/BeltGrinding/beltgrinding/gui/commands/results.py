@@ -3,7 +3,7 @@
 import FreeCAD
 import FreeCADGui as Gui
 
-from ...objects import api, deviation, simulation
+from ...objects import api, deviation, plan, simulation
 from ...objects.job_data import child
 from ..common.compat import translate
 from ..common.transaction import transaction
@@ -22,6 +22,27 @@ class Simulate(Command):
         from ..panels.simulation_panel import SimulationPanel
 
         Gui.Control.showDialog(SimulationPanel(active_job(), True))
+
+
+class Plan(Command):
+    NAME = "BeltGrinding_Plan"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Plan", "Plan feeds...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Plan",
+        "Looks for the feeds and forces with which the programs bring the part into tolerance",
+    )
+
+    def run(self):
+        from ..panels.plan_panel import show
+
+        job = active_job()
+        obj = child(job, plan.Plan)
+        if obj is None:
+            with transaction(job.Document, translate("BeltGrinding", "Plan")) as step:
+                obj = api.make_plan(job, compute=False)
+            if step.failed:
+                return
+        show(obj)
 
 
 class Deviation(Command):

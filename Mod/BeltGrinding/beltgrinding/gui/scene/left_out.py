@@ -1,4 +1,4 @@
-"""What a raster path leaves out, laid over the faces in a colour for each reason."""
+"""Places of the faces, laid over them in a colour for each state: what passes leave out, what stays out of tolerance."""
 
 import numpy as np
 from pivy import coin
@@ -6,14 +6,14 @@ from pivy import coin
 from ...objects.raster_path import NO_PASS, NO_ROOM
 from .shapes3d import material, separator, triangles, unpickable
 
-COLOURS = {NO_ROOM: (0.76, 0.13, 0.52), NO_PASS: (0.98, 0.62, 0.12)}
+COLOURS = {NO_ROOM: (0.76, 0.13, 0.52), NO_PASS: (0.98, 0.62, 0.12)}  # of what passes leave out
 CREASE = 0.6  # rad
 NEARER = -2.0  # polygon offset: in front of the face that it lies in
 
 
-def left_out(points, indices, states):
+def left_out(points, indices, states, colours=COLOURS):
     """Coin node of triangles (m, 3) on points (n, 3) mm with ``states`` (n,): each in the colour of most of its
-    corners that are left out."""
+    corners. ``colours``: {state: (red, green, blue) in [0, 1]}; other states are not drawn."""
     root = separator(unpickable())
     if not len(indices):
         return root
@@ -21,11 +21,13 @@ def left_out(points, indices, states):
     offset.factor, offset.units = NEARER, NEARER
     root.addChild(offset)
     corners = np.asarray(states)[indices]
-    counts = {state: (corners == state).sum(axis=1) for state in COLOURS}
-    no_room = counts[NO_ROOM] >= counts[NO_PASS]
-    for state, mine in ((NO_ROOM, no_room), (NO_PASS, ~no_room)):
+    kinds = list(colours)
+    counts = np.stack([(corners == state).sum(axis=1) for state in kinds])
+    most = np.where(counts.any(axis=0), counts.argmax(axis=0), -1)
+    for k, state in enumerate(kinds):
+        mine = most == k
         if mine.any():
             root.addChild(
-                separator(material(COLOURS[state]), triangles(points, indices[mine], CREASE))
+                separator(material(colours[state]), triangles(points, indices[mine], CREASE))
             )
     return root

@@ -15,6 +15,7 @@ from .coloured_mesh_view import frame_selected
 from .deviation_view import DeviationView
 from .ground_mesh_view import GroundMeshView
 from .showing import show_stock
+from .plan_view import PlanView
 from .section_view import SectionView
 from .view import View
 
@@ -24,6 +25,7 @@ __all__ = [
     "DeviationView",
     "GroundMeshView",
     "JobView",
+    "PlanView",
     "RasterPathView",
     "RobotPathView",
     "SectionView",
@@ -59,6 +61,7 @@ class JobView(View):
         "BeltGrinding_RasterPath",
         "BeltGrinding_ReadAgain",
         "BeltGrinding_Simulate",
+        "BeltGrinding_Plan",
         "BeltGrinding_Deviation",
         "BeltGrinding_ExportJob",
         "BeltGrinding_ImportResult",

@@ -1,0 +1,54 @@
+"""Plans a job in a thread of its own, polled by the window."""
+
+from ...engine import Cancelled
+from ...objects import plan as planned
+from ...planning import pictures, rounds as plans
+from .compat import translate
+from .runner import Runner
+
+
+def words():
+    """``pictures.WORDS`` in the window's language."""
+    return {
+        "before": translate("BeltGrinding", "before"),
+        "after": translate("BeltGrinding", "as planned"),
+        "why": translate("BeltGrinding", "why it stays out of tolerance"),
+        "no_motion": translate("BeltGrinding", "no motion removes anything there"),
+        "border": translate("BeltGrinding", "along the border of the faces"),
+        "slowest_feed": translate("BeltGrinding", "too much left at the least feed"),
+        "fastest_feed": translate("BeltGrinding", "cut too deep at the greatest feed"),
+        "kept": translate("BeltGrinding", "its motions must not be changed"),
+        "shared": translate("BeltGrinding", "its motions also grind what needs the contrary"),
+    }
+
+
+class PlanRunner(Runner):
+    """``done(planning.Plan or None, error or None)`` follows in the end; ``rounds`` grows while it runs. The Plan
+    object is written in one undo step, in the end. Raises InputError for what is missing."""
+
+    def __init__(self, obj, progress, done):
+        self.plan, self.rounds, self.words = obj.Name, [], words()
+        job = obj.getParentGroup()
+        self.settings = plans.validate(obj.Proxy.settings(obj))
+        self.sources = planned.sources(job)
+        self.planned = planned.fingerprint(obj, job)
+        super().__init__(job, progress, done)
+
+    def work(self, context):
+        found = plans.plan(self.data, self.settings, context, self.rounds.append, self.sources)
+        return planned.Found(found, self.words, context)
+
+    def _store(self, found):
+        job = self.job()
+        obj = None if job is None else self.document.getObject(self.plan)
+        if obj is None:
+            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
+        self.document.openTransaction(translate("BeltGrinding", "Plan"))
+        try:
+            planned.store(obj, job, found, self.planned)
+            obj.Proxy.update(obj)  # an input may have changed while it ran
+            self.document.commitTransaction()
+        except BaseException:
+            self.document.abortTransaction()
+            raise
+        return found.plan

@@ -1,0 +1,205 @@
+"""What a plan found, in its panel: rounds, before and after side by side, why the rest stays, a picture."""
+
+from pathlib import Path
+
+import FreeCADGui as Gui
+
+from ...objects import preferences
+from ...planning import pictures, reasons
+from ..common.compat import QtCore, QtGui, translate
+from ..charts.feed_chart import FeedChart
+
+PICTURE_WIDTH = 160  # pixels, least; the panel must fit the combo view as it comes
+LARGE = 0.9  # of the screen
+
+
+class PlanFigures(QtGui.QWidget):
+    """``words``: as ``pictures.WORDS``."""
+
+    def __init__(self, words):
+        super().__init__()
+        self.words, self.obj = words, None
+        body = QtGui.QVBoxLayout(self)
+        body.setContentsMargins(0, 0, 0, 0)
+        self.rounds = _table(
+            "rounds",
+            translate("BeltGrinding", "Round"),
+            translate("BeltGrinding", "In tol."),
+            translate("BeltGrinding", "RMS, {}").format(preferences.deviation_unit().symbol),
+            translate("BeltGrinding", "Time"),
+        )
+        self.table = _table(
+            "figures",
+            "",
+            translate("BeltGrinding", "Before"),
+            translate("BeltGrinding", "Planned"),
+        )
+        self.checked = QtGui.QLabel(
+            translate("BeltGrinding", "Both simulated at half the spacing and step.")
+        )
+        self.checked.setWordWrap(True)
+        self.reasons = QtGui.QLabel()
+        self.reasons.setObjectName("reasons")
+        self.reasons.setWordWrap(True)
+        self.why = QtGui.QLabel(
+            translate("BeltGrinding", "Of the area, what stays out of tolerance:")
+        )
+        self.why.setWordWrap(True)
+        self.picture = _Picture(self.enlarge)
+        for widget in (self.rounds, self.table, self.checked, self.why, self.reasons, self.picture):
+            body.addWidget(widget)
+
+    def clear(self):
+        """Shows nothing, before the first round."""
+        self.obj = None
+        self.show_rounds([])
+        for widget in (self.table, self.checked, self.why, self.reasons, self.picture):
+            widget.hide()
+
+    def show_rounds(self, rounds):
+        """The rounds so far, as ``planning.Plan.rounds``."""
+        self.rounds.setVisible(bool(rounds))
+        self.rounds.setRowCount(len(rounds))
+        for row, one in enumerate(rounds):
+            name = str(row) if row else translate("BeltGrinding", "now")
+            if "levels" in one:
+                name = translate("BeltGrinding", "{} feeds").format(one["levels"])
+            unit = preferences.deviation_unit()
+            rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
+            texts = (
+                name,
+                f"{100.0 * one['in_tolerance']:.1f} %",
+                rms,
+                f"{one['process_time_s']:.1f} s",
+            )
+            for column, text in enumerate(texts):
+                self.rounds.setItem(row, column, QtGui.QTableWidgetItem(text))
+        _fit(self.rounds)
+
+    def show_plan(self, obj):
+        """What a Plan object holds."""
+        self.obj, data = obj, obj.Proxy.data(obj)
+        self.show_rounds(data["rounds"])
+        told = data["checked"] or data
+        before, after = told["before"], told["after"]
+
+        unit = preferences.deviation_unit()
+
+        def percent(key):
+            return [f"{100.0 * one[key]:.1f} %" for one in (before, after)]
+
+        rows = (
+            (translate("BeltGrinding", "In tolerance"), percent("in_tolerance")),
+            (translate("BeltGrinding", "Too much left"), percent("above")),
+            (translate("BeltGrinding", "Cut too deep"), percent("below")),
+            (
+                translate("BeltGrinding", "RMS, {}").format(unit.symbol),
+                [f"{one['rms_mm'] / unit.size:.{unit.decimals}f}" for one in (before, after)],
+            ),
+            (
+                translate("BeltGrinding", "Process time, s"),
+                [f"{one['process_time_s']:.1f}" for one in (before, after)],
+            ),
+        )
+        self.table.setRowCount(len(rows))
+        for row, (name, texts) in enumerate(rows):
+            for column, text in enumerate((name, *texts)):
+                self.table.setItem(row, column, QtGui.QTableWidgetItem(text))
+        self.table.show()
+        _fit(self.table)
+        self.checked.setVisible(bool(data["checked"]))
+        shares = data["out_of_tolerance"]
+        told = [
+            f'<span style="color:#{pictures.COLOURS[state] >> 8:06x}">■</span> '
+            f"{100.0 * shares[word]:.1f} % {self.words[word]}"
+            for state, word in sorted(reasons.WORDS.items(), key=lambda one: -shares[one[1]])
+            if shares[word] > pictures.SMALLEST
+        ]
+        self.reasons.setText("<br>".join(told))
+        for widget in (self.why, self.reasons):
+            widget.setVisible(bool(told))
+        self.picture.show_file(obj.Strip)
+
+    def enlarge(self):
+        """Picture and chart in a window of their own."""
+        if self.obj is None:
+            return
+        screen = Gui.getMainWindow().screen().availableGeometry().size()
+        window = QtGui.QDialog(Gui.getMainWindow())
+        window.setObjectName("planWindow")
+        window.setWindowTitle(self.obj.Label)
+        window.setAttribute(QtCore.Qt.WA_DeleteOnClose)
+        body = QtGui.QVBoxLayout(window)
+        label = QtGui.QLabel()
+        pixmap = QtGui.QPixmap(self.obj.Picture)
+        chart = FeedChart()
+        chart.show_plan(self.obj)
+        room = QtCore.QSize(
+            int(LARGE * screen.width()), int(LARGE * screen.height()) - chart.minimumHeight() - 40
+        )
+        label.setPixmap(
+            pixmap.scaled(room, QtCore.Qt.KeepAspectRatio, QtCore.Qt.SmoothTransformation)
+        )
+        label.setAlignment(QtCore.Qt.AlignCenter)
+        body.addWidget(label)
+        body.addWidget(chart)
+        window.show()
+
+
+class _Picture(QtGui.QLabel):
+    """A picture as wide as the panel; a click calls ``clicked()``."""
+
+    def __init__(self, clicked):
+        super().__init__()
+        self.setObjectName("planPicture")
+        self.clicked, self.pixmap_ = clicked, QtGui.QPixmap()
+        self.setMinimumWidth(PICTURE_WIDTH)
+        self.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
+        self.setCursor(QtCore.Qt.PointingHandCursor)
+        self.setToolTip(translate("BeltGrinding", "Click for a larger picture"))
+
+    def show_file(self, path):
+        self.pixmap_ = QtGui.QPixmap(path) if path and Path(path).exists() else QtGui.QPixmap()
+        self.setVisible(not self.pixmap_.isNull())
+        self._fit()
+
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self):
+        if self.pixmap_.isNull():
+            return
+        width = max(self.width(), PICTURE_WIDTH)
+        ratio = self.devicePixelRatioF()
+        fitted = self.pixmap_.scaledToWidth(int(width * ratio), QtCore.Qt.SmoothTransformation)
+        fitted.setDevicePixelRatio(ratio)
+        self.setPixmap(fitted)
+        self.setFixedHeight(int(fitted.height() / ratio))
+
+    def mousePressEvent(self, event):
+        self.clicked()
+
+
+def _table(name, *columns):
+    table = QtGui.QTableWidget(0, len(columns))
+    table.setObjectName(name)
+    table.setHorizontalHeaderLabels(list(columns))
+    table.verticalHeader().hide()
+    table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+    table.setSelectionMode(QtGui.QAbstractItemView.NoSelection)
+    table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+    table.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+    head = table.horizontalHeader()
+    head.setSectionResizeMode(QtGui.QHeaderView.ResizeToContents)
+    head.setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
+    head.setMinimumSectionSize(24)
+    table.setMinimumWidth(10)
+    return table
+
+
+def _fit(table):
+    """Makes a table as high as its rows."""
+    table.resizeRowsToContents()
+    rows = sum(table.rowHeight(row) for row in range(table.rowCount()))
+    table.setFixedHeight(table.horizontalHeader().sizeHint().height() + rows + 4)

@@ -1,0 +1,260 @@
+"""Task panel of a plan: its limits, its rounds while it runs, before and after, and Apply."""
+
+from pathlib import Path
+
+import FreeCADGui as Gui
+
+from ...engine import InputError
+from ...objects import api, plan as planned
+from ...objects.proxy import type_of
+from ...objects.deviation import Deviation
+from ...objects.job_data import child
+from ..charts.feed_chart import FeedChart
+from ..common.compat import QtGui, translate
+from ..common.messages import error_text
+from ..common.plan_runner import PlanRunner, words
+from ..common.transaction import transaction
+from ..widgets import kept_motions
+from ..widgets.fold import Fold, slim
+from ..widgets.form import Form
+from .plan_figures import PlanFigures
+from .run_panel import RunPanel
+from .simulation_panel import lay_deviation
+
+
+class PlanPanel(RunPanel):
+    """Settings go into the Plan object as they are typed; what was found is shown, and goes into the paths by
+    Apply."""
+
+    def __init__(self, obj):
+        super().__init__(
+            obj.getParentGroup(), translate("BeltGrinding", "Plan"), "BeltGrinding_Plan"
+        )
+        self.obj, self.document, self.result = obj, obj.Document, None
+        body = QtGui.QVBoxLayout(self.form)
+        body.addWidget(self._limits())
+        body.addWidget(self._rounds())
+        row = QtGui.QHBoxLayout()
+        self.begin = self._button("plan", translate("BeltGrinding", "Plan"), self.start)
+        row.addWidget(self.begin)
+        row.addWidget(self.cancel)
+        body.addLayout(row)
+        body.addWidget(self.bar)
+        body.addWidget(self.state)
+        self.apply = self._button("apply", translate("BeltGrinding", "Apply"), self.put_in)
+        self.write = self._button(
+            "writePrograms", translate("BeltGrinding", "Write programs..."), self.write_programs
+        )
+        row = QtGui.QHBoxLayout()
+        for button in (self.apply, self.write):
+            row.addWidget(button)
+        body.addLayout(row)
+        self.figures = PlanFigures(words())
+        body.addWidget(self.figures)
+        self.chart = FeedChart()
+        self.chart.changed = self._choose
+        body.addWidget(self.chart)
+        self.keep = self._button(
+            "keepChosen", translate("BeltGrinding", "Leave these as they are"), self._keep_chosen
+        )
+        body.addWidget(self.keep)
+        body.addStretch()
+        slim(self.form)
+        self._open()
+        self._enable()
+        self.show(None)
+
+    def _limits(self):
+        box = Form(self.obj, translate("BeltGrinding", "Limits"))
+        box.add("FeedMin", translate("BeltGrinding", "Least feed"))
+        box.add("FeedMax", translate("BeltGrinding", "Greatest feed"))
+        if self.obj.getParentGroup() is not None and self._by_force():
+            box.add("ForceMin", translate("BeltGrinding", "Least force"))
+            box.add("ForceMax", translate("BeltGrinding", "Greatest force"))
+        levels = box.add("Levels", translate("BeltGrinding", "Different feeds"))
+        levels.setMaximum(10_000)
+        levels.setSpecialValueText(translate("BeltGrinding", "any number"))
+        self.kept = QtGui.QLineEdit(kept_motions.text(self.obj.Proxy.settings(self.obj)["keep"]))
+        self.kept.setObjectName("keep")
+        self.kept.setPlaceholderText(translate("BeltGrinding", "none, or as 12-40, 2:7"))
+        self.kept.setToolTip(
+            translate(
+                "BeltGrinding",
+                "motions that keep their feed: lines of the program or, of paths made here, poses; of the "
+                "second program as 2:7-9",
+            )
+        )
+        self.kept.textChanged.connect(lambda _: self._keep())
+        box.layout_.addRow(translate("BeltGrinding", "Motions that stay"), self.kept)
+        box.changed = self._changed
+        self.limits = box
+        return box
+
+    def _by_force(self):
+        from ...objects.belt_machine import BeltMachine
+
+        machine = child(self.job, BeltMachine)
+        return machine is None or machine.Control == "force"
+
+    def _rounds(self):
+        box = Form(self.obj, "")
+        box.add("Rounds", translate("BeltGrinding", "Rounds, at most"))
+        box.add("MostChange", translate("BeltGrinding", "Most change a round"))
+        box.add("LeastGain", translate("BeltGrinding", "Least gain of a round"))
+        box.add("Smoothing", translate("BeltGrinding", "Smoothing"))
+        box.add("Check", translate("BeltGrinding", "Check at half the spacing"))
+        box.changed = self._changed
+        self.rounds = box
+        self.fold = Fold("foldRounds", translate("BeltGrinding", "Rounds"), box, folded=True)
+        return self.fold
+
+    def doing(self):
+        return translate("BeltGrinding", "Planning, {}")
+
+    def start(self):
+        self._commit()
+        self.fold.fold(True)
+        self.result = None
+        self.document.recompute()
+        super().start()
+
+    def make_runner(self):
+        for form in (self.limits, self.rounds):
+            form.check()
+        self._check_kept()
+        return PlanRunner(self.obj, self.progress, self.done)
+
+    def progress(self, share):
+        super().progress(share)
+        self.figures.show_rounds(self.runner.rounds)
+
+    def done(self, found, error):
+        super().done(found, error)
+        if type_of(self.obj) == planned.Plan.TYPE:
+            self._open()
+
+    def show(self, found):
+        """Shows the plan that the document has. ``found``: the ``planning.Plan``, if it was made just now."""
+        self.result = None if found is None else found.after
+        self._arrange(False)
+        obj = self.obj
+        if not obj.Fingerprint:
+            self._say(
+                translate(
+                    "BeltGrinding",
+                    "The job is simulated, its feeds are changed, and it is simulated again, a few rounds of that. "
+                    "The programs stay as they are until you apply the plan.",
+                )
+            )
+            return
+        self.figures.show_plan(obj)
+        self.chart.show_plan(obj)
+        self._tell_state()
+
+    def _tell_state(self):
+        obj = self.obj
+        if obj.OutOfDate:
+            text = translate("BeltGrinding", "Out of date: an input has changed since; plan again.")
+        elif obj.Applied:
+            text = translate("BeltGrinding", "The programs have these feeds.")
+        elif not obj.Better:
+            text = translate("BeltGrinding", "Nothing better was found: the feeds stay as they are.")
+        else:
+            text = translate("BeltGrinding", "{:.1f} % in tolerance as planned; {:.1f} % before.")
+            text = text.format(obj.InTolerance, obj.InToleranceBefore)
+        self._say(text, obj.OutOfDate)
+        self._enable()
+
+    def put_in(self):
+        """Apply: feeds and forces into the paths, and the planned result into the job, as one undo step."""
+        self._commit()
+        made = child(self.job, Deviation) is None
+        with transaction(self.document, translate("BeltGrinding", "Apply plan")) as step:
+            api.apply_plan(self.obj, self.result)
+            if self.result is not None and made:
+                lay_deviation(self.job)
+        self._open()
+        if not step.failed:
+            self._tell_state()
+
+    def write_programs(self):
+        """The programs' files with the planned feeds, into a folder."""
+        title = translate("BeltGrinding", "Folder for the planned programs")
+        folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)
+        if not folder:
+            return
+        try:
+            files, without = api.write_plan(self.obj, folder)
+        except InputError as error:
+            self._say(error_text(error), True)
+            return
+        told = [translate("BeltGrinding", "Written: {}").format(Path(file)) for file in files]
+        if without:
+            text = translate(
+                "BeltGrinding", "Made here, so apply the plan and export the program: {}"
+            )
+            told.append(text.format(", ".join(without)))
+        self._say("\n".join(told))
+
+    def _changed(self):
+        self.obj.Proxy.update(self.obj)
+        if self.obj.Fingerprint:
+            self._tell_state()
+
+    def _keep(self):
+        try:
+            wanted = kept_motions.parsed(self.kept.text(), planned.sources(self.job))
+        except InputError:
+            self.kept.setStyleSheet("border: 2px solid #b3261e;")
+            return
+        self.kept.setStyleSheet("")
+        self.obj.Keep = kept_motions.stored(wanted)
+        self._changed()
+
+    def _check_kept(self):
+        kept_motions.parsed(self.kept.text(), planned.sources(self.job))
+
+    def _choose(self):
+        self._enable()
+
+    def _keep_chosen(self):
+        """Adds the motions that are chosen in the chart to those that stay."""
+        added = kept_motions.of_chart(self.chart, planned.sources(self.job))
+        self.kept.setText(", ".join(filter(None, [self.kept.text().strip(), added])))
+
+    def _open(self):
+        self.document.openTransaction(translate("BeltGrinding", "Settings of the plan"))
+
+    def _commit(self):
+        self.document.commitTransaction()
+
+    def _arrange(self, running):
+        super()._arrange(running)
+        self.begin.setVisible(not running)
+        for widget in (self.limits, self.rounds):
+            widget.setEnabled(not running)
+        there = bool(self.obj.Fingerprint)
+        self.figures.setVisible(running or there)
+        if running:
+            self.figures.clear()
+        for widget in (self.chart, self.apply, self.write):
+            widget.setVisible(there and not running)
+        self._enable()
+
+    def _enable(self):
+        obj, there = self.obj, bool(self.obj.Fingerprint)
+        useful = there and obj.Better and not obj.OutOfDate
+        self.apply.setEnabled(useful and not obj.Applied)
+        self.write.setEnabled(useful and any(planned.sources(self.job)))
+        self.keep.setVisible(there and self.chart.isVisibleTo(self.form) and self.chart.chosen is not None)
+
+    def reject(self):
+        self._commit()
+        self.document.recompute()
+        return super().reject()
+
+
+def show(obj):
+    """Opens the panel of a Plan object."""
+    if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
+        Gui.Control.showDialog(PlanPanel(obj))

@@ -1,0 +1,78 @@
+"""View provider of a plan: what stays out of tolerance, in a colour for each reason."""
+
+import numpy as np
+from pivy import coin
+
+from ...planning.pictures import COLOURS
+from ..common.compat import translate
+from ..common.icons import icon, stale_icon
+from ..scene import left_out
+from .view import View
+
+RGB = {
+    state: tuple((colour >> shift & 0xFF) / 255.0 for shift in (24, 16, 8))
+    for state, colour in COLOURS.items()
+}
+
+
+class PlanView(View):
+    """The icon says when the plan is out of date; a double click opens its panel."""
+
+    ICON = "BeltGrinding_Plan"
+    COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation")
+
+    def attach(self, view):
+        super().attach(view)
+        self.left = coin.SoSwitch()
+        view.addDisplayMode(self.left, "Left")
+
+    def getDisplayModes(self, view):
+        return ["Left"]
+
+    def getDefaultDisplayMode(self):
+        return "Left"
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and getattr(
+            self.view.Object, "OutOfDate", False
+        )
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
+
+    def finishRestoring(self):
+        self.draw()
+
+    def updateData(self, obj, name):
+        if getattr(self, "view", None) is None:
+            return
+        if name == "OutOfDate":
+            self.view.signalChangeIcon()
+        if name in ("OutOfDate", "Fingerprint"):
+            self.draw()
+
+    def onChanged(self, view, name):
+        if name == "Visibility" and getattr(self, "left", None) is not None:
+            self.draw()
+
+    def draw(self):
+        """Draws the places as they are; none of a plan that is out of date."""
+        obj = self.view.Object
+        self.left.whichChild = coin.SO_SWITCH_NONE
+        self.left.removeAllChildren()
+        if not getattr(obj, "Fingerprint", "") or obj.OutOfDate or not self.view.Visibility:
+            return
+        corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
+        points = np.array([tuple(point) for point in obj.LeftPoints]).reshape(-1, 3)
+        self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates), RGB))
+        self.left.whichChild = coin.SO_SWITCH_ALL
+
+    def doubleClicked(self, view):
+        from ..panels.plan_panel import show
+
+        show(view.Object)
+        return True
+
+    def setEdit(self, view, mode=0):
+        return None
+
+    def verb(self):
+        return translate("BeltGrinding", "Show plan")

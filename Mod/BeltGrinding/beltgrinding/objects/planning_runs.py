@@ -1,0 +1,56 @@
+"""Plans a job's feeds here and now, and applies what was found. Offered by ``api``."""
+
+from contextlib import nullcontext
+from pathlib import Path
+
+import FreeCAD
+
+from ..engine import InputError
+from ..planning import rounds as plans
+from . import job_inputs, plan as planned, runs
+from .creation import make_child, removed_on_error
+from .job_data import child
+
+
+def make_plan(job, compute=True, context=None, **properties):
+    """Plans the feeds (and, where ``ForceMin`` or ``ForceMax`` is set, the forces) with which the job keeps its
+    tolerance, and keeps them in its Plan object, which it returns; ``apply_plan`` puts them into the paths.
+    ``compute=False`` only makes the object. ``properties``: settings (docs/planning.md) by the names of the
+    properties. Raises InputError, Cancelled.
+    """
+    label, before = FreeCAD.Qt.translate("BeltGrinding", "Plan"), child(job, planned.Plan)
+    obj = make_child(job, planned.Plan, "Plan", label, properties)
+    if compute:
+        with nullcontext() if before else removed_on_error(obj):
+            with job_inputs.scratch_folder() as folder:
+                data = job_inputs.to_data(job, folder)
+                settings = plans.validate(obj.Proxy.settings(obj))
+                fingerprint = planned.fingerprint(obj, job)
+                found = plans.plan(data, settings, context, sources=planned.sources(job))
+                planned.store(obj, job, planned.Found(found, context=context), fingerprint)
+    return obj
+
+
+def apply_plan(plan, result=None):
+    """Gives the paths of a Plan's job the planned feeds and forces, in place of their own and of one feed or force for
+    all. ``result``: the Result of the planned job, which becomes the job's; without it the job's result goes out of
+    date. Raises InputError; then nothing is changed.
+    """
+    planned.put_in(plan)
+    job = plan.getParentGroup()
+    if result is not None:
+        runs.store_result(job, result, job_inputs.fingerprint(job))
+    else:
+        job.touch()
+        job.Document.recompute()
+    return plan
+
+
+def write_plan(plan, folder):
+    """Writes the programs' files of a Plan's job with the planned feeds and forces into ``folder``; nothing else of
+    them changes. Returns (paths written, labels of paths that were not read from a file). Raises InputError.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError("planning.no_folder", "{folder}: is no folder", folder=folder)
+    return planned.write_programs(plan, folder)

@@ -1,0 +1,104 @@
+"""A plan as a picture: the part before and as planned, in the colours of the deviation, and why what is out of
+tolerance stays so."""
+
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from ..engine import core
+from ..inspection import picture
+from ..job.tolerances import colour_scale
+from ..job.workpiece import read_design
+from . import reasons
+
+WIDTH = 800  # pixels of one of the pictures side by side
+LETTERS, ROW = 24, 36  # pixels
+SMALLEST = 5e-4  # of the area, that a reason is told for
+INSIDE = 0xDDE3E8FF  # in tolerance
+COLOURS = {  # of the reasons, 0xRRGGBBAA
+    reasons.NOT_REACHED: 0x7A1FA2FF,
+    reasons.BORDER: 0x00897BFF,
+    reasons.SLOWEST: 0xE65100FF,
+    reasons.FASTEST: 0x1565C0FF,
+    reasons.KEPT: 0x5D4037FF,
+    reasons.SHARED: 0xF9A825FF,
+}
+WORDS = {
+    "before": "before",
+    "after": "as planned",
+    "why": "why it stays out of tolerance",
+    "no_motion": "no motion removes anything there",
+    "border": "along the border of the faces",
+    "slowest_feed": "too much left at the least feed",
+    "fastest_feed": "cut too deep at the greatest feed",
+    "kept": "its motions must not be changed",
+    "shared": "its motions also grind what needs the contrary",
+}
+
+
+class Pictures(NamedTuple):
+    """(rows, columns, 3) uint8, sRGB, of the side that shows most of the ground faces, and of the other."""
+
+    before: list
+    after: list
+    why: list
+
+
+def draw(found, context=None):
+    """``Pictures`` of a ``Plan``. Raises InputError, Cancelled."""
+    job = found.job
+    shape = read_design(job["design"], context)
+    scale = colour_scale(job)
+    states = found.why["state"]
+    colours = np.full(len(states), INSIDE, dtype=np.uint32)
+    for state, colour in COLOURS.items():
+        colours[states == state] = colour
+    after = found.after.field
+
+    def sides(field, colours):
+        views = picture.Studio(field, colours, shape, context).both(context)
+        return [_small(view.pixels) for view in views]
+
+    return Pictures(
+        *(sides(one, core.deviation_colours(one, *scale)) for one in (found.before.field, after)),
+        sides(after, colours),
+    )
+
+
+def _small(pixels):
+    image = Image.fromarray(pixels)
+    rows = max(round(image.height * WIDTH / image.width), 1)
+    return np.asarray(image.resize((WIDTH, rows), Image.LANCZOS))
+
+
+def strip(pictures):
+    """Bytes of a PNG: the side that shows most, before, as planned and why, from left to right."""
+    return picture.png(np.hstack([side[0] for side in pictures]))
+
+
+def composed(pictures, shares, words=None):
+    """Bytes of a PNG: before, as planned and why from left to right, the two sides one below the other, and what the
+    colours of the reasons say. ``shares``: of the area, as ``reasons.find`` has them; ``words``: as ``WORDS``."""
+    words = words or WORDS
+    told = [
+        (COLOURS[state], words[word], shares[word])
+        for state, word in reasons.WORDS.items()
+        if shares[word] > SMALLEST
+    ]
+    rows = [side.shape[0] for side in pictures.before]
+    whole = Image.new("RGB", (3 * WIDTH, ROW + sum(rows) + ROW * len(told)), "white")
+    pen, font = ImageDraw.Draw(whole), picture.font(LETTERS)
+    for column, name in enumerate(("before", "after", "why")):
+        pen.text((column * WIDTH + 12, 4), words[name], font=font, fill="black")
+        for row, side in enumerate(getattr(pictures, name)):
+            fitted = Image.fromarray(side).resize((WIDTH, rows[row]))
+            whole.paste(fitted, (column * WIDTH, ROW + sum(rows[:row])))
+    for row, (colour, text, share) in enumerate(sorted(told, key=lambda one: -one[2])):
+        y = ROW + sum(rows) + ROW * row + 5
+        rgb = tuple(colour >> shift & 0xFF for shift in (24, 16, 8))
+        x = 2 * WIDTH + 12
+        pen.rectangle([x, y, x + LETTERS, y + LETTERS], fill=rgb, outline="black")
+        text = f"{100.0 * share:.1f} %  {text}"
+        pen.text((x + LETTERS + 12, y - 2), text, font=font, fill="black")
+    return picture.png(np.asarray(whole))

@@ -136,7 +136,9 @@ class Found:
 def store(obj, job, found, planned):
     """Puts a ``Found`` into a Plan object. ``planned``: ``fingerprint`` of what was planned."""
     plan = found.plan
-    obj.Fingerprint = obj.AppliedFingerprint = ""  # half of it is there: no plan, rather than two in one
+    obj.Fingerprint = (
+        obj.AppliedFingerprint
+    ) = ""  # half of it is there: no plan, rather than two in one
     commands, summary = plan.commands, plans.summary(plan)
     told = summary["checked"] or summary
     before, after = told["before"], told["after"]

@@ -79,7 +79,8 @@ def strip(pictures):
 
 def composed(pictures, shares, words=None):
     """Bytes of a PNG: before, as planned and why from left to right, the two sides one below the other, and what the
-    colours of the reasons say. ``shares``: of the area, as ``reasons.find`` has them; ``words``: as ``WORDS``."""
+    colours of the reasons say. ``shares``: of the area, as ``reasons.find`` has them; ``words``: as ``WORDS``.
+    """
     words = words or WORDS
     told = [
         (COLOURS[state], words[word], shares[word])

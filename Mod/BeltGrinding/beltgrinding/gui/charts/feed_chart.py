@@ -105,9 +105,7 @@ class FeedChart(QtGui.QWidget):
             a, b = (float(self.x(self.along[max(k, 0)])) for k in self._ends())
             shade = QtGui.QColor(CHOSEN)
             shade.setAlpha(70)
-            painter.fillRect(
-                QtCore.QRectF(a, 0.0, max(b - a, 1.0), self.height() - BOTTOM), shade
-            )
+            painter.fillRect(QtCore.QRectF(a, 0.0, max(b - a, 1.0), self.height() - BOTTOM), shade)
         for k, row in enumerate(self.rows):
             self._draw_row(painter, k * height, height, *row)
         x, y = LEFT, self.height() - BOTTOM + 13

@@ -158,7 +158,9 @@ class PlanPanel(RunPanel):
         elif obj.Applied:
             text = translate("BeltGrinding", "The programs have these feeds.")
         elif not obj.Better:
-            text = translate("BeltGrinding", "Nothing better was found: the feeds stay as they are.")
+            text = translate(
+                "BeltGrinding", "Nothing better was found: the feeds stay as they are."
+            )
         else:
             text = translate("BeltGrinding", "{:.1f} % in tolerance as planned; {:.1f} % before.")
             text = text.format(obj.InTolerance, obj.InToleranceBefore)
@@ -246,7 +248,9 @@ class PlanPanel(RunPanel):
         useful = there and obj.Better and not obj.OutOfDate
         self.apply.setEnabled(useful and not obj.Applied)
         self.write.setEnabled(useful and any(planned.sources(self.job)))
-        self.keep.setVisible(there and self.chart.isVisibleTo(self.form) and self.chart.chosen is not None)
+        self.keep.setVisible(
+            there and self.chart.isVisibleTo(self.form) and self.chart.chosen is not None
+        )
 
     def reject(self):
         self._commit()

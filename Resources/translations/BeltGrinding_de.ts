@@ -1359,6 +1359,18 @@
         <source>why what is out of tolerance stays so</source>
         <translation>warum außer Toleranz bleibt, was es ist</translation>
     </message>
+    <message>
+        <source>how often all passes are run through, one after the other</source>
+        <translation>wie oft alle Bahnen nacheinander durchlaufen werden</translation>
+    </message>
+    <message>
+        <source>settings of the passes, if they are laid anew; JSON</source>
+        <translation>Einstellungen der Bahnen, wenn sie neu gelegt werden; JSON</translation>
+    </message>
+    <message>
+        <source>the passes are laid anew, too: step-over, run-out, how often they are run through</source>
+        <translation>auch die Bahnen werden neu gelegt: Zustellung, Auslauf, wie oft sie durchlaufen werden</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -4012,6 +4024,22 @@ im Mittel {} abgetragen</translation>
         <source>{}, pose {}</source>
         <translation>{}, Pose {}</translation>
     </message>
+    <message>
+        <source>Lay the passes anew</source>
+        <translation>Bahnen neu legen</translation>
+    </message>
+    <message>
+        <source>Run through, times</source>
+        <translation>Durchläufe</translation>
+    </message>
+    <message>
+        <source>the wheel does not fit there</source>
+        <translation>die Scheibe passt dort nicht hin</translation>
+    </message>
+    <message>
+        <source>Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses</source>
+        <translation>Bahnen im Abstand von {:.3g} mm, Auslauf {:.3g} mm, {}-mal durchlaufen, {} Posen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -4176,6 +4204,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Grinds along the selected CAM path or robot trajectory of FreeCAD, and follows its changes</source>
         <translation>Schleift entlang der gewählten CAM-Bahn oder Roboterbahn von FreeCAD und folgt ihren Änderungen</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_GrindFaces</name>
+    <message>
+        <source>Grind these faces...</source>
+        <translation>Diese Flächen schleifen...</translation>
+    </message>
+    <message>
+        <source>Lays passes on the selected faces, or the job&apos;s, and plans their feeds and forces, until they are in tolerance, or says why not</source>
+        <translation>Legt Bahnen auf die gewählten Flächen oder die des Auftrags und plant ihre Vorschübe und Kräfte, bis sie in Toleranz sind, oder sagt, warum nicht</translation>
     </message>
 </context>
 <context>

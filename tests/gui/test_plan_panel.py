@@ -111,3 +111,45 @@ assert not Gui.Control.activeDialog()
 """,
         window=True,
     )
+
+
+def test_faces_are_ground_from_nothing_by_one_button(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+doc.UndoMode = 1
+part = doc.addObject("Part::Feature", "Block")
+part.Shape = Part.makeCylinder(80, 30, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 40)
+doc.recompute()
+Gui.activeDocument().activeView().viewIsometric()
+Gui.SendMsgToActiveView("ViewFit")
+Gui.Selection.addSelection(doc.Name, "Block", "Face1")
+settle()
+menu("Grind these faces...")
+plan, path = doc.Plan, doc.RasterPath
+assert plan.LayPasses and path.Proposed
+before = [list(path.Feeds), list(path.Poses)]
+wait(lambda: plan.Fingerprint, 400)
+settle()
+assert [list(path.Feeds), list(path.Poses)] == before, "nothing is changed before it is applied"
+assert "in tolerance" in field("state").text()
+assert plan.InTolerance > 80.0, (plan.InTolerance, list(plan.Reasons))
+table = field("rounds")
+names = [table.item(row, 0).text() for row in range(table.rowCount())]
+assert names[0].endswith(" mm") and "now" in names, names
+screenshot("grind_found.png")
+steps = doc.UndoCount
+press("Apply")
+assert doc.UndoCount == steps + 1 and plan.Applied and not path.Proposed
+assert list(path.Feeds) == list(plan.NewFeeds)
+assert not doc.Simulation.OutOfDate
+screenshot("grind_applied.png")
+press("Close")
+doc.undo()
+doc.recompute()
+assert [list(path.Feeds), list(path.Poses)] == before and not plan.Applied
+""",
+        window=True,
+    )

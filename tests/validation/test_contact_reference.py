@@ -100,7 +100,7 @@ def test_wrong_contacts_name_the_culprit():
     ):
         with pytest.raises(contact.InputError, match=culprit):
             contact.validate({**good, **change})
-    with pytest.raises(contact.InputError, match="core is left"):
+    with pytest.raises(contact.InputError, match="leave no core"):
         wheel = {"outer_radius_mm": 10, "width_mm": 10}
         contact.run(contact.validate({**good, "wheel": wheel}))
 

@@ -172,3 +172,41 @@ except InputError as error:
     assert doc.getObject("Plan") is plan and not plan.Data, "the one that was there stays"
 """
     )
+
+
+def test_passes_are_laid_and_planned_and_applied_together(freecad):
+    freecad.run(
+        RASTER
+        + """
+doc = FreeCAD.newDocument("life")
+job = raster_job(doc)
+path = doc.RasterPath
+path.StepOver = "18 mm"  # so far apart that stripes stay between them
+doc.recompute()
+poses = len(path.Poses)
+only = beltgrinding.make_plan(job, Rounds=3, Check=False).InTolerance
+plan = beltgrinding.make_plan(job, LayPasses=True, Rounds=3, Check=False)
+assert plan.InTolerance > only + 10.0, (only, plan.InTolerance)
+assert path.StepOver.Value == 18.0 and len(path.Poses) == poses and not plan.OutOfDate
+assert len(plan.NewFeeds) > poses and json.loads(plan.Raster)["step_over_mm"] < 18.0
+told = plan.InTolerance
+doc.saveAs("laid.FCStd")
+FreeCAD.closeDocument("life")
+doc = FreeCAD.openDocument("laid.FCStd")
+plan, job, path = doc.Plan, doc.BeltGrindingJob, doc.RasterPath
+beltgrinding.apply_plan(plan)
+assert plan.Applied and path.StepOver.Value < 18.0 and list(path.Feeds) == list(plan.NewFeeds)
+beltgrinding.simulate(job)
+assert near(beltgrinding.make_deviation(job).InTolerance, told, 1e-6)
+doc.recompute()
+assert path.Planned and plan.Applied
+
+# With a program of another kind there are no passes to lay.
+beltgrinding.import_program(job, "pass.csv")
+try:
+    beltgrinding.make_plan(job, LayPasses=True)
+    raise AssertionError("two paths")
+except InputError as error:
+    assert "one raster path" in str(error), error
+"""
+    )

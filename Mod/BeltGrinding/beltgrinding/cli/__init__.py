@@ -15,6 +15,7 @@ from . import (
     calibrate,
     faces,
     faults,
+    from_faces,
     grind,
     interrupts,
     inspect,
@@ -30,7 +31,20 @@ from .messages import LANGUAGES, Messages
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
-TOPICS = (grind, plan, press, program, faces, calibrate, inspect, measure, report, view, lists)
+TOPICS = (
+    grind,
+    from_faces,
+    plan,
+    press,
+    program,
+    faces,
+    calibrate,
+    inspect,
+    measure,
+    report,
+    view,
+    lists,
+)
 
 
 JSON_ERRORS = "--json-errors"

@@ -1,9 +1,6 @@
 """Planning a job's feeds."""
 
-import json
-from pathlib import Path
-
-from . import background, outputs
+from . import background, outputs, settings
 from .messages import print_text
 
 
@@ -29,18 +26,16 @@ def _plan(arguments):
     from ..job import inputs, load as jobs
     from ..planning import apply, rounds as plans
 
-    settings = plans.validate(_settings(arguments))
+    wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     job = jobs.load(arguments.job)
     read = [arguments.job, *inputs.files(job)]
     apply.check(job, arguments.output, read, arguments.force)
 
     def told(one):
         if not arguments.quiet:
-            print_text(_line(one))
+            print_text(line(one))
 
-    found = background.run(
-        lambda context: plans.plan(job, settings, context, told), arguments.quiet
-    )
+    found = background.run(lambda context: plans.plan(job, wanted, context, told), arguments.quiet)
     written, warnings = apply.write(found, arguments.output, read, arguments.force)
     arguments.messages.print_warnings(warnings)
     if not arguments.quiet:
@@ -49,29 +44,7 @@ def _plan(arguments):
         print_text(f"programs: {names}; results in {arguments.output}")
 
 
-def _settings(arguments):
-    from ..base import schemas
-    from ..engine import InputError
-
-    settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
-    if not isinstance(settings, dict):
-        raise InputError(
-            "cli.settings_no_object",
-            "{file}: the settings are no object of keys",
-            file=arguments.settings,
-        )
-    for one in arguments.set:
-        key, equals, value = one.partition("=")
-        if not equals:
-            raise InputError("cli.set_without_value", "--set {given}: write KEY=VALUE", given=one)
-        try:
-            settings[key] = json.loads(value)
-        except ValueError:
-            settings[key] = value
-    return settings
-
-
-def _line(one):
+def line(one):
     kind = f"in {one['levels']} levels: " if "levels" in one else ""
     return (
         f"{kind}{100 * one['in_tolerance']:.1f} % of the area in tolerance, "
@@ -90,7 +63,7 @@ def text(summary):
         before, after = summary["before"], summary["after"]
         if summary["checked"]:
             before, after = (summary["checked"][k] for k in ("before", "after"))
-        lines = [f"before: {_line(before)}", f"planned: {_line(after)}"]
+        lines = [f"before: {line(before)}", f"planned: {line(after)}"]
         if summary["checked"]:
             lines[1] += " (both at half the spacing and step)"
     out = {k: v for k, v in summary["out_of_tolerance"].items() if v > 0.0005}

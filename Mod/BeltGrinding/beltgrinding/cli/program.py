@@ -4,7 +4,7 @@ import json
 import math
 from pathlib import Path
 
-from . import background, outputs
+from . import background, outputs, settings
 
 
 def add(commands):
@@ -218,7 +218,6 @@ def _program(arguments):
 
 
 def _raster(arguments):
-    from ..base import schemas
     from ..engine import InputError
     from ..raster import in_turn, raster_path as raster, region
 
@@ -229,37 +228,23 @@ def _raster(arguments):
     written = [arguments.output, arguments.picture, *(file for _, file in arguments.then)]
     read = [arguments.job, arguments.settings, *(job for job, _ in arguments.then)]
     outputs.check(arguments, written, read, arguments.region)
-    settings = schemas.read_json(Path(arguments.settings)) if arguments.settings else {}
-    if not isinstance(settings, dict):
-        raise InputError(
-            "cli.settings_no_object",
-            "{file}: the settings are no object of keys",
-            file=arguments.settings,
-        )
-    for one in arguments.set:
-        key, equals, value = one.partition("=")
-        if not equals:
-            raise InputError("cli.set_without_value", "--set {given}: write KEY=VALUE", given=one)
-        try:
-            settings[key] = json.loads(value)
-        except ValueError:
-            settings[key] = value
+    wanted = settings.given(arguments.settings, arguments.set)
     if arguments.region:
         points, _ = region.of_result(arguments.region, arguments.above, arguments.cluster)
-        settings["region_points"] = points.tolist()
+        wanted["region_points"] = points.tolist()
     elif arguments.above is not None or arguments.cluster:
         raise InputError("cli.region_of_what", "--above and --cluster need --region RESULT")
     job = raster.load_job(arguments.job)
     if not arguments.then:
         found, drawn = background.run(
-            lambda context: _laid_and_drawn(job, settings, arguments.picture, context), quiet=True
+            lambda context: _laid_and_drawn(job, wanted, arguments.picture, context), quiet=True
         )
         _write_raster(arguments, arguments.output, job, found)
         if drawn is not None:
             _write_picture(arguments.picture, drawn)
         print(json.dumps(raster.summary(found)))
         return
-    steps = [(job, settings)] + [(raster.load_job(one), settings) for one, _ in arguments.then]
+    steps = [(job, wanted)] + [(raster.load_job(one), wanted) for one, _ in arguments.then]
     laid, places = background.run(lambda context: in_turn(steps, context), quiet=True)
     files = [arguments.output, *(file for _, file in arguments.then)]
     for (one, _), file, found in zip(steps, files, laid):

@@ -8,7 +8,6 @@ from .ground_mesh import GroundMesh
 from .job_data import KEYS, child, children, design, inspection, zones
 from .job_inputs import fingerprint
 from .properties import add_keys, check_limits
-from .plan import Plan
 from .proxy import Proxy
 from .section import Section
 from .simulation import Simulation
@@ -66,8 +65,9 @@ class BeltGrindingJob(Proxy):
             section.Proxy.update(section)
         for verdict in children(obj, Verdict):
             verdict.Proxy.update(verdict)
-        for plan in children(obj, Plan):
-            plan.Proxy.update(plan)
+        for member in obj.Group:
+            if "NewFeeds" in member.PropertiesList:  # a Plan, whose module knows this one
+                member.Proxy.update(member)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:
             raise InputError(

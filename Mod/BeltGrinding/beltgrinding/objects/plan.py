@@ -9,12 +9,14 @@ import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError
-from ..planning import apply, pictures, rounds as plans
+from ..cell.tool_path import tool_path
+from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.patch.patch import patch
 from . import job_inputs, result_files
 from .job_data import children, inspection
-from .properties import Key, Output, add_keys, add_outputs, to_job
+from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
+from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
 from .robot_path import RobotPath, read_again
 
 KEYS = (
@@ -54,6 +56,7 @@ OUTPUTS = (
     Output("LeftPoints", "VectorList", "Plan", "corners of what stays out of tolerance", True),
     Output("LeftTriangles", "IntegerList", "Plan", "three of them each", True),
     Output("LeftStates", "IntegerList", "Plan", "of the corners: as planning.reasons", True),
+    Output("Raster", "String", "Plan", "settings of the passes, if they are laid anew; JSON", True),
     Output("Fingerprint", "String", "Plan", "hash of what was planned", True),
     Output("AppliedFingerprint", "String", "Plan", "hash of the same job with its plan", True),
 )
@@ -71,6 +74,11 @@ class Plan(Proxy):
 
     def add_properties(self, obj):
         add_keys(obj, KEYS)
+        if "LayPasses" not in obj.PropertiesList:
+            text = (
+                "the passes are laid anew, too: step-over, run-out, how often they are run through"
+            )
+            obj.addProperty("App::PropertyBool", "LayPasses", "Passes", text)
         add_outputs(obj, OUTPUTS)
         for name, text in PICTURES:
             if name not in obj.PropertiesList:
@@ -109,7 +117,7 @@ class Plan(Proxy):
 
 def fingerprint(obj, job):
     """Hash of all that a plan depends on."""
-    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj)]
+    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj), obj.LayPasses]
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 
@@ -123,18 +131,50 @@ def sources(job):
     return [path.Source or None for path in paths_of(job)]
 
 
-class Found:
-    """A plan with what the document keeps of it; made in any thread. ``words``: as ``pictures.WORDS``."""
+def passes_of(job):
+    """The raster path of a job that has no other path; it is the one that is laid anew. Raises InputError."""
+    paths = paths_of(job)
+    if len(paths) != 1 or not isinstance(paths[0].Proxy, RasterPath):
+        raise InputError(
+            "planning.no_passes",
+            "{object}: to lay passes anew it must have one raster path and no other program; it has {paths}",
+            object=job.Label,
+            paths=", ".join(path.Label for path in paths) or "-",
+        )
+    return paths[0]
 
-    def __init__(self, plan, words=None, context=None):
-        self.plan = plan
+
+class Work:
+    """What is planned of a job, collected here and now; ``find`` plans it, in any thread. Raises InputError."""
+
+    def __init__(self, obj, job):
+        self.settings = plans.validate(obj.Proxy.settings(obj))
+        self.sources = sources(job)
+        self.raster = settings_of(passes_of(job)) if obj.LayPasses else None
+        self.planned = fingerprint(obj, job)
+
+    def find(self, data, context=None, told=None, words=None):
+        """A ``Found`` for a job's data. Raises InputError, Cancelled."""
+        if self.raster is None:
+            plan = plans.plan(data, self.settings, context, told, self.sources)
+            return Found(plan, self.planned, words=words)
+        ground = grinding.grind(data, self.raster, self.settings, context, told)
+        return Found(ground.plan, self.planned, ground, words)
+
+
+class Found:
+    """A plan with what the document keeps of it; made in any thread. ``words``: as ``pictures.WORDS``; ``ground``: a
+    ``grinding.Ground``, where the passes were laid anew."""
+
+    def __init__(self, plan, planned, ground=None, words=None, context=None):
+        self.plan, self.planned, self.ground = plan, planned, ground
         drawn = pictures.draw(plan, context)
         whole = pictures.composed(drawn, plan.why["shares"], words)
         self.pictures = result_files.Written({"Picture": whole, "Strip": pictures.strip(drawn)})
 
 
-def store(obj, job, found, planned):
-    """Puts a ``Found`` into a Plan object. ``planned``: ``fingerprint`` of what was planned."""
+def store(obj, job, found):
+    """Puts a ``Found`` into a Plan object."""
     plan = found.plan
     obj.Fingerprint = (
         obj.AppliedFingerprint
@@ -146,7 +186,8 @@ def store(obj, job, found, planned):
     obj.InToleranceBefore = 100.0 * before["in_tolerance"]
     obj.InTolerance = 100.0 * after["in_tolerance"]
     obj.ProcessTimeBefore, obj.ProcessTime = before["process_time_s"], after["process_time_s"]
-    obj.Data = json.dumps(summary)
+    tried = {} if found.ground is None else {"tried": found.ground.tried}
+    obj.Data = json.dumps({**summary, **tried})
     obj.Rates = [
         f"{100.0 * one['in_tolerance']:.1f} %, rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s"
         for one in plan.rounds
@@ -158,7 +199,8 @@ def store(obj, job, found, planned):
     ]
     obj.Paths = [path.Name for path in paths_of(job)]
     obj.PathOf = commands.of_program.tolist()
-    obj.Along = _along(job, commands)
+    obj.Along = _along(plan)
+    obj.Raster = "" if found.ground is None else json.dumps(found.ground.settings)
     obj.Rapid = tuple(bool(value) for value in commands.rapid)
     new = np.where(commands.rapid, commands.feeds, plan.new[commands.group])
     factor = np.where(commands.rapid, 1.0, plan.factors[commands.group])
@@ -174,16 +216,16 @@ def store(obj, job, found, planned):
     obj.LeftTriangles = triangles.ravel().tolist()
     obj.LeftStates = states.tolist()
     result_files.store(obj, found.pictures)
-    obj.Fingerprint = planned
+    obj.Fingerprint = found.planned
     obj.Applied = obj.OutOfDate = False
 
 
-def _along(job, commands):
-    """(motions,) mm, through all programs."""
+def _along(plan):
+    """(motions,) mm that the contact goes, through all programs."""
     lengths = []
-    for path in paths_of(job):
-        steps = np.linalg.norm(np.diff(path.Proxy.contacts(path), axis=0), axis=1)
-        lengths.append(np.append(0.0, steps))
+    for number in range(len(plan.job["programs"])):
+        contacts = tool_path(plan.job, number, []).work_from_contact()[:, :3, 3]
+        lengths.append(np.append(0.0, np.linalg.norm(np.diff(contacts, axis=0), axis=1)))
     return np.cumsum(np.concatenate(lengths)).tolist()
 
 
@@ -199,8 +241,10 @@ def _left(plan):
     return points, numbers.reshape(-1, 3), states[used]
 
 
-def put_in(obj):
-    """Gives the job's paths the planned feeds and forces. Raises InputError; then nothing is changed."""
+def put_in(obj, ground=None):
+    """Gives the job's paths the planned feeds and forces, and its raster path the passes they are for. ``ground``: the
+    ``grinding.Ground``, where it is there still; else they are laid once more. Raises InputError; then nothing is
+    changed."""
     job = obj.getParentGroup()
     if not obj.Fingerprint:
         raise InputError("planning.none_yet", "{object}: nothing is planned yet", object=obj.Label)
@@ -214,6 +258,8 @@ def put_in(obj):
             "{object}: an input has changed since it was planned; plan again",
             object=obj.Label,
         )
+    if obj.Raster:
+        _lay(paths[0], obj, ground)
     owner = np.array(obj.PathOf)
     feeds, forces = np.array(obj.NewFeeds), np.array(obj.NewForces)
     forces[np.array(obj.Kept, dtype=bool)] = -1.0
@@ -225,6 +271,26 @@ def put_in(obj):
         path.recompute()
     obj.AppliedFingerprint = fingerprint(obj, job)
     obj.Proxy.update(obj)
+
+
+def _lay(path, obj, ground):
+    settings = json.loads(obj.Raster)
+    if ground is None:
+        laid = {}
+        to_job(path, PASSES, laid)
+        from_job(path, PASSES, {"raster": settings})
+        path.recompute()
+        if len(path.Feeds) != len(obj.NewFeeds):
+            from_job(path, PASSES, laid)
+            path.recompute()
+            raise InputError(
+                "planning.other_passes",
+                "{object}: its passes cannot be laid as they were planned; plan again",
+                object=path.Label,
+            )
+    else:
+        take(path, settings, ground.laid)
+    path.Proposed = False
 
 
 def write_programs(obj, folder):

@@ -6,7 +6,6 @@ from pathlib import Path
 import FreeCAD
 
 from ..engine import InputError
-from ..planning import rounds as plans
 from . import job_inputs, plan as planned, runs
 from .creation import make_child, removed_on_error
 from .job_data import child
@@ -14,7 +13,8 @@ from .job_data import child
 
 def make_plan(job, compute=True, context=None, **properties):
     """Plans the feeds (and, where ``ForceMin`` or ``ForceMax`` is set, the forces) with which the job keeps its
-    tolerance, and keeps them in its Plan object, which it returns; ``apply_plan`` puts them into the paths.
+    tolerance, with ``LayPasses`` the passes, too, and keeps them in its Plan object, which it returns; ``apply_plan``
+    puts them into the paths.
     ``compute=False`` only makes the object. ``properties``: settings (docs/planning.md) by the names of the
     properties. Raises InputError, Cancelled.
     """
@@ -24,19 +24,18 @@ def make_plan(job, compute=True, context=None, **properties):
         with nullcontext() if before else removed_on_error(obj):
             with job_inputs.scratch_folder() as folder:
                 data = job_inputs.to_data(job, folder)
-                settings = plans.validate(obj.Proxy.settings(obj))
-                fingerprint = planned.fingerprint(obj, job)
-                found = plans.plan(data, settings, context, sources=planned.sources(job))
-                planned.store(obj, job, planned.Found(found, context=context), fingerprint)
+                work = planned.Work(obj, job)
+                planned.store(obj, job, work.find(data, context))
     return obj
 
 
-def apply_plan(plan, result=None):
+def apply_plan(plan, result=None, ground=None):
     """Gives the paths of a Plan's job the planned feeds and forces, in place of their own and of one feed or force for
-    all. ``result``: the Result of the planned job, which becomes the job's; without it the job's result goes out of
-    date. Raises InputError; then nothing is changed.
+    all; where it lays passes, these, too. ``result``: the Result of the planned job, which becomes the job's; without it
+    the job's result goes out of date. ``ground``: as ``plan.put_in`` takes it. Raises InputError; then nothing is
+    changed.
     """
-    planned.put_in(plan)
+    planned.put_in(plan, ground)
     job = plan.getParentGroup()
     if result is not None:
         runs.store_result(job, result, job_inputs.fingerprint(job))

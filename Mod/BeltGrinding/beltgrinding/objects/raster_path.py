@@ -15,7 +15,7 @@ from . import job_data, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
 from .fields import field_of
 from .geometry import faces_digest
-from .properties import Key, Output, add_keys, add_outputs, to_job
+from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import type_of
 from .robot_path import RobotPath, set_arrays
 
@@ -28,6 +28,7 @@ KEYS = (
     Key("StepOverShare", "Float", "Passes", "raster.step_over_share"),
     Key("Footprint", "Enumeration", "Passes", "raster.footprint"),
     Key("Order", "Enumeration", "Passes", "raster.order"),
+    Key("Repeats", "Integer", "Passes", "raster.repeats"),
     Key("RunOut", "Distance", "Passes", "raster.run_out_mm"),
     Key("Bridge", "Length", "Passes", "raster.bridge_mm"),
     Key("MinLength", "Length", "Passes", "raster.min_length_mm"),
@@ -148,6 +149,28 @@ def generate(obj):
                 "the passes were laid anew: the feeds that were planned for the former ones are gone; plan again",
             ),
         ]
+    _take(obj, found, digest)
+
+
+def settings_of(obj):
+    """The settings of a raster path as ``raster.raster`` takes them, with its faces as the job numbers them. Raises
+    InputError."""
+    job, settings = obj.getParentGroup(), {}
+    to_job(obj, KEYS, settings)
+    settings = settings["raster"]
+    settings["region_points"] = [list(point) for point in obj.RegionPoints]
+    numbers = [job_data.face_numbers(job, part, names) for part, names in obj.Faces]
+    settings["faces"] = sorted({number for some in numbers for number in some})
+    return settings
+
+
+def take(obj, settings, found):
+    """Gives a raster path other settings, and the passes that ``raster.raster`` has laid by them."""
+    from_job(obj, KEYS, {"raster": settings})
+    _take(obj, found, _inputs(obj)[2])
+
+
+def _take(obj, found, digest):
     set_arrays(obj, found)
     obj.Language = "raster"
     obj.PassCount = len(found["passes"])
@@ -204,7 +227,9 @@ def _inputs(obj):
     settings = settings["raster"]
     settings["region_points"] = [list(point) for point in getattr(obj, "RegionPoints", [])]
     digest = faces_digest(shape.Faces[number - 1] for number in numbers)
-    text = json.dumps([data, settings, digest], sort_keys=True)
+    # Not what a document of before there were repeats has not: its passes need not be laid anew.
+    told = {key: value for key, value in settings.items() if (key, value) != ("repeats", 1)}
+    text = json.dumps([data, told, digest], sort_keys=True)
     data["design"]["brep"] = shape
     return data, settings, hashlib.sha256(text.encode()).hexdigest()
 

@@ -2,12 +2,16 @@
 
 import numpy as np
 
-from ..engine import core
+from ..engine import InputError, core
 from ..inspection import verdict as verdicts
+from ..job.workpiece import read_design
+from ..raster import raster_path, reachable
+from ..raster.clearing import Clearing
 
-GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED = range(7)
+GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED, NO_ROOM = range(8)
 WORDS = {
-    NOT_REACHED: "no_motion",  # none removes anything there
+    NOT_REACHED: "no_motion",  # none removes anything there, though the wheel fits
+    NO_ROOM: "no_room",  # none does, and the wheel would stand in the part there, however its belt travels
     BORDER: "border",  # within a contact's half width of the border of the faces
     SLOWEST: "slowest_feed",  # too much is left, and its motions go as slowly, and press as hard, as they may
     FASTEST: "fastest_feed",  # it is cut too deep, and its motions go as fast, and press as little, as they may
@@ -17,9 +21,11 @@ WORDS = {
 MOST_OF = 0.8  # of what was removed there, by motions at a limit
 AT = 1e-3  # relative, of a limit
 NEAR = 4.0  # samples from a border
+PLACES = 400  # that are looked at: does the wheel fit?
+LEAST = 5e-4  # of the area
 
 
-def find(result, commands, feeds, factors, settings):
+def find(result, commands, feeds, factors, settings, context=None):
     """dict(state (samples,) of the above, reached (samples,) bool: some motion removes something, shares: {word: of the
     area, where it is out of tolerance})."""
     field, influence = result.field, result.influence
@@ -49,8 +55,28 @@ def find(result, commands, feeds, factors, settings):
     state[(above | below) & (share(commands.kept) > MOST_OF)] = KEPT
     state[above & (total <= 0.0)] = NOT_REACHED
     whole = max(areas[seen].sum(), 1e-300)
+    missed = seen & (state == NOT_REACHED)
+    if areas[missed].sum() > LEAST * whole:
+        state[_without_room(result.job, field, np.flatnonzero(missed), context)] = NO_ROOM
     shares = {word: float(areas[seen & (state == k)].sum() / whole) for k, word in WORDS.items()}
     return {"state": state, "reached": total > 0.0, "shares": shares}
+
+
+def _without_room(job, field, places, context):
+    """Those of samples ``places`` where the undeformed wheel, leaned by up to the raster paths' default, fits no way; as the
+    nearest of ``PLACES`` that are looked at. None where that cannot be known."""
+    try:
+        shape = read_design(job["design"], context)
+        clearing = Clearing(job, shape, raster_path.validate({}), [], context)
+    except InputError:
+        return places[:0]
+    if clearing.blind:
+        return places[:0]
+    points = np.asarray(field.points, dtype=float)[places]
+    some = np.unique(np.linspace(0, len(places) - 1, PLACES).astype(int))
+    normals = np.asarray(field.normals, dtype=float)[places[some]]
+    fits = reachable.in_any_direction(clearing, points[some], normals)
+    return places[~fits[reachable.nearest(points, points[some])]]
 
 
 def _near(field, border):

@@ -70,9 +70,10 @@ def validate(settings):
     return settings
 
 
-def plan(job, settings=None, context=None, told=None, sources=None):
+def plan(job, settings=None, context=None, told=None, sources=None, start=None):
     """Plans the feeds of a validated job's programs. ``settings``: Resources/schema/plan.schema.json;
-    ``told(round)``: is called after each round with its dict; ``sources``: as ``Commands`` takes them.
+    ``told(round)``: is called after each round with its dict; ``sources``: as ``Commands`` takes them; ``start``: (feeds, factors on forces), a value a command, that the first round
+    tries in place of planning, from an earlier ``Plan`` of the same programs.
 
     Returns a ``Plan``. It is never worse than the job: where no round brings more of the area into tolerance, the old
     feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
@@ -81,7 +82,7 @@ def plan(job, settings=None, context=None, told=None, sources=None):
     settings = validate(settings or {})
     context = context or core.RunContext()
     _refuse(job, settings)
-    commands = Commands(_settled(job, context), settings, sources)
+    commands = Commands(settled(job, context), settings, sources)
     old = commands.feed()
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)
@@ -101,7 +102,9 @@ def plan(job, settings=None, context=None, told=None, sources=None):
         if best is None or _better(one, best["figures"]):
             best = _tried(one, feeds, factors, result, tried)
         ends = number + 1 == tries or stalled >= STALLED
-        if not ends:
+        if number == 0 and start is not None and not ends:
+            feeds, factors = start
+        elif not ends:
             feeds, factors, found = _next(commands, result, feeds, factors, settings, context)
             one.update(found)
         one["seconds"] = time.perf_counter() - begun
@@ -115,7 +118,9 @@ def plan(job, settings=None, context=None, told=None, sources=None):
     better = _better(best["figures"], rounds[0])
     if not better:
         best = _tried(rounds[0], old, np.ones(len(commands)), before, commands.with_feeds(old))
-    why = reasons.find(best["result"], commands, best["feeds"], best["factors"], settings)
+    why = reasons.find(
+        best["result"], commands, best["feeds"], best["factors"], settings, context.part(1.0, 1.0)
+    )
     checked = {}
     if settings["check"]:
         done = len(rounds) / whole
@@ -192,7 +197,7 @@ def force_exponent(job):
     return float(law["pressure_exponent"]) if law["model"] == "local" else 1.0
 
 
-def _settled(job, context):
+def settled(job, context):
     """The job with its spacing chosen, so that all rounds have the same samples."""
     if job["sampling"]["spacing_mm"] != 0:
         return job

@@ -89,9 +89,42 @@ def raster(job, settings, context=None):
     result["reachable"] = reachable.told(result["places"], settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
     warnings += result["check"]["problems"]
+    _repeat(result, settings["repeats"], clearing, warnings)
     result.update(along=settings["along"], direction=settings["direction"], tried=tried)
     result["warnings"] = warnings
     return result
+
+
+def _repeat(result, count, clearing, warnings):
+    """Has all passes of a path run through ``count`` times, from the end back to the beginning as from pass to pass."""
+    if count == 1:
+        return
+    if clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
+        warnings.append(
+            core.Fact(
+                "raster.way_back_blocked",
+                "from the end of the passes straight back to their beginning the wheel goes through the part; lead the "
+                "robot there by hand, or enlarge clearance_mm",
+            )
+        )
+    poses, once = len(result["frames"]), result["passes"]
+    if poses * count > MOST_POSES:
+        raise InputError(
+            "raster.too_many_repeats",
+            "{key}: the passes run through {count} times have more than {poses} poses",
+            key="raster.repeats",
+            count=count,
+            poses=MOST_POSES,
+        )
+    for name in ("contacts", "frames"):
+        result[name] = np.tile(result[name], (count, 1, 1))
+    for name in ("feeds", "forces", "rapid", "contact", "lines", "zones", "fit"):
+        result[name] = np.tile(result[name], count)
+    result["passes"] = [
+        {**one, "first": one["first"] + k * poses, "last": one["last"] + k * poses}
+        for k in range(count)
+        for one in once
+    ]
 
 
 def _laid(job, shape, faces, settings, warnings, context, fill=True):

@@ -43,6 +43,7 @@ MENU = (  # the same steps and what else belongs to each, divided
         results.Playback,
         results.Contact,
         results.Plan,
+        results.GrindFaces,
         report.CheckSettings,
     ),
     (

@@ -9,6 +9,7 @@ from ..common.compat import translate
 from ..common.transaction import transaction
 from ..panels.panel import edit
 from .base import Command, active_job
+from .set_up import new_job
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -43,6 +44,35 @@ class Plan(Command):
             if step.failed:
                 return
         show(obj)
+
+
+class GrindFaces(Command):
+    NAME = "BeltGrinding_GrindFaces"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_GrindFaces", "Grind these faces...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_GrindFaces",
+        "Lays passes on the selected faces, or the job's, and plans their feeds and forces, until they are in "
+        "tolerance, or says why not",
+    )
+    NEEDS_JOB = False
+
+    def IsActive(self):
+        return FreeCAD.ActiveDocument is not None and super().IsActive()
+
+    def run(self):
+        from ..panels.plan_panel import show
+
+        job = active_job()
+        if job is None:
+            job = new_job()
+            if job is None:
+                return
+            job.Document.commitTransaction()
+        with transaction(job.Document, translate("BeltGrinding", "Plan")) as step:
+            plan.passes_of(job)
+            obj = api.make_plan(job, compute=False, LayPasses=True)
+        if not step.failed:
+            show(obj, True)
 
 
 class Deviation(Command):

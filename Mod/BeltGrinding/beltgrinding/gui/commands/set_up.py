@@ -26,26 +26,32 @@ class NewJob(Command):
         return FreeCAD.ActiveDocument is not None and not Gui.Control.activeDialog()
 
     def run(self):
-        document = FreeCAD.ActiveDocument
-        links = []
-        for one in Gui.Selection.getSelectionEx(document.Name):
-            if hasattr(one.Object, "Shape") and one.Object.Shape.Faces:
-                links.append((one.Object, [s for s in one.SubElementNames if s.startswith("Face")]))
-            elif hasattr(one.Object, "Mesh"):
-                links.append((one.Object, []))
-        if not links:
-            raise InputError(
-                "gui.select_faces", "Select the faces to be ground, the part, or a mesh, first."
-            )
-        with transaction(
-            document, translate("BeltGrinding", "New grinding job"), panel=True
-        ) as step:
-            job = api.make_job(links, **preferences.job_defaults())
-            text = translate("BeltGrinding", "Looking at the part for first values")
-            job.Proxy.proposed = api.set_up(job, text)
-        if not step.failed:
-            expand(job)
+        job = new_job()
+        if job is not None:
             edit(job)
+
+
+def new_job():
+    """A job of the selected faces, with first values; None where it failed, which is told then. Raises InputError."""
+    document = FreeCAD.ActiveDocument
+    links = []
+    for one in Gui.Selection.getSelectionEx(document.Name):
+        if hasattr(one.Object, "Shape") and one.Object.Shape.Faces:
+            links.append((one.Object, [s for s in one.SubElementNames if s.startswith("Face")]))
+        elif hasattr(one.Object, "Mesh"):
+            links.append((one.Object, []))
+    if not links:
+        raise InputError(
+            "gui.select_faces", "Select the faces to be ground, the part, or a mesh, first."
+        )
+    with transaction(document, translate("BeltGrinding", "New grinding job"), panel=True) as step:
+        job = api.make_job(links, **preferences.job_defaults())
+        text = translate("BeltGrinding", "Looking at the part for first values")
+        job.Proxy.proposed = api.set_up(job, text)
+    if step.failed:
+        return None
+    expand(job)
+    return job
 
 
 class _Child(Command):

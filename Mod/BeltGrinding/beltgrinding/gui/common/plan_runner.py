@@ -2,7 +2,6 @@
 
 from ...engine import Cancelled
 from ...objects import plan as planned
-from ...planning import pictures, rounds as plans
 from .compat import translate
 from .runner import Runner
 
@@ -14,6 +13,7 @@ def words():
         "after": translate("BeltGrinding", "as planned"),
         "why": translate("BeltGrinding", "why it stays out of tolerance"),
         "no_motion": translate("BeltGrinding", "no motion removes anything there"),
+        "no_room": translate("BeltGrinding", "the wheel does not fit there"),
         "border": translate("BeltGrinding", "along the border of the faces"),
         "slowest_feed": translate("BeltGrinding", "too much left at the least feed"),
         "fastest_feed": translate("BeltGrinding", "cut too deep at the greatest feed"),
@@ -23,20 +23,17 @@ def words():
 
 
 class PlanRunner(Runner):
-    """``done(planning.Plan or None, error or None)`` follows in the end; ``rounds`` grows while it runs. The Plan
+    """``done(plan.Found or None, error or None)`` follows in the end; ``rounds`` grows while it runs. The Plan
     object is written in one undo step, in the end. Raises InputError for what is missing."""
 
     def __init__(self, obj, progress, done):
         self.plan, self.rounds, self.words = obj.Name, [], words()
         job = obj.getParentGroup()
-        self.settings = plans.validate(obj.Proxy.settings(obj))
-        self.sources = planned.sources(job)
-        self.planned = planned.fingerprint(obj, job)
+        self.task = planned.Work(obj, job)
         super().__init__(job, progress, done)
 
     def work(self, context):
-        found = plans.plan(self.data, self.settings, context, self.rounds.append, self.sources)
-        return planned.Found(found, self.words, context)
+        return self.task.find(self.data, context, self.rounds.append, self.words)
 
     def _store(self, found):
         job = self.job()
@@ -45,10 +42,10 @@ class PlanRunner(Runner):
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
         self.document.openTransaction(translate("BeltGrinding", "Plan"))
         try:
-            planned.store(obj, job, found, self.planned)
+            planned.store(obj, job, found)
             obj.Proxy.update(obj)  # an input may have changed while it ran
             self.document.commitTransaction()
         except BaseException:
             self.document.abortTransaction()
             raise
-        return found.plan
+        return found

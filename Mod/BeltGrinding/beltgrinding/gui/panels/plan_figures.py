@@ -60,26 +60,19 @@ class PlanFigures(QtGui.QWidget):
         """The rounds so far, as ``planning.Plan.rounds``."""
         self.rounds.setVisible(bool(rounds))
         self.rounds.setRowCount(len(rounds))
+        number = 0
         for row, one in enumerate(rounds):
-            name = str(row) if row else translate("BeltGrinding", "now")
-            if "levels" in one:
-                name = translate("BeltGrinding", "{} feeds").format(one["levels"])
-            unit = preferences.deviation_unit()
-            rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
-            texts = (
-                name,
-                f"{100.0 * one['in_tolerance']:.1f} %",
-                rms,
-                f"{one['process_time_s']:.1f} s",
-            )
-            for column, text in enumerate(texts):
-                self.rounds.setItem(row, column, QtGui.QTableWidgetItem(text))
+            for column, text in enumerate(_round(number, one)):
+                item = QtGui.QTableWidgetItem(text)
+                item.setToolTip(_passes(one))
+                self.rounds.setItem(row, column, item)
+            number += "change" not in one
         _fit(self.rounds)
 
     def show_plan(self, obj):
         """What a Plan object holds."""
         self.obj, data = obj, obj.Proxy.data(obj)
-        self.show_rounds(data["rounds"])
+        self.show_rounds([*data.get("tried", []), *data["rounds"]])
         told = data["checked"] or data
         before, after = told["before"], told["after"]
 
@@ -144,6 +137,32 @@ class PlanFigures(QtGui.QWidget):
         body.addWidget(label)
         body.addWidget(chart)
         window.show()
+
+
+def _round(number, one):
+    """The texts of a row: a round of a plan, or passes that were tried."""
+    share = f"{100.0 * one['in_tolerance']:.1f} %"
+    if "change" in one:
+        name = f"{one['step_over_mm']:.3g} mm"
+        if one["repeats"] > 1:
+            name += f" × {one['repeats']}"
+        return name, share, "", ""
+    name = str(number) if number else translate("BeltGrinding", "now")
+    if "levels" in one:
+        name = translate("BeltGrinding", "{} feeds").format(one["levels"])
+    unit = preferences.deviation_unit()
+    rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
+    return name, share, rms, f"{one['process_time_s']:.1f} s"
+
+
+def _passes(one):
+    """What a row of passes that were tried says in full."""
+    if "change" not in one:
+        return ""
+    text = translate(
+        "BeltGrinding", "Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses"
+    )
+    return text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
 
 
 class _Picture(QtGui.QLabel):

@@ -30,7 +30,7 @@ class PlanPanel(RunPanel):
         super().__init__(
             obj.getParentGroup(), translate("BeltGrinding", "Plan"), "BeltGrinding_Plan"
         )
-        self.obj, self.document, self.result = obj, obj.Document, None
+        self.obj, self.document, self.found = obj, obj.Document, None
         body = QtGui.QVBoxLayout(self.form)
         body.addWidget(self._limits())
         body.addWidget(self._rounds())
@@ -71,6 +71,8 @@ class PlanPanel(RunPanel):
         if self.obj.getParentGroup() is not None and self._by_force():
             box.add("ForceMin", translate("BeltGrinding", "Least force"))
             box.add("ForceMax", translate("BeltGrinding", "Greatest force"))
+        if self._has_passes():
+            box.add("LayPasses", translate("BeltGrinding", "Lay the passes anew"))
         levels = box.add("Levels", translate("BeltGrinding", "Different feeds"))
         levels.setMaximum(10_000)
         levels.setSpecialValueText(translate("BeltGrinding", "any number"))
@@ -89,6 +91,12 @@ class PlanPanel(RunPanel):
         box.changed = self._changed
         self.limits = box
         return box
+
+    def _has_passes(self):
+        try:
+            return planned.passes_of(self.job) is not None
+        except InputError:
+            return False
 
     def _by_force(self):
         from ...objects.belt_machine import BeltMachine
@@ -114,7 +122,7 @@ class PlanPanel(RunPanel):
     def start(self):
         self._commit()
         self.fold.fold(True)
-        self.result = None
+        self.found = None
         self.document.recompute()
         super().start()
 
@@ -134,8 +142,8 @@ class PlanPanel(RunPanel):
             self._open()
 
     def show(self, found):
-        """Shows the plan that the document has. ``found``: the ``planning.Plan``, if it was made just now."""
-        self.result = None if found is None else found.after
+        """Shows the plan that the document has. ``found``: the ``plan.Found``, if it was made just now."""
+        self.found = found
         self._arrange(False)
         obj = self.obj
         if not obj.Fingerprint:
@@ -172,8 +180,12 @@ class PlanPanel(RunPanel):
         self._commit()
         made = child(self.job, Deviation) is None
         with transaction(self.document, translate("BeltGrinding", "Apply plan")) as step:
-            api.apply_plan(self.obj, self.result)
-            if self.result is not None and made:
+            found = self.found
+            if found is None:
+                api.apply_plan(self.obj)
+            else:
+                api.apply_plan(self.obj, found.plan.after, found.ground)
+            if found is not None and made:
                 lay_deviation(self.job)
         self._open()
         if not step.failed:
@@ -258,7 +270,10 @@ class PlanPanel(RunPanel):
         return super().reject()
 
 
-def show(obj):
-    """Opens the panel of a Plan object."""
+def show(obj, run=False):
+    """Opens the panel of a Plan object; ``run``: and plans."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(PlanPanel(obj))
+        panel = PlanPanel(obj)
+        Gui.Control.showDialog(panel)
+        if run:
+            panel.start()

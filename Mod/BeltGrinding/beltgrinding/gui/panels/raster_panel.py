@@ -153,6 +153,7 @@ class RasterPanel(Panel):
         }
         form.add("Footprint", translate("BeltGrinding", "Contact width"), footprints)
         form.add("Order", translate("BeltGrinding", "Order"), order)
+        form.add("Repeats", translate("BeltGrinding", "Run through, times"))
         form.add("RunOut", translate("BeltGrinding", "Run-out at borders"))
         form.add("Bridge", translate("BeltGrinding", "Bridge gaps up to"))
         form.changed = self.changed

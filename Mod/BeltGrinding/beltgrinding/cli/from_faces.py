@@ -1,0 +1,161 @@
+"""From faces to a program that grinds them into tolerance."""
+
+from pathlib import Path
+
+from . import background, outputs, plan, settings
+from .messages import print_text
+
+PROGRAM = "raster.src"
+
+
+def add(commands):
+    """Adds the command to the parser's ``commands``."""
+    grind = commands.add_parser(
+        "grind",
+        help="lay passes on faces and plan feeds and forces that bring them into tolerance (docs/planning.md)",
+        description="Lays passes on the faces, plans their feeds and forces, and tries other passes where that is not "
+        "enough. A part's file alone gets a wheel and a force that suit its faces; a job.json has its own.",
+    )
+    grind.add_argument("part", help="job.json, or the file of a part")
+    grind.add_argument("-o", "--output", required=True, help="folder for program, job and result")
+    grind.add_argument("--faces", metavar="N,...", help="faces from 1, as `beltgrind faces` lists")
+    grind.add_argument(
+        "--stock", type=float, metavar="MM", help="of a part's file: stock on the faces, 0.3 if not given"
+    )
+    grind.add_argument(
+        "--tolerance", nargs=2, type=float, metavar="MM", help="lower and upper limit, mm"
+    )
+    grind.add_argument("--raster", metavar="FILE", help="JSON file of the first passes' settings")
+    grind.add_argument("--settings", help="JSON file of the plan's settings")
+    for option, what in (("--set-raster", "the first passes"), ("--set", "the plan")):
+        text = f"one setting of {what}; as JSON"
+        grind.add_argument(option, action="append", default=[], metavar="KEY=VALUE", help=text)
+    grind.add_argument(
+        "--program",
+        default=PROGRAM,
+        metavar="NAME",
+        help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
+    )
+    grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outputs.add(grind)
+    grind.set_defaults(do=_grind)
+
+
+def _grind(arguments):
+    from ..engine import InputError
+    from ..planning import apply, grinding, rounds as plans
+    from ..raster import raster_path
+
+    if Path(arguments.program).name != arguments.program:
+        raise InputError(
+            "cli.program_name",
+            "--program {name}: give a name, not a path; it is written into the output folder",
+            name=arguments.program,
+        )
+    wanted = plans.validate(settings.given(arguments.settings, arguments.set))
+    passes = settings.given(arguments.raster, arguments.set_raster, "--set-raster")
+    raster_path.validate(passes)
+
+    def told(one):
+        if not arguments.quiet:
+            print_text(_line(one) if "change" in one else plan.line(one))
+
+    def work(context):
+        job, first = _job(arguments, context)
+        apply.check({**job, "programs": []}, arguments.output, [arguments.part], arguments.force)
+        return grinding.grind(job, {**first, **passes}, wanted, context, told)
+
+    found = background.run(work, arguments.quiet)
+    apply.write(found.plan, arguments.output, [arguments.part], arguments.force)
+    arguments.messages.print_warnings(found.laid["warnings"])
+    notes = _write_program(found.plan, Path(arguments.output, arguments.program), arguments.force)
+    arguments.messages.print_notes(notes)
+    if not arguments.quiet:
+        print_text(plan.text(plans.summary(found.plan)))
+        print_text(f"program, job and result in {arguments.output}")
+
+
+def _job(arguments, context):
+    """(validated job, first settings of its raster)."""
+    from ..engine import InputError
+    from ..job import load as jobs
+    from ..raster import proposal, raster_path
+
+    faces = _faces(arguments.faces)
+    if Path(arguments.part).suffix.lower() == ".json":
+        if arguments.stock is not None:
+            raise InputError("cli.stock_of_job", "--stock is for a part's file; the job has its own")
+        job, first = raster_path.load_job(arguments.part), {}
+        if faces:
+            job["design"]["faces"] = faces
+        return _with_tolerance(job, arguments), first
+    given = {
+        "design": {"file": arguments.part, **({"faces": faces} if faces else {})},
+        "stock": {"allowance_mm": 0.3 if arguments.stock is None else arguments.stock},
+        "programs": [{"poses": []}],
+    }
+    job = jobs.validate(given, Path.cwd())
+    seen = proposal.propose(job, context.part(0.0, 0.0))
+    given["sampling"] = {"spacing_mm": seen["spacing_mm"]}
+    given["belt_machine"] = {
+        "wheel": {"radius_mm": seen["wheel_radius_mm"], "width_mm": seen["wheel_width_mm"]},
+        "compliance": {"rim_thickness_mm": seen["rim_thickness_mm"]},
+        "force_N": seen["force_N"],
+    }
+    first = {
+        "along": "direction",
+        "direction": seen["direction"],
+        "step_over_share": seen["step_over_share"],
+        "feed_mm_s": seen["feed_mm_s"],
+        "approach_feed_mm_s": seen["approach_feed_mm_s"],
+    }
+    arguments.messages.print_warnings(seen["notes"])
+    return _with_tolerance(jobs.validate(given, Path.cwd()), arguments), first
+
+
+def _with_tolerance(job, arguments):
+    if arguments.tolerance:
+        job["inspection"]["tolerance_mm"] = list(arguments.tolerance)
+    return job
+
+
+def _faces(text):
+    from ..engine import InputError
+
+    try:
+        return [int(part) for part in text.split(",")] if text else []
+    except ValueError:
+        raise InputError(
+            "cli.faces", "--faces {given}: write numbers from 1, as 3,4,9", given=text
+        ) from None
+
+
+def _line(one):
+    better = "" if one["better"] else " (not better)"
+    return (
+        f"passes {one['step_over_mm']:.2f} mm apart, run-out {one['run_out_mm']:.2f} mm, {one['repeats']} times, "
+        f"{one['poses']} poses: {100 * one['in_tolerance']:.1f} % in tolerance{better}"
+    )
+
+
+def _write_program(found, file, force):
+    import os
+
+    from ..base.files import cannot_be_written
+    from ..engine import InputError
+    from ..job.poses import listed_poses
+    from ..programs.writers.writer import write_program
+    from ..raster import raster_path
+    from .program import _frame_words
+
+    if os.path.lexists(file) and not force and not (file.parent / "plan.json").exists():
+        raise InputError(
+            "planning.not_of_a_plan",
+            "{file}: is there already, and no plan has written it; choose another folder, or replace it by --force",
+            file=file,
+        )
+    laid = listed_poses(found.job["programs"][0]["poses"], "raster")
+    try:
+        return write_program(file, None, raster_path.program(laid, **_frame_words(found.job)))
+    except OSError as error:
+        raise cannot_be_written(file, error) from None

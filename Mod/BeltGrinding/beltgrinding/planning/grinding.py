@@ -1,0 +1,159 @@
+"""From faces to a path and its feeds: passes are laid, their feeds planned, and where that is not enough other passes
+are tried, by why what is out of tolerance stays so.
+
+Passes that are tried are simulated with few rounds, coarsely where samples are many; those that bring most of the area into tolerance are planned
+as the settings say. It is a search by hand's rules, no proof that nothing is better.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..inspection import verdict as verdicts
+from ..job import poses
+from ..raster import raster_path
+from ..simulation import convergence
+from . import reasons, rounds
+
+QUICK = {"rounds": 3, "check": False, "levels": 0}
+TRIES = 6  # passes, at most
+MOST_SAMPLES = 60_000  # finer ones are simulated at twice the spacing, for passes that are tried
+GAIN = 0.003  # of the area, for other passes to be better
+MATTERS = 0.01  # of the area: a reason for less is let be
+CLOSER = 0.7  # step-over against the one before
+CLOSEST = 0.2  # of the contact's width
+MOST_POSES = 20_000
+MOST_REPEATS = 20
+MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
+GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
+FINAL = 0.5  # of the time: the last plan
+
+
+class Ground(NamedTuple):
+    """Passes and their plan."""
+
+    settings: dict  # of the raster
+    laid: dict  # as ``raster_path.raster`` gives it
+    plan: rounds.Plan
+    tried: list  # of dicts: change, step_over_mm, repeats, run_out_mm, poses, in_tolerance, better
+
+
+def grind(job, raster_settings=None, settings=None, context=None, told=None):
+    """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
+    if the machine keeps a force: down to ``GENTLE`` of the job's where ``force_min_N`` is not given, never up unless
+    ``force_max_N`` is. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
+    ``tried``, then as rounds of the plan.
+
+    Returns a ``Ground``. Raises InputError, Cancelled.
+    """
+    context = context or core.RunContext()
+    settings = _with_forces(job, rounds.validate(settings or {}))
+    best, tried = None, []
+    queue = [("first", raster_path.validate(raster_settings or {}))]
+    seen = set()
+    while queue and len(tried) < TRIES:
+        change, wanted = queue.pop(0)
+        key = repr(sorted(wanted.items(), key=lambda item: item[0]))
+        if key in seen:
+            continue
+        seen.add(key)
+        begun = len(tried) / TRIES * (1.0 - FINAL)
+        part = context.part(begun, begun + (1.0 - FINAL) / TRIES)
+        try:
+            one = _try(job, wanted, settings, part)
+        except InputError:
+            if best is None:
+                raise
+            continue  # no such passes on these faces
+        better = best is None or one["in_tolerance"] > best["in_tolerance"] + GAIN
+        tried.append(
+            {
+                "change": change,
+                "step_over_mm": one["laid"]["step_over_mm"],
+                "repeats": one["wanted"]["repeats"],
+                "run_out_mm": one["wanted"]["run_out_mm"],
+                "poses": len(one["laid"]["frames"]),
+                "in_tolerance": one["in_tolerance"],
+                "better": better,
+            }
+        )
+        if told is not None:
+            told(tried[-1])
+        if better:
+            best = one
+            queue = _others(one)
+    context.report(1.0 - FINAL)
+    found = rounds.plan(
+        _with_path(job, best["laid"]),
+        settings,
+        context.part(1.0 - FINAL, 1.0),
+        told,
+        start=(best["plan"].new, best["plan"].factors),
+    )
+    return Ground(best["wanted"], best["laid"], found, tried)
+
+
+def _with_forces(job, settings):
+    machine = job["belt_machine"]
+    if machine["control"] == "force" and settings["force_min_N"] == 0.0:
+        settings = {**settings, "force_min_N": GENTLE * machine["force_N"]}
+    return settings
+
+
+def _with_path(job, laid):
+    """The job with the passes as its only program."""
+    return {**job, "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}]}
+
+
+def _try(job, wanted, settings, context):
+    laid = raster_path.raster(job, wanted, context.part(0.0, 0.2))
+    # The way is found once: other passes go the same.
+    wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
+    tried = rounds.settled(_with_path(job, laid), context)
+    if laid["area_mm2"] > MOST_SAMPLES * tried["sampling"]["spacing_mm"] ** 2:
+        tried = convergence.scaled(tried, "coarse")
+    plan = rounds.plan(tried, {**settings, **QUICK}, context.part(0.2, 1.0))
+    share = max(one["in_tolerance"] for one in plan.rounds)
+    return {"wanted": wanted, "laid": laid, "plan": plan, "in_tolerance": share}
+
+
+def _others(one):
+    """[(what changes, settings)] that may mend what is out of tolerance, the likeliest first."""
+    wanted, laid, shares = one["wanted"], one["laid"], one["plan"].why["shares"]
+    found = []
+    if shares["slowest_feed"] > MATTERS:
+        repeats = min(_repeats(one), MOST_REPEATS)
+        if repeats > wanted["repeats"] and len(laid["frames"]) * repeats <= MOST_POSES * max(
+            wanted["repeats"], 1
+        ):
+            share = shares["slowest_feed"]
+            found.append((share, "repeats", {**wanted, "repeats": repeats}))
+    width = laid["contact_width_mm"]
+    between = shares["shared"] + shares["border"]
+    closer = CLOSER * laid["step_over_mm"]
+    if between > MATTERS and len(laid["frames"]) / CLOSER <= MOST_POSES:
+        if width is None or closer >= CLOSEST * width:
+            found.append((shares["shared"], "step_over", {**wanted, "step_over_mm": closer}))
+    if shares["border"] > MATTERS:
+        length = laid["contact_length_mm"]
+        for run_out in (0.25 * length, -0.25 * length):
+            other = {**wanted, "run_out_mm": round(wanted["run_out_mm"] + run_out, 3)}
+            found.append((0.9 * shares["border"], "run_out", other))
+    return [(name, settings) for _, name, settings in sorted(found, key=lambda one: -one[0])]
+
+
+def _repeats(one):
+    """How often the passes must be run through so that what is not done at the least feed is."""
+    plan, now = one["plan"], one["wanted"]["repeats"]
+    field = plan.after.field
+    left = plan.why["state"] == reasons.SLOWEST
+    lower, upper = verdicts.limits(plan.after.job, field)
+    stock = np.asarray(field.stock_height, dtype=float)
+    height = np.asarray(field.height, dtype=float)
+    needed, removed = (stock - 0.5 * (lower + upper))[left], (stock - height)[left]
+    ratios = np.sort(needed / np.maximum(removed, 1e-6))
+    if not len(ratios):
+        return now
+    return max(now + 1, math.ceil(now * float(ratios[int(MOST_OF * (len(ratios) - 1))])))

@@ -77,11 +77,15 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     plan = json.loads((out / "plan.json").read_text())
     assert plan["after"]["in_tolerance"] > 0.7, plan
     job = json.loads((out / "job.json").read_text())
-    rows = [r for r in csv.reader((out / "plate.csv").read_text().splitlines()) if r and r[0][0] != "#"]
+    rows = [
+        r for r in csv.reader((out / "plate.csv").read_text().splitlines()) if r and r[0][0] != "#"
+    ]
     assert len(rows) - 1 == len(job["programs"][0]["poses"])
     assert cli.main(["run", str(out / "job.json"), "-o", str(tmp_path / "again"), "-q"]) == 0
     again = json.loads((tmp_path / "again" / "summary.json").read_text())
-    assert again["in_tolerance_area_share"] == pytest.approx(plan["after"]["in_tolerance"], abs=1e-9)
+    assert again["in_tolerance_area_share"] == pytest.approx(
+        plan["after"]["in_tolerance"], abs=1e-9
+    )
     # Its own files may be replaced, others not.
     assert cli.main(begin) == 0
     (out / "plan.json").write_text("{}")

@@ -20,7 +20,10 @@ def add(commands):
     grind.add_argument("-o", "--output", required=True, help="folder for program, job and result")
     grind.add_argument("--faces", metavar="N,...", help="faces from 1, as `beltgrind faces` lists")
     grind.add_argument(
-        "--stock", type=float, metavar="MM", help="of a part's file: stock on the faces, 0.3 if not given"
+        "--stock",
+        type=float,
+        metavar="MM",
+        help="of a part's file: stock on the faces, 0.3 if not given",
     )
     grind.add_argument(
         "--tolerance", nargs=2, type=float, metavar="MM", help="lower and upper limit, mm"
@@ -84,7 +87,9 @@ def _job(arguments, context):
     faces = _faces(arguments.faces)
     if Path(arguments.part).suffix.lower() == ".json":
         if arguments.stock is not None:
-            raise InputError("cli.stock_of_job", "--stock is for a part's file; the job has its own")
+            raise InputError(
+                "cli.stock_of_job", "--stock is for a part's file; the job has its own"
+            )
         job, first = raster_path.load_job(arguments.part), {}
         if faces:
             job["design"]["faces"] = faces

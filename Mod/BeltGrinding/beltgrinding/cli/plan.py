@@ -1,6 +1,6 @@
 """Planning a job's feeds."""
 
-from . import background, outputs, settings
+from . import background, outputs, plan_batch, settings
 from .messages import print_text
 
 
@@ -17,6 +17,7 @@ def add(commands):
     plan.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
+    plan_batch.add(plan)
     plan.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(plan)
     plan.set_defaults(do=_plan)
@@ -25,23 +26,40 @@ def add(commands):
 def _plan(arguments):
     from ..job import inputs, load as jobs
     from ..planning import apply, rounds as plans
+    from ..scan import stock as scan_stock
 
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     job = jobs.load(arguments.job)
-    read = [arguments.job, *inputs.files(job)]
-    apply.check(job, arguments.output, read, arguments.force)
+    read = [arguments.job, *arguments.stock, *inputs.files(job)]
 
     def told(one):
         if not arguments.quiet:
             print_text(line(one))
 
-    found = background.run(lambda context: plans.plan(job, wanted, context, told), arguments.quiet)
-    written, warnings = apply.write(found, arguments.output, read, arguments.force)
-    arguments.messages.print_warnings(warnings)
-    if not arguments.quiet:
-        print_text(text(plans.summary(found)))
-        names = ", ".join(written) if written else "poses in job.json"
-        print_text(f"programs: {names}; results in {arguments.output}")
+    def one_part(scan, folder, options):
+        """(Plan, alignment or None) of a part with its own stock; written into the folder."""
+        apply.check(job, folder, read, arguments.force)
+
+        def work(context):
+            mine, laid = job, None
+            if scan is not None:
+                mine, laid = scan_stock.as_stock(
+                    job, scan, **options, context=context.part(0.0, 0.0)
+                )
+                if laid is not None:
+                    arguments.messages.print_warnings(laid["warnings"])
+            return plans.plan(mine, wanted, context, told), laid
+
+        found, laid = background.run(work, arguments.quiet)
+        written, warnings = apply.write(found, folder, read, arguments.force)
+        arguments.messages.print_warnings(warnings)
+        if not arguments.quiet:
+            print_text(text(plans.summary(found)))
+            names = ", ".join(written) if written else "poses in job.json"
+            print_text(f"programs: {names}; results in {folder}")
+        return found, laid
+
+    plan_batch.each(arguments, one_part)
 
 
 def line(one):

@@ -104,7 +104,10 @@ def _with_forces(job, settings):
 
 def _with_path(job, laid):
     """The job with the passes as its only program."""
-    return {**job, "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}]}
+    return {
+        **job,
+        "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}],
+    }
 
 
 def _try(job, wanted, settings, context):

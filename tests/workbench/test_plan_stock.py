@@ -12,6 +12,7 @@ from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.raster import raster_path
 from beltgrinding.scan import stock as scan_stock
+from beltgrinding.simulation import run as runs
 from test_ground_mesh import block_job
 from test_scan import motion, pytestmark  # noqa: F401
 
@@ -80,11 +81,9 @@ def test_a_scan_is_laid_on_what_is_not_ground(given, tmp_path):
     assert job["stock"]["kind"] == "mesh" and found["converged"]
     matrix = frames.from_data(job["stock"]["placement"])
     assert np.allclose(matrix @ MOVED, np.eye(4), atol=0.02), matrix @ MOVED
-    from beltgrinding.simulation import run as runs
-
     field = runs.run(job).field
-    expected = wave(0.1)(np.asarray(field.points)[:, 0], 0.0)
-    inside = np.abs(np.asarray(field.points)[:, 0] - 30.0) < 28.0
+    x, y = np.asarray(field.points)[:, :2].T
+    expected, inside = wave(0.1)(x, y), (abs(x - 30.0) < 28.0) & (abs(y - 20.0) < 18.0)
     assert np.abs(np.asarray(field.stock_height)[inside] - expected[inside]).max() < 0.02
 
 
@@ -116,7 +115,12 @@ def test_each_part_of_a_batch_gets_its_own_program(given, tmp_path, capsys):
     assert all(float(r["in_tolerance"]) > float(r["before_in_tolerance"]) + 0.1 for r in rows), rows
     assert all(row["trusted"] in ("True", "False") and not row["error"] for row in rows)
     feeds = [
-        [p["feed_mm_s"] for p in json.loads((tmp_path / "out" / n / "job.json").read_text())["programs"][0]["poses"]]
+        [
+            p["feed_mm_s"]
+            for p in json.loads((tmp_path / "out" / n / "job.json").read_text())["programs"][0][
+                "poses"
+            ]
+        ]
         for n in "ab"
     ]
     assert feeds[0] != feeds[1]
@@ -124,7 +128,9 @@ def test_each_part_of_a_batch_gets_its_own_program(given, tmp_path, capsys):
     capsys.readouterr()
     out = tmp_path / "one"
     assert cli.main([*begin[:3], str(out), *QUICK, "--stock", str(scans[0])]) == 0
-    assert json.loads((out / "plan.json").read_text()) is not None and not (out / "parts.csv").exists()
+    assert (
+        json.loads((out / "plan.json").read_text()) is not None and not (out / "parts.csv").exists()
+    )
 
 
 def test_a_part_that_fails_stops_no_other(given, tmp_path, capsys):

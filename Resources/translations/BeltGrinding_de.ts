@@ -1371,6 +1371,14 @@
         <source>the passes are laid anew, too: step-over, run-out, how often they are run through</source>
         <translation>auch die Bahnen werden neu gelegt: Zustellung, Auslauf, wie oft sie durchlaufen werden</translation>
     </message>
+    <message>
+        <source>time: of the area, that must be in tolerance; 0: as much as can be, but for 0.002</source>
+        <translation>time: von der Fläche, was in Toleranz sein muss; 0: so viel wie möglich, bis auf 0,002</translation>
+    </message>
+    <message>
+        <source>tolerance: as much of the area in tolerance as can be; time: the shortest grind that still has wanted_share</source>
+        <translation>tolerance: so viel der Fläche in Toleranz wie möglich; time: die kürzeste Bearbeitung, die wanted_share noch hat</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -4039,6 +4047,22 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses</source>
         <translation>Bahnen im Abstand von {:.3g} mm, Auslauf {:.3g} mm, {}-mal durchlaufen, {} Posen</translation>
+    </message>
+    <message>
+        <source>Goal</source>
+        <translation>Ziel</translation>
+    </message>
+    <message>
+        <source>In tolerance, share</source>
+        <translation>Anteil in Toleranz</translation>
+    </message>
+    <message>
+        <source>most in tolerance</source>
+        <translation>möglichst viel in Toleranz</translation>
+    </message>
+    <message>
+        <source>shortest time</source>
+        <translation>kürzeste Zeit</translation>
     </message>
 </context>
 <context>

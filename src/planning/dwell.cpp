@@ -73,7 +73,7 @@ class Cost {
 struct Variables {
     std::vector<std::uint32_t> motion;
     std::vector<char> chained;  // k and k + 1 are neighbours
-    Eigen::ArrayXd lower, upper, pace;
+    Eigen::ArrayXd lower, upper, pace, time_cost;
 
     explicit Variables(const DwellProblem& p) {
         for (std::size_t j = 0; j < p.influence->motions(); ++j) {
@@ -86,6 +86,7 @@ struct Variables {
         lower.resize(n);
         upper.resize(n);
         pace.resize(n);
+        time_cost = Eigen::ArrayXd::Zero(n);
         chained.assign(motion.size(), 0);
         for (Eigen::Index v = 0; v < n; ++v) {
             const auto at = static_cast<std::size_t>(v);
@@ -93,6 +94,7 @@ struct Variables {
             lower[v] = p.lower[j];
             upper[v] = p.upper[j];
             pace[v] = p.pace[j];
+            if (p.time_cost.size() > 0) time_cost[v] = p.time_cost[j];
             chained[at] = static_cast<char>(v + 1 < n && motion[at + 1] == motion[at] + 1 &&
                                             p.pace[j] > 0.0 && p.pace[j + 1] > 0.0);
         }
@@ -176,13 +178,13 @@ class Interior {
             const double step = v_.pace[k + 1] * x[k + 1] - v_.pace[k] * x[k];
             sum += step * step;
         }
-        return cost_.value(e) + 0.5 * smoothing_ * sum;
+        return cost_.value(e) + 0.5 * smoothing_ * sum + (v_.time_cost * x).sum();
     }
     /// Sets value and gradient at x.
     void look() {
         value_ = value(x_, e_);
         Eigen::ArrayXd& g = gradient_;
-        g = -normal_.transposed(cost_.slope(e_));
+        g = v_.time_cost - normal_.transposed(cost_.slope(e_));
         for (Eigen::Index k = 0; k + 1 < x_.size(); ++k) {
             if (v_.chained[static_cast<std::size_t>(k)] == 0) continue;
             const double step = smoothing_ * (v_.pace[k + 1] * x_[k + 1] - v_.pace[k] * x_[k]);
@@ -306,6 +308,9 @@ void DwellProblem::validate() const {
     refuse_unless(lower.size() == motions && lower.allFinite() && (lower >= 0.0).all(), "lower");
     refuse_unless(upper.size() == motions && upper.allFinite() && (upper >= lower).all(), "upper");
     refuse_unless(pace.size() == motions && pace.allFinite() && (pace >= 0.0).all(), "pace");
+    refuse_unless(time_cost.size() == 0 || (time_cost.size() == motions && time_cost.allFinite() &&
+                                            (time_cost >= 0.0).all()),
+                  "time_cost");
 }
 
 void DwellSettings::validate() const {

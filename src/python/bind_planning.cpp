@@ -47,8 +47,10 @@ void bind_planning(py::module_& m) {
         "plan_dwell",
         [](const Influence& influence, const Eigen::ArrayXd& excess, const Eigen::ArrayXd& half,
            const Eigen::ArrayXd& weight, const Eigen::ArrayXd& lower, const Eigen::ArrayXd& upper,
-           const Eigen::ArrayXd& pace, const py::dict& given, const RunContext* context) {
-            const DwellProblem problem{&influence, excess, half, weight, lower, upper, pace};
+           const Eigen::ArrayXd& pace, const py::dict& given, const RunContext* context,
+           const Eigen::ArrayXd& time_cost) {
+            const DwellProblem problem{&influence, excess, half, weight,
+                                       lower,      upper,  pace, time_cost};
             DwellSettings settings;
             py::dict d = copy_of(given);
             settings.inner_share = take(d, "inner_share", settings.inner_share);
@@ -75,7 +77,7 @@ void bind_planning(py::module_& m) {
         },
         py::arg("influence"), py::arg("excess"), py::arg("half"), py::arg("weight"),
         py::arg("lower"), py::arg("upper"), py::arg("pace"), py::arg("settings") = py::dict(),
-        py::arg("context") = nullptr,
+        py::arg("context") = nullptr, py::arg("time_cost") = Eigen::ArrayXd(),
         "How many times as long each motion should take: see planning's dwell.h. Returns "
         "dict(factor, price (motions,), excess (samples,) mm, residual, objective, iterations).");
 }

@@ -121,6 +121,36 @@ def test_feeds_keep_their_limits(job):
     assert ((state == reasons.GOOD) == ((height >= lower) & (height <= upper))).all()
 
 
+def test_time_is_saved_where_the_share_allows_it(job):
+    settings = {**SETTINGS, "feed_max_mm_s": 300.0}
+    most = planning.plan(job, settings)
+    share = most.after.summary["in_tolerance_area_share"] - 0.08
+    fast = planning.plan(job, {**settings, "goal": "time", "wanted_share": share})
+    found = fast.after.summary
+    assert found["in_tolerance_area_share"] >= share
+    # The plain way: all feeds of the best plan faster alike, as much as the share allows.
+    low, high = 1.0, 2.0
+    for _ in range(7):
+        middle = 0.5 * (low + high)
+        feeds = np.clip(most.new * middle, settings.get("feed_min_mm_s", 3.0), 300.0)
+        tried = runs.run(most.commands.with_feeds(feeds, most.factors)).summary
+        if tried["in_tolerance_area_share"] >= share:
+            low, plain = middle, tried["process_time_s"]
+        else:
+            high = middle
+    before = most.after.summary["process_time_s"]
+    print(before, plain, found["process_time_s"])
+    assert found["process_time_s"] < before and found["process_time_s"] < 1.002 * plain
+
+
+def test_time_without_a_share_costs_no_tolerance(job):
+    most = planning.plan(job, SETTINGS)
+    fast = planning.plan(job, {**SETTINGS, "goal": "time"})
+    share = "in_tolerance_area_share"
+    assert fast.after.summary[share] >= most.after.summary[share] - 0.0021
+    assert fast.after.summary["process_time_s"] <= most.after.summary["process_time_s"] + 1e-9
+
+
 def test_kept_lines_keep_their_feed(job):
     lines = [m.line for m in read_program(job["programs"][0]["file"]).motions if m.kind == "LIN"]
     first, last = lines[3], lines[len(lines) // 2]

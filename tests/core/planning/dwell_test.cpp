@@ -111,6 +111,28 @@ TEST(Dwell, IsTheLeastOfAllThatLieWithinTheLimits) {
     }
 }
 
+TEST(Dwell, PaysForTimeUntilDeviationsCostAsMuch) {
+    // At the optimum a motion's time costs what its deviations would gain, or its limit.
+    Case one(12, 9, 0.02);
+    one.problem.half = Eigen::ArrayXd::Constant(one.problem.excess.size(), 10.0);
+    one.problem.lower = Eigen::ArrayXd::Constant(12, 1e-3);
+    one.problem.upper = Eigen::ArrayXd::Constant(12, 1e3);
+    const DwellSettings settings = plain();
+    const DwellSolution free = plan_dwell(one.problem, settings);
+    one.problem.time_cost = Eigen::ArrayXd::LinSpaced(12, 1e-6, 4e-5);
+    const DwellSolution paid = plan_dwell(one.problem, settings);
+    EXPECT_LT((one.problem.time_cost * paid.factor).sum(),
+              (one.problem.time_cost * free.factor).sum());
+    for (Eigen::Index j = 0; j < 12; ++j) {
+        Eigen::ArrayXd up = paid.factor, down = paid.factor;
+        up[j] += 1e-4;
+        down[j] -= 1e-4;
+        const double slope =
+            (cost(one.problem, settings, up) - cost(one.problem, settings, down)) / 2e-4;
+        EXPECT_NEAR(slope + one.problem.time_cost[j], paid.price[j], 1e-9);
+    }
+}
+
 TEST(Dwell, KeepsItsLimitsAndPricesThem) {
     Case one(40, 5, 0.6);  // far too much left: the slowest feeds everywhere
     const DwellSolution found = plan_dwell(one.problem, plain());

@@ -20,6 +20,8 @@ from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
 from .robot_path import RobotPath, read_again
 
 KEYS = (
+    Key("Goal", "Enumeration", "Goal", "plan.goal"),
+    Key("WantedShare", "Float", "Goal", "plan.wanted_share"),
     Key("FeedMin", "Speed", "Limits", "plan.feed_min_mm_s"),
     Key("FeedMax", "Speed", "Limits", "plan.feed_max_mm_s"),
     Key("ForceMin", "Force", "Limits", "plan.force_min_N"),

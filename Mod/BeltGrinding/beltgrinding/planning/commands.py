@@ -121,6 +121,15 @@ class Commands:
         found[self.group[~self.rapid]] = self.feeds[~self.rapid]
         return found
 
+    def seconds(self, feeds):
+        """(commands,) s that they take at feeds (commands,) mm/s, without acceleration; 0 of rapid motions."""
+        lengths = [
+            np.append(0.0, np.linalg.norm(np.diff(a["frames"][:, :3, 3], axis=0), axis=1))
+            for a in self.arrays
+        ]
+        mine = np.where(self.rapid, 0.0, np.concatenate(lengths))
+        return np.bincount(self.group, mine, len(self)) / np.maximum(feeds, 1e-9)
+
     def with_feeds(self, feeds, factors=None):
         """A copy of the job, its programs given pose by pose, with feeds (commands,) mm/s on all but rapid motions,
         and ``factors`` (commands,) on the forces of those."""

@@ -19,15 +19,15 @@ from ..inspection import verdict as verdicts
 from ..job import spacing
 from ..job.workpiece import check_faces, read_design
 from ..simulation import convergence, run as runs
-from . import levels, reasons
+from . import least_time, levels, reasons
 from .commands import Commands
+from .step import SAME, feed_exponent, figures, following
 
 STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
 STALLED = 2  # rounds without a gain
 CHECKS = 16.0  # simulations' time: two runs at half the spacing and step
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
-SAME = 1e-9  # relative, of a feed or a force
 
 
 class Plan(NamedTuple):
@@ -93,7 +93,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         part = context.part(number / whole, (number + 1) / whole)
         tried = commands.with_feeds(feeds, factors)
         result = runs.run(tried, part, influence=True)
-        one = _figures(result)
+        one = figures(result)
         rounds.append(one)
         if before is None:
             _refuse_without_stock(result)
@@ -105,7 +105,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         if number == 0 and start is not None and not ends:
             feeds, factors = start
         elif not ends:
-            feeds, factors, found = _next(commands, result, feeds, factors, settings, context)
+            feeds, factors, found = following(commands, result, feeds, factors, settings, context)
             one.update(found)
         one["seconds"] = time.perf_counter() - begun
         result.influence = result.influence if result is best["result"] else None
@@ -113,9 +113,13 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
             told(one)
         if ends:
             break
+    if settings["goal"] == "time":
+        best = least_time.faster(commands, best, settings, rounds, told, context)
     if settings["levels"]:
         best = _in_levels(commands, best, settings, rounds, told, context)
-    better = _better(best["figures"], rounds[0])
+    better = _better(best["figures"], rounds[0]) or (
+        settings["goal"] == "time" and least_time.saves(best["figures"], rounds[0], settings)
+    )
     if not better:
         best = _tried(rounds[0], old, np.ones(len(commands)), before, commands.with_feeds(old))
     why = reasons.find(
@@ -127,7 +131,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         jobs = {"before": commands.with_feeds(old), "after": best["job"]}
         for k, (name, one) in enumerate(jobs.items()):
             part = context.part(done + (1 - done) * k / 2, done + (1 - done) * (k + 1) / 2)
-            checked[name] = _figures(runs.run(convergence.scaled(one, "fine"), part))
+            checked[name] = figures(runs.run(convergence.scaled(one, "fine"), part))
     context.report(1.0)
     return Plan(
         best["job"],
@@ -185,18 +189,6 @@ def _refuse(job, settings):
         )
 
 
-def feed_exponent(job):
-    """gamma of the job's law: the rate of removal goes with the feed to this power."""
-    law = job["law"]
-    return float(law["feed_exponent"]) if law["model"] == "local" else 0.0
-
-
-def force_exponent(job):
-    """alpha of the job's law: the rate of removal goes with the pressure to this power."""
-    law = job["law"]
-    return float(law["pressure_exponent"]) if law["model"] == "local" else 1.0
-
-
 def settled(job, context):
     """The job with its spacing chosen, so that all rounds have the same samples."""
     if job["sampling"]["spacing_mm"] != 0:
@@ -204,17 +196,6 @@ def settled(job, context):
     shape = read_design(job["design"], context.part(0.0, 0.0))
     check_faces(job, shape)
     return spacing.settled(job, shape, [], context.part(0.0, 0.0))[0]
-
-
-def _figures(result):
-    summary = result.summary
-    return {
-        "in_tolerance": summary["in_tolerance_area_share"],
-        "above": summary["above_tolerance_area_share"],
-        "below": summary["below_tolerance_area_share"],
-        "rms_mm": summary["deviation_mm"]["rms"],
-        "process_time_s": summary["process_time_s"],
-    }
 
 
 def _better(one, other):
@@ -237,59 +218,6 @@ def _refuse_without_stock(result):
         )
 
 
-def _next(commands, result, feeds, factors, settings, context):
-    """(feeds (commands,) and factors on forces (commands,) for the next round, what is told of it)."""
-    begun = time.perf_counter()
-    field, job = result.field, result.job
-    lower, upper = verdicts.limits(job, field)
-    height = np.asarray(field.height, dtype=float)
-    seen = (np.asarray(field.flags) & core.MISSED) == 0
-    weight = np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
-    influence = result.influence.grouped(commands.group, len(commands))
-    power = 1.0 - feed_exponent(job)  # removed depth goes with the time to this power
-    alpha = force_exponent(job)
-    least, greatest = commands.force_range
-    # How much a command removes, at first order, against the job's: by its time and its force.
-    given = (commands.feed() / feeds) ** power * factors**alpha
-    slowest = (commands.feed() / settings["feed_min_mm_s"]) ** power * greatest**alpha / given
-    fastest = (commands.feed() / settings["feed_max_mm_s"]) ** power * least**alpha / given
-    change = settings["most_change"]
-    slowest, fastest = (np.clip(a, 1.0 / change, change) for a in (slowest, fastest))
-    fastest = np.minimum(fastest, slowest)
-    moved = np.asarray(np.diff(influence.first.astype(int)) > 0) & ~commands.kept
-    fastest[~moved] = slowest[~moved] = 1.0
-    found = core.plan_dwell(
-        influence,
-        height - 0.5 * (lower + upper),
-        0.5 * (upper - lower),
-        weight,
-        fastest,
-        slowest,
-        1.0 / feeds,
-        {"smoothing": settings["smoothing"]},
-        context.part(0.0, 0.0),
-    )
-    # The feed does what it can, from the job's own force; the force the rest.
-    wanted = given * found["factor"]
-    new = commands.feed() * wanted ** (-1.0 / power)
-    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
-    rest = wanted * (new / commands.feed()) ** power
-    force = np.clip(rest ** (1.0 / alpha), least, greatest)
-    force[abs(force - 1.0) <= SAME] = 1.0
-    new, force = np.where(moved, new, feeds), np.where(moved, force, factors)
-    inside = abs(found["excess"]) <= 0.5 * (upper - lower)
-    return (
-        new,
-        force,
-        {
-            "predicted_in_tolerance": float(weight[inside].sum() / weight.sum()),
-            "residual": found["residual"],
-            "iterations": found["iterations"],
-            "planning_seconds": time.perf_counter() - begun,
-        },
-    )
-
-
 def _in_levels(commands, best, settings, rounds, told, context):
     """The best feeds in few steps, simulated."""
     lasts = np.bincount(commands.group, minlength=len(commands)).astype(float)
@@ -299,7 +227,7 @@ def _in_levels(commands, best, settings, rounds, told, context):
     tried = commands.with_feeds(feeds, best["factors"])
     begun = time.perf_counter()
     result = runs.run(tried, context.part(1.0, 1.0), influence=True)
-    one = {**_figures(result), "levels": settings["levels"], "seconds": time.perf_counter() - begun}
+    one = {**figures(result), "levels": settings["levels"], "seconds": time.perf_counter() - begun}
     rounds.append(one)
     if told is not None:
         told(one)
@@ -316,8 +244,8 @@ def summary(found):
     forces = found.commands.force(found.factors)
     return {
         "better": found.better,
-        "before": _figures(found.before),
-        "after": _figures(found.after),
+        "before": figures(found.before),
+        "after": figures(found.after),
         "checked": found.checked,
         "rounds": [
             {

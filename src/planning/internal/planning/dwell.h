@@ -21,6 +21,7 @@ struct DwellProblem {
     Eigen::ArrayXd upper;                  ///< (motions) greatest x; equal to `lower`: given
     /// (motions) s/mm as it was ground: neighbours whose pace differs cost. 0: has no neighbour.
     Eigen::ArrayXd pace;
+    Eigen::ArrayXd time_cost;  ///< (motions) mm2, at least 0: what x = 1 costs; empty: nothing
 
     /// Throws InputError naming what does not fit.
     void validate() const;
@@ -50,11 +51,11 @@ struct DwellSolution {
 
 /// The x of least cost: sum of weight * r * cost(e(x)) over the samples, and the smoothing. cost is
 /// that of a deviation: inner_cost e^2 / 2, and (1 - inner_cost) (|e| - inner_share half)^2 / 2 of
-/// what is beyond. r = 1 / (1 + (beyond / (4 half))^2), anew by each reweighting, lets go of what
-/// no motion can mend, `beyond` what |e| is beyond the band. For given r the problem is convex; it
-/// is solved by a primal-dual interior-point method (Waechter and Biegler, Mathematical Programming
-/// 106, 2006, without the filter). The same bits on any number of threads. Throws InputError and
-/// Cancelled.
+/// what is beyond, besides `time_cost` x. r = 1 / (1 + (beyond / (4 half))^2), anew by each
+/// reweighting, lets go of what no motion can mend, `beyond` what |e| is beyond the band. For given
+/// r the problem is convex; it is solved by a primal-dual interior-point method (Waechter and
+/// Biegler, Mathematical Programming 106, 2006, without the filter). The same bits on any number of
+/// threads. Throws InputError and Cancelled.
 DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& settings,
                          const RunContext& context = {});
 

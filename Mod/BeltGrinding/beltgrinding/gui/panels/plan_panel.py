@@ -66,6 +66,12 @@ class PlanPanel(RunPanel):
 
     def _limits(self):
         box = Form(self.obj, translate("BeltGrinding", "Limits"))
+        goals = {
+            "tolerance": translate("BeltGrinding", "most in tolerance"),
+            "time": translate("BeltGrinding", "shortest time"),
+        }
+        box.add("Goal", translate("BeltGrinding", "Goal"), goals)
+        box.add("WantedShare", translate("BeltGrinding", "In tolerance, share"))
         box.add("FeedMin", translate("BeltGrinding", "Least feed"))
         box.add("FeedMax", translate("BeltGrinding", "Greatest feed"))
         if self.obj.getParentGroup() is not None and self._by_force():
@@ -90,7 +96,12 @@ class PlanPanel(RunPanel):
         box.layout_.addRow(translate("BeltGrinding", "Motions that stay"), self.kept)
         box.changed = self._changed
         self.limits = box
+        self._show_goal()
         return box
+
+    def _show_goal(self):
+        rows = set(self.limits.rows)
+        self.limits.show_rows(rows if self.obj.Goal == "time" else rows - {"WantedShare"})
 
     def _has_passes(self):
         try:
@@ -211,6 +222,7 @@ class PlanPanel(RunPanel):
         self._say("\n".join(told))
 
     def _changed(self):
+        self._show_goal()
         self.obj.Proxy.update(self.obj)
         if self.obj.Fingerprint:
             self._tell_state()

@@ -3954,7 +3954,7 @@ im Mittel {} abgetragen</translation>
     </message>
     <message>
         <source>Write programs...</source>
-        <translation>Programme schreiben...</translation>
+        <translation>Schreiben...</translation>
     </message>
     <message>
         <source>along the border of the faces</source>

@@ -24,9 +24,7 @@ def wanted_share(settings, best):
 def saves(figures, first, settings):
     """Whether a plan is faster than the job was, and as good as is asked for or as the job was."""
     least = min(settings["wanted_share"] or 1.0, first["in_tolerance"])
-    return (
-        figures["in_tolerance"] >= least and figures["process_time_s"] < first["process_time_s"]
-    )
+    return figures["in_tolerance"] >= least and figures["process_time_s"] < first["process_time_s"]
 
 
 def faster(commands, best, settings, rounds, told, context):

@@ -95,5 +95,3 @@ def following(commands, result, feeds, factors, settings, context, time_cost=Non
             "planning_seconds": time.perf_counter() - begun,
         },
     )
-
-

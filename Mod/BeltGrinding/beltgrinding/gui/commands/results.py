@@ -72,6 +72,7 @@ class GrindFaces(Command):
             plan.passes_of(job)
             obj = api.make_plan(job, compute=False, LayPasses=True)
         if not step.failed:
+            Gui.Selection.clearSelection()  # its colour would hide those of the plan
             show(obj, True)
 
 

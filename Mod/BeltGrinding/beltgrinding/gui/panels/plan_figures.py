@@ -27,6 +27,7 @@ class PlanFigures(QtGui.QWidget):
             translate("BeltGrinding", "In tol."),
             translate("BeltGrinding", "RMS, {}").format(preferences.deviation_unit().symbol),
             translate("BeltGrinding", "Time"),
+            stretched=3,
         )
         self.table = _table(
             "figures",
@@ -200,7 +201,7 @@ class _Picture(QtGui.QLabel):
         self.clicked()
 
 
-def _table(name, *columns):
+def _table(name, *columns, stretched=0):
     table = QtGui.QTableWidget(0, len(columns))
     table.setObjectName(name)
     table.setHorizontalHeaderLabels(list(columns))
@@ -211,7 +212,7 @@ def _table(name, *columns):
     table.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
     head = table.horizontalHeader()
     head.setSectionResizeMode(QtGui.QHeaderView.ResizeToContents)
-    head.setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
+    head.setSectionResizeMode(stretched, QtGui.QHeaderView.Stretch)
     head.setMinimumSectionSize(24)
     table.setMinimumWidth(10)
     return table

@@ -26,8 +26,8 @@ class PlanFigures(QtGui.QWidget):
             translate("BeltGrinding", "Round"),
             translate("BeltGrinding", "In tol."),
             translate("BeltGrinding", "RMS, {}").format(preferences.deviation_unit().symbol),
-            translate("BeltGrinding", "Time"),
-            stretched=3,
+            translate("BeltGrinding", "Time, s"),
+            stretched=2,
         )
         self.table = _table(
             "figures",
@@ -153,7 +153,7 @@ def _round(number, one):
         name = translate("BeltGrinding", "{} feeds").format(one["levels"])
     unit = preferences.deviation_unit()
     rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
-    return name, share, rms, f"{one['process_time_s']:.1f} s"
+    return name, share, rms, f"{one['process_time_s']:.1f}"
 
 
 def _passes(one):

@@ -61,7 +61,9 @@ def test_bounded_least_squares_are_those_of_another_solver(seed):
         root[:, None] * a, root * (excess + a.sum(axis=1)), (lower, upper), "bvls", tol=1e-14
     ).x
     assert np.abs(found["factor"] - other).max() < 1e-5
-    assert (np.abs(other - lower) < 1e-9).sum() + (np.abs(other - upper) < 1e-9).sum() >= 3, "limits"
+    assert (np.abs(other - lower) < 1e-9).sum() + (
+        np.abs(other - upper) < 1e-9
+    ).sum() >= 3, "limits"
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -1,0 +1,75 @@
+"""How true the planner's gradients are: against central differences of whole simulations, on a real blade.
+
+tools/bench plan_gradient; `python plan_gradient_bench.py [--motions N]` does the same. For some motions of the marine
+blade's raster, feed and force are changed by 3 % both ways and the job simulated anew; what that changes, sample by
+sample where the motion removes most, is compared with what the planner takes it for: A for the time, A times the law's
+exponent for the force. Printed: the error's median and 95th percentile, and that of all a motion removes together.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import plan_bench  # noqa: E402
+from beltgrinding.planning import rounds, step  # noqa: E402
+from beltgrinding.planning.commands import Commands  # noqa: E402
+from beltgrinding.simulation import run as runs  # noqa: E402
+
+CHANGE = 0.03
+LEAST = 50  # samples under a motion
+PER_MOTION = 9  # samples that are compared
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--motions", type=int, default=12)
+    arguments = parser.parse_args()
+    if not plan_bench.PARTS.is_dir():
+        print(f"plan_gradient: no data at {plan_bench.PARTS}")
+        return
+    file = plan_bench.PARTS / "blade_marine_upper.iges"
+    job = plan_bench.job_of(file, [1], {"allowance_mm": plan_bench.STOCK})
+    commands = Commands(job, rounds.validate({"force_max_N": 60.0}))
+    feeds, ones = commands.feed(), np.ones(len(commands))
+    influence = runs.run(job, influence=True).influence.grouped(commands.group, len(commands))
+    first = np.asarray(influence.first).astype(int)
+    samples, depth = np.asarray(influence.sample), np.asarray(influence.depth, dtype=float)
+    random = np.random.default_rng(0)
+    busy = np.flatnonzero(np.diff(first) > LEAST)
+    alpha = step.force_exponent(job)
+
+    def height(feeds, factors):
+        return np.asarray(runs.run(commands.with_feeds(feeds, factors)).field.height, dtype=float)
+
+    errors = {"feed": ([], []), "force": ([], [])}
+    for k in random.choice(busy, min(arguments.motions, len(busy)), replace=False):
+        mine = slice(first[k], first[k + 1])
+        most = np.argsort(-depth[mine])[: max(20, (first[k + 1] - first[k]) // 3)]
+        some = random.choice(most, PER_MOTION, replace=False)
+        for what, (single, whole) in errors.items():
+            ends = []
+            for change in (1.0 + CHANGE, 1.0 - CHANGE):
+                other = (feeds if what == "feed" else ones).copy()
+                other[k] = other[k] / change if what == "feed" else other[k] * change
+                ends.append(height(other, ones) if what == "feed" else height(feeds, other))
+            found = (ends[1] - ends[0])[samples[mine]] / (2.0 * CHANGE)
+            taken = depth[mine] * (1.0 if what == "feed" else alpha)
+            single += (found[some] / taken[some] - 1.0).tolist()
+            whole.append(found.sum() / taken.sum() - 1.0)
+    for what, (single, whole) in errors.items():
+        away = np.abs(single)
+        print(
+            f"plan_gradient: {what}: {len(single)} entries off by {100 * np.median(away):.0f} % (median), "
+            f"{100 * np.percentile(away, 95):.0f} % (95th percentile); all of a motion by "
+            f"{100 * np.median(np.abs(whole)):.0f} %"
+        )
+
+
+if __name__ == "__main__":
+    main()

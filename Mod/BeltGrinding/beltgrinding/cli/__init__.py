@@ -12,6 +12,7 @@ import signal
 import sys
 
 from . import (
+    belt_plan,
     calibrate,
     faces,
     faults,
@@ -35,6 +36,7 @@ TOPICS = (
     grind,
     from_faces,
     plan,
+    belt_plan,
     press,
     program,
     faces,

@@ -14,6 +14,7 @@ BEGINNINGS = (
     b"piece,face,s_mm,",  # section
     b"x_mm,y_mm,p_MPa",  # contact
     b"line,predicted,standard_deviation,",  # predict
+    b"part,belt,part_of_belt,cut,",  # belt-plan
     b"belt-ground part",  # mesh, STL
 )
 MARKS = (
@@ -28,6 +29,7 @@ KEYS = (  # of JSON files
     {"model", "coefficient_mm2_per_N"},  # a law
     {"work_J", "removed_mm3", "hours"},  # a belt
     {"grinds", "parameters"},  # a calibration's report
+    {"new_belts", "parts_per_belt"},  # a belt plan
 )
 ARCHIVES = ({"about.npy", "vectors.npy"}, {"about.npy", "gap.npy"})  # a surrogate, its database
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from PIL import Image, ImageFont
+from PIL.PngImagePlugin import PngInfo
 
 from ..engine import core
 from . import sight
@@ -229,7 +230,8 @@ def font(size):
 
 
 def png(pixels):
-    """Bytes of a PNG file of (rows, columns, 3) uint8."""
-    file = io.BytesIO()
-    Image.fromarray(pixels).save(file, "PNG")
+    """Bytes of a PNG file of (rows, columns, 3) uint8, which says by what it was made."""
+    file, about = io.BytesIO(), PngInfo()
+    about.add_text("Software", "BeltGrinding")
+    Image.fromarray(pixels).save(file, "PNG", pnginfo=about)
     return file.getvalue()

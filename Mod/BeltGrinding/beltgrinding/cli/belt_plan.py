@@ -1,0 +1,101 @@
+"""When to change the belt over a batch, and how feed or force follow its wear."""
+
+import json
+from pathlib import Path
+
+from . import background, outputs
+from .messages import print_text
+
+FILES = ("belt_plan.json", "parts.csv", "belt_plan.png")
+
+
+def add(commands):
+    """Adds the command to the parser's ``commands``."""
+    belt = commands.add_parser(
+        "belt-plan",
+        help="when to change the belt over a batch of parts, and how feed or force follow its wear",
+        description="The job is simulated with a fresh belt. Each further part of the batch is ground slower, or pressed "
+        "harder, so that it loses as much; the cheapest moments to change the belt follow from the costs.",
+    )
+    belt.add_argument("job", help="job.json, with a law that has a wear")
+    belt.add_argument("-o", "--output", required=True, help="folder for JSON, CSV and chart")
+    belt.add_argument("--parts", type=int, required=True, metavar="N", help="of the batch")
+    for name, text in (
+        ("--belt-cost", "price of a belt"),
+        ("--change-min", "time of changing it, minutes"),
+        ("--minute-cost", "what a minute of the cell costs"),
+    ):
+        belt.add_argument(name, type=float, required=True, metavar="X", help=text)
+    belt.add_argument(
+        "--follow",
+        choices=("feed", "force", "both"),
+        default="feed",
+        help="what follows the wear; both: the force first (default feed)",
+    )
+    belt.add_argument(
+        "--feed-min", type=float, default=3.0, metavar="MM_S", help="least feed, mm/s (default 3)"
+    )
+    belt.add_argument(
+        "--force-max", type=float, default=0.0, metavar="N", help="greatest force, for force, both"
+    )
+    belt.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outputs.add(belt)
+    belt.set_defaults(do=_belt_plan)
+
+
+def _belt_plan(arguments):
+    from ..base.files import cannot_be_written, write_whole
+    from ..engine import InputError
+    from ..job import inputs, load as jobs
+    from ..planning import belt_chart, belt_plan
+
+    if arguments.follow != "feed" and arguments.force_max <= 0.0:
+        raise InputError(
+            "cli.force_max", "--follow {follow} needs --force-max", follow=arguments.follow
+        )
+    out = Path(arguments.output)
+    job = jobs.load(arguments.job)
+    outputs.check(
+        arguments, [out / name for name in FILES], [arguments.job, *inputs.files(job)]
+    )
+    costs = belt_plan.Costs(
+        arguments.belt_cost, 60.0 * arguments.change_min, arguments.minute_cost
+    )
+
+    def work(context):
+        part, _ = belt_plan.part_of(
+            job, arguments.feed_min, arguments.force_max, arguments.follow, context
+        )
+        return belt_plan.plan(job, part, costs, arguments.parts)
+
+    found = background.run(work, arguments.quiet)
+    data = belt_plan.summary(found, costs)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, content in zip(
+            FILES,
+            (
+                (json.dumps(data, indent=1) + "\n").encode(),
+                belt_plan.table(found).encode(),
+                belt_chart.draw(found),
+            ),
+        ):
+            write_whole(out / name, content)
+    except OSError as error:
+        raise cannot_be_written(out, error) from None
+    if not arguments.quiet:
+        print_text(_text(data))
+
+
+def _text(data):
+    belts = ", ".join(map(str, data["parts_per_belt"][:12]))
+    if len(data["parts_per_belt"]) > 12:
+        belts += ", ..."
+    beyond = data["parts_beyond_measured_wear"]
+    return (
+        f"{data['parts']} parts, {data['new_belts']} new belts; parts per belt: {belts} "
+        f"(a fresh one can do {data['life_parts']})\n"
+        f"cost {data['cost']:.2f}, {data['cost_per_part']:.3f} a part, {data['seconds'] / 3600:.2f} h; with every belt "
+        f"used as long as it can: {data['cost_until_worn_out']:.2f}"
+        + (f"\n{beyond} parts are ground by belts that have done more than their wear was measured for" if beyond else "")
+    )

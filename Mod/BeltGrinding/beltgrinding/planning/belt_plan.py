@@ -1,0 +1,289 @@
+"""When to change the belt over a batch of equal parts, and how feed or force follow its wear until then.
+
+A worn belt cuts k times as much as a fresh one (the job's law of wear). So that every part loses the same, it is ground
+slower, or pressed harder, part by part; a second of that costs what the cell costs. A fresh belt costs its price and the time
+of changing it. The cheapest sequence of belts for a number of parts is found by dynamic programming over the parts that
+are left (Bellman, Dynamic Programming, 1957), which is exact: each belt begins as new.
+"""
+
+import csv
+import io
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..engine import InputError, core
+from ..job import law as laws
+from ..simulation import run as runs
+from . import rounds, step
+from .commands import Commands
+
+FOLLOW = ("feed", "force", "both")
+MOST_PARTS = 100_000
+NEAR = 1e-6  # of the removal, that a part may lack at a limit
+INNER = 8  # how often a part's own wear is looked at, for its mean cut
+COLUMNS = (
+    "part",
+    "belt",
+    "part_of_belt",
+    "cut",
+    "feed_factor",
+    "force_factor",
+    "seconds",
+    "cost",
+    "new_belt",
+)
+
+
+class Part(NamedTuple):
+    """What grinding one part with a fresh belt takes."""
+
+    ground_s: float  # in motions whose feed may follow
+    other_s: float  # all the rest
+    work_J: float  # of the pressing force at belt speed
+    removed_mm3: float
+    power: float  # removal goes with the time to this power
+    alpha: float  # and with the force to this one
+    slowest: float  # least factor on the feeds
+    hardest: float  # greatest factor on the forces
+
+
+class Costs(NamedTuple):
+    """What a batch costs."""
+
+    belt: float  # of one
+    change_s: float  # cell's time for changing it
+    minute: float  # of the cell
+
+
+class BeltPlan(NamedTuple):
+    """The cheapest batch."""
+
+    rows: list  # dicts of COLUMNS
+    cost: float
+    seconds: float
+    belts: int  # that are put on
+    until_worn_out: float  # the same batch's cost with each belt used as long as it can
+    life: int  # parts that a fresh belt can grind within the limits
+
+
+def part_of(job, feed_min, force_max, follow, context=None):
+    """(``Part`` of a validated job, its Result with a fresh belt). ``feed_min`` mm/s; ``force_max`` N. Raises InputError
+    (no wear to follow, limits that the job itself breaks), Cancelled."""
+    machine = job["belt_machine"]
+    if job["law"]["wear"]["model"] == "none" or job["law"]["model"] in ("geometric", "hammann"):
+        raise InputError(
+            "planning.no_wear",
+            "belt plan: {key} is {value}; give the law a wear, from measured grinds (beltgrind calibrate) or by hand",
+            key="law.wear.model",
+            value=job["law"]["wear"]["model"],
+        )
+    if follow != "feed" and machine["control"] != "force":
+        raise InputError(
+            "planning.no_force",
+            "plan: {key}: forces are planned for machines under force control only",
+            key="follow",
+        )
+    if step.feed_exponent(job) > rounds.STEEPEST and follow != "force":
+        raise InputError(
+            "planning.feed_decides_nothing",
+            "plan: by the law, {key} {value:g}, a faster feed removes no less; nothing can be planned by feeds",
+            key="law.feed_exponent",
+            value=step.feed_exponent(job),
+        )
+    fresh = {**machine, "belt": {key: 0.0 for key in machine["belt"]}}
+    job = {**job, "belt_machine": fresh}
+    result = runs.run(job, context)
+    commands = Commands(job, rounds.validate({}))
+    feeds = commands.feed()
+    seconds = commands.seconds(feeds)
+    moving = seconds > 0.0
+    ground = float(seconds.sum())
+    whole = result.summary["process_time_s"]
+    least, greatest = float(feeds[moving].min()), float(commands.force(np.ones(len(feeds))).max())
+    if feed_min > least or 0.0 < force_max < greatest:
+        raise InputError(
+            "planning.belt_limits",
+            "belt plan: a fresh belt's own feed of {feed:.4g} mm/s or force of {force:.4g} N is beyond the limits",
+            feed=least,
+            force=greatest,
+        )
+    belt = result.summary["belt"]
+    return (
+        Part(
+            min(ground, whole),
+            max(whole - ground, 0.0),
+            belt["work_J"],
+            belt["removed_mm3"],
+            1.0 - step.feed_exponent(job),
+            step.force_exponent(job),
+            feed_min / least if follow != "force" else 1.0,
+            force_max / greatest if follow != "feed" and force_max > 0.0 else 1.0,
+        ),
+        result,
+    )
+
+
+def plan(job, part, costs, parts, context=None):
+    """The ``BeltPlan`` of a batch of ``parts`` of a validated job, whose belt's use is that of the first belt. Raises
+    InputError where not even a fresh belt does one part, Cancelled."""
+    context = context or core.RunContext()
+    if not 1 <= parts <= MOST_PARTS:
+        raise InputError(
+            "planning.parts",
+            "belt plan: {count} parts; give 1 to {most}",
+            count=parts,
+            most=MOST_PARTS,
+        )
+    if not all(math.isfinite(value) and value >= 0.0 for value in costs):
+        raise InputError("planning.costs", "belt plan: costs and times must be numbers, none below 0")
+    wear = laws.engine_wear(job["law"])
+    new = {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0}
+    fresh = _life(wear, part, new, costs, parts)
+    first = _life(wear, part, job["belt_machine"]["belt"], costs, parts)
+    if not fresh:
+        raise InputError(
+            "planning.belt_too_short",
+            "belt plan: within the limits not even a fresh belt does one part; lower the least feed, raise the "
+            "greatest force, or take a belt that lasts longer",
+        )
+    changing = costs.belt + costs.minute * costs.change_s / 60.0
+    lasts, whole = [row["cost"] for row in fresh], [row["cost"] for row in first]
+    total = np.concatenate([[0.0], np.cumsum(lasts)])
+    best, choice = np.zeros(parts + 1), np.zeros(parts + 1, dtype=int)
+    for left in range(1, parts + 1):
+        context.throw_if_cancelled()
+        most = min(left, len(lasts))
+        found = best[left - most : left][::-1] + total[1 : most + 1] + changing
+        k = int(np.argmin(found))
+        best[left], choice[left] = found[k], k + 1
+    # The belt that is on the machine goes on for as long as that is cheapest.
+    begun = np.concatenate([[0.0], np.cumsum(whole)])
+    ways = begun[: parts + 1] + best[parts - np.arange(min(len(whole), parts) + 1)]
+    kept = int(np.argmin(ways))
+    rows = _rows([], first[:kept], new_belt=False)
+    left = parts - kept
+    while left:
+        count = int(choice[left])
+        rows = _rows(rows, fresh[:count], new_belt=True)
+        left -= count
+    put_on = sum(row["new_belt"] for row in rows)
+    spent = sum(row["seconds"] for row in rows) + put_on * costs.change_s
+    return BeltPlan(
+        rows,
+        float(ways[kept]),
+        float(spent),
+        put_on,
+        _until_worn_out(lasts, whole, changing, parts),
+        len(fresh),
+    )
+
+
+def _until_worn_out(lasts, whole, changing, parts):
+    cost, left, on = 0.0, parts, whole
+    while left:
+        count = min(left, len(on))
+        cost += sum(on[:count])
+        left -= count
+        if left:
+            cost, on = cost + changing, lasts
+    return cost
+
+
+def _rows(rows, parts, new_belt):
+    """``rows`` with those of the parts of the next belt."""
+    belt = rows[-1]["belt"] + 1 if rows else 1
+    begun = len(rows)
+    return rows + [
+        {
+            "part": begun + k + 1,
+            "belt": belt,
+            "part_of_belt": k + 1,
+            **row,
+            "new_belt": new_belt and k == 0,
+        }
+        for k, row in enumerate(parts)
+    ]
+
+
+def _life(wear, part, belt, costs, parts):
+    """Dicts of the parts that a belt grinds one after the other, as long as the limits let it."""
+    state, rows = laws.engine_belt(belt), []
+    nothing = {key: 0.0 for key in state}
+    # What the job was simulated with: a fresh belt that wears over the part itself.
+    usual = core.belt_remaining(wear, _used(nothing, part, 1.0, 1.0, 0.5))
+    for _ in range(parts):
+        found = _one(wear, part, state, usual)
+        if found is None:
+            break
+        feed, force, cut, state = found
+        curve = wear["curve"] if wear["model"] == "curve" else ()
+        used = state["volume" if wear["variable"] == "volume" else "work"]
+        seconds = part.other_s + part.ground_s / feed
+        rows.append(
+            {
+                "cut": cut,
+                "feed_factor": feed,
+                "force_factor": force,
+                "seconds": seconds,
+                "cost": costs.minute * seconds / 60.0,
+                "beyond_measured": bool(len(curve) and used > curve[-1][0]),
+            }
+        )
+    return rows
+
+
+def _one(wear, part, state, usual):
+    """(factor on feeds, factor on forces, mean cut, the belt's state after it) of one part; None beyond the limits.
+    ``usual``: the mean cut that the factors are against."""
+    cut = core.belt_remaining(wear, state)
+    for _ in range(INNER):  # the belt wears over the part itself: the cut in its middle counts
+        if not min(cut, usual) > 0.0:
+            return None
+        share = cut / usual
+        force = min(share ** (-1.0 / part.alpha), part.hardest) if part.hardest > 1.0 else 1.0
+        left = share * force**part.alpha
+        feed = left ** (1.0 / part.power) if part.slowest < 1.0 else 1.0
+        if feed < part.slowest - NEAR or (feed == 1.0 and left < 1.0 - NEAR):
+            return None
+        cut = core.belt_remaining(wear, _used(state, part, feed, force, 0.5))
+    return feed, force, cut, _used(state, part, feed, force, 1.0)
+
+
+def _used(state, part, feed, force, share):
+    """The engine's belt after a share of a part."""
+    return {
+        "work": state["work"] + share * part.work_J * force / feed,
+        "volume": state["volume"] + share * part.removed_mm3,
+        "time": state["time"] + share * part.ground_s / feed,
+    }
+
+
+def summary(found, costs):
+    """The figures of a ``BeltPlan``, as JSON has them."""
+    counts = np.bincount([row["belt"] for row in found.rows])[1:]
+    return {
+        "parts": len(found.rows),
+        "cost": found.cost,
+        "cost_per_part": found.cost / len(found.rows),
+        "seconds": found.seconds,
+        "new_belts": found.belts,
+        "parts_per_belt": counts.tolist(),
+        "life_parts": found.life,
+        "parts_beyond_measured_wear": sum(row["beyond_measured"] for row in found.rows),
+        "cost_until_worn_out": found.until_worn_out,
+        "costs": costs._asdict(),
+    }
+
+
+def table(found):
+    """A CSV of the batch, a line a part."""
+    file = io.StringIO()
+    rows = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+    rows.writeheader()
+    for row in found.rows:
+        rows.writerow(
+            {k: f"{v:.6g}" if isinstance(v, float) else int(v) for k, v in row.items() if k in COLUMNS}
+        )
+    return file.getvalue()

@@ -1372,12 +1372,40 @@
         <translation>auch die Bahnen werden neu gelegt: Zustellung, Auslauf, wie oft sie durchlaufen werden</translation>
     </message>
     <message>
-        <source>time: of the area, that must be in tolerance; 0: as much as can be, but for 0.002</source>
-        <translation>time: von der Fläche, was in Toleranz sein muss; 0: so viel wie möglich, bis auf 0,002</translation>
-    </message>
-    <message>
         <source>tolerance: as much of the area in tolerance as can be; time: the shortest grind that still has wanted_share</source>
         <translation>tolerance: so viel der Fläche in Toleranz wie möglich; time: die kürzeste Bearbeitung, die wanted_share noch hat</translation>
+    </message>
+    <message>
+        <source>greatest change of the feed along the path, mm/s per mm; 0: no limit</source>
+        <translation>größte Änderung des Vorschubs längs der Bahn, mm/s je mm; 0: keine Grenze</translation>
+    </message>
+    <message>
+        <source>greatest change of the force, N/s; steps that the program has itself may stay; 0: no limit</source>
+        <translation>größte Änderung der Kraft, N/s; Stufen, die das Programm selbst hat, dürfen bleiben; 0: keine Grenze</translation>
+    </message>
+    <message>
+        <source>greatest pressure times belt speed where forces may change, MPa m/s; 0: the law&apos;s heat_limit_MPa_m_s</source>
+        <translation>größter Druck mal Bandgeschwindigkeit, wo sich Kräfte ändern dürfen, MPa m/s; 0: heat_limit_MPa_m_s des Gesetzes</translation>
+    </message>
+    <message>
+        <source>greatest pressure where forces may change, MPa; 0: the law&apos;s pressure_limit_MPa</source>
+        <translation>größter Druck, wo sich Kräfte ändern dürfen, MPa; 0: pressure_limit_MPa des Gesetzes</translation>
+    </message>
+    <message>
+        <source>of the area, that must be in tolerance, for time, and for what of the laws drawn at random passes; 0: as much as can be, but for 0.002</source>
+        <translation>der Fläche, der in Toleranz sein muss, für die Zeit und dafür, wie viele der gezogenen Gesetze bestehen; 0: so viel wie möglich, bis auf 0.002</translation>
+    </message>
+    <message>
+        <source>standard deviation of where the raw part lies against the design, along each axis, mm; for the probability</source>
+        <translation>Standardabweichung der Lage des Rohteils gegen den Entwurf, längs jeder Achse, mm; für die Wahrscheinlichkeit</translation>
+    </message>
+    <message>
+        <source>with which the feed may change along the path, mm/s2; 0: no limit</source>
+        <translation>mit der sich der Vorschub längs der Bahn ändern darf, mm/s2; 0: keine Grenze</translation>
+    </message>
+    <message>
+        <source>with which the part shall be in tolerance, the law being as unsure as its calibration says; 0: as simulated</source>
+        <translation>mit der das Teil in Toleranz sein soll, so unsicher, wie die Kalibrierung das Gesetz nennt; 0: wie simuliert</translation>
     </message>
 </context>
 <context>
@@ -3949,10 +3977,6 @@ im Mittel {} abgetragen</translation>
         <translation>Die Programme haben diese Vorschübe.</translation>
     </message>
     <message>
-        <source>Time</source>
-        <translation>Zeit</translation>
-    </message>
-    <message>
         <source>Write programs...</source>
         <translation>Schreiben...</translation>
     </message>
@@ -4063,6 +4087,54 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>shortest time</source>
         <translation>kürzeste Zeit</translation>
+    </message>
+    <message>
+        <source>Acceleration</source>
+        <translation>Beschleunigung</translation>
+    </message>
+    <message>
+        <source>Change of feed, mm/s per mm</source>
+        <translation>Vorschubänderung, mm/s je mm</translation>
+    </message>
+    <message>
+        <source>Change of force, N/s</source>
+        <translation>Kraftänderung, N/s</translation>
+    </message>
+    <message>
+        <source>Change, pressure, heat</source>
+        <translation>Änderung, Druck, Wärme</translation>
+    </message>
+    <message>
+        <source>Greatest pressure</source>
+        <translation>Größter Druck</translation>
+    </message>
+    <message>
+        <source>Laws that pass</source>
+        <translation>Bestehende Gesetze</translation>
+    </message>
+    <message>
+        <source>Placement, std. dev.</source>
+        <translation>Lage, Standardabw.</translation>
+    </message>
+    <message>
+        <source>Pressure × belt speed, MPa·m/s</source>
+        <translation>Druck × Bandgeschw., MPa·m/s</translation>
+    </message>
+    <message>
+        <source>Probability</source>
+        <translation>Wahrscheinlichkeit</translation>
+    </message>
+    <message>
+        <source>Surely in tol.</source>
+        <translation>Sicher in Tol.</translation>
+    </message>
+    <message>
+        <source>feed or force may not change faster</source>
+        <translation>Vorschub oder Kraft dürfen sich nicht schneller ändern</translation>
+    </message>
+    <message>
+        <source>too much left at the greatest pressure</source>
+        <translation>beim größten Druck bleibt zu viel stehen</translation>
     </message>
 </context>
 <context>

@@ -35,7 +35,13 @@ def part():
 
 def cost_of(job, part, costs, counts):
     """Of belts with so many parts each, all of them new, by itself; None where one lasts for fewer."""
-    lasts = belt_plan._life(belt_plan.laws.engine_wear(job["law"]), part, job["belt_machine"]["belt"], costs, sum(counts))
+    lasts = belt_plan._life(
+        belt_plan.laws.engine_wear(job["law"]),
+        part,
+        job["belt_machine"]["belt"],
+        costs,
+        sum(counts),
+    )
     if max(counts) > len(lasts):
         return None
     changing = costs.belt + costs.minute * costs.change_s / 60.0
@@ -101,7 +107,9 @@ def test_a_belt_that_is_worn_already_goes_on_only_as_long_as_it_pays(part):
 
 
 def test_parts_beyond_what_the_wear_was_measured_for_are_counted(part):
-    job = job_of({"model": "curve", "variable": "work", "curve": [[0.0, 1.0], [2000.0, 0.8], [3300.0, 0.7]]})
+    job = job_of(
+        {"model": "curve", "variable": "work", "curve": [[0.0, 1.0], [2000.0, 0.8], [3300.0, 0.7]]}
+    )
     found = belt_plan.plan(job, part, Costs(1e3, 0.0, 1.5), 12)
     assert [row["beyond_measured"] for row in found.rows[:3]] == [False] * 3
     assert belt_plan.summary(found, COSTS)["parts_beyond_measured_wear"] == 9
@@ -120,7 +128,9 @@ def test_limits_end_a_belts_life(part):
     job = job_of()
     narrow = belt_plan.part_of(job, 20.0, 0.0, "feed")[0]
     assert belt_plan.plan(job, narrow, COSTS, 30).life < belt_plan.plan(job, part, COSTS, 30).life
-    assert min(r["feed_factor"] for r in belt_plan.plan(job, narrow, COSTS, 30).rows) >= 20 / 30 - 1e-9
+    assert (
+        min(r["feed_factor"] for r in belt_plan.plan(job, narrow, COSTS, 30).rows) >= 20 / 30 - 1e-9
+    )
     short = {**WEAR, "scale": 0.01, "rest": 0.0}
     with pytest.raises(InputError, match="not even a fresh belt"):
         broken = job_of(short)

@@ -55,12 +55,8 @@ def _belt_plan(arguments):
         )
     out = Path(arguments.output)
     job = jobs.load(arguments.job)
-    outputs.check(
-        arguments, [out / name for name in FILES], [arguments.job, *inputs.files(job)]
-    )
-    costs = belt_plan.Costs(
-        arguments.belt_cost, 60.0 * arguments.change_min, arguments.minute_cost
-    )
+    outputs.check(arguments, [out / name for name in FILES], [arguments.job, *inputs.files(job)])
+    costs = belt_plan.Costs(arguments.belt_cost, 60.0 * arguments.change_min, arguments.minute_cost)
 
     def work(context):
         part, _ = belt_plan.part_of(
@@ -97,5 +93,9 @@ def _text(data):
         f"(a fresh one can do {data['life_parts']})\n"
         f"cost {data['cost']:.2f}, {data['cost_per_part']:.3f} a part, {data['seconds'] / 3600:.2f} h; with every belt "
         f"used as long as it can: {data['cost_until_worn_out']:.2f}"
-        + (f"\n{beyond} parts are ground by belts that have done more than their wear was measured for" if beyond else "")
+        + (
+            f"\n{beyond} parts are ground by belts that have done more than their wear was measured for"
+            if beyond
+            else ""
+        )
     )

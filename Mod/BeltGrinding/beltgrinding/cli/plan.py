@@ -84,6 +84,13 @@ def text(summary):
         lines = [f"before: {line(before)}", f"planned: {line(after)}"]
         if summary["checked"]:
             lines[1] += " (both at half the spacing and step)"
+        if "sure_share" in after:
+            lines += [f"before, {_sure(before)}", f"planned, {_sure(after)}"]
+        if after.get("over_limit", 0.0) > 0.0:
+            lines.append(
+                f"the greatest pressure, {after['peak_pressure_MPa']:.3g} MPa, is {100 * after['over_limit']:.0f} % "
+                "above its limit"
+            )
     out = {k: v for k, v in summary["out_of_tolerance"].items() if v > 0.0005}
     for word, share in sorted(out.items(), key=lambda pair: -pair[1]):
         lines.append(f"  out of tolerance, {100 * share:.1f} %: {WORDS[word]}")
@@ -93,3 +100,11 @@ def text(summary):
         f"{summary['commands']} commands changed"
     )
     return "\n".join(lines)
+
+
+def _sure(one):
+    low, middle, high = (100 * share for share in one["drawn"])
+    return (
+        f"laws drawn at random: {low:.1f}, {middle:.1f}, {high:.1f} % in tolerance (5th, 50th, 95th percentile); "
+        f"surely {100 * one['sure_share']:.1f} %; {100 * one['passing']:.1f} % of the laws have the wanted share"
+    )

@@ -137,7 +137,9 @@ def plan(job, part, costs, parts, context=None):
             most=MOST_PARTS,
         )
     if not all(math.isfinite(value) and value >= 0.0 for value in costs):
-        raise InputError("planning.costs", "belt plan: costs and times must be numbers, none below 0")
+        raise InputError(
+            "planning.costs", "belt plan: costs and times must be numbers, none below 0"
+        )
     wear = laws.engine_wear(job["law"])
     new = {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0}
     fresh = _life(wear, part, new, costs, parts)
@@ -284,6 +286,10 @@ def table(found):
     rows.writeheader()
     for row in found.rows:
         rows.writerow(
-            {k: f"{v:.6g}" if isinstance(v, float) else int(v) for k, v in row.items() if k in COLUMNS}
+            {
+                k: f"{v:.6g}" if isinstance(v, float) else int(v)
+                for k, v in row.items()
+                if k in COLUMNS
+            }
         )
     return file.getvalue()

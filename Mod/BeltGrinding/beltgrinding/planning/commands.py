@@ -123,12 +123,35 @@ class Commands:
 
     def seconds(self, feeds):
         """(commands,) s that they take at feeds (commands,) mm/s, without acceleration; 0 of rapid motions."""
+        return np.bincount(self.group, self._lengths(), len(self)) / np.maximum(feeds, 1e-9)
+
+    def motion_seconds(self, feeds):
+        """(commands,) s that the shortest motion of each takes."""
+        found = np.full(len(self), np.inf)
+        np.minimum.at(found, self.group, np.where(self.rapid, np.inf, self._lengths()))
+        return np.where(np.isfinite(found), found, 0.0) / np.maximum(feeds, 1e-9)
+
+    def neighbours(self):
+        """(first, second (pairs,) numbers of commands, way (pairs,) mm between the middles of their motions): of commands
+        that follow each other without a rapid motion between them, each pair once."""
+        way = self._lengths()
+        a, b = self.group[:-1].astype(int), self.group[1:].astype(int)
+        joined = (self.of_program[:-1] == self.of_program[1:]) & ~self.rapid[:-1] & ~self.rapid[1:]
+        joined &= a != b
+        pairs, which = np.unique(
+            np.stack([np.minimum(a, b), np.maximum(a, b)])[:, joined], axis=1, return_inverse=True
+        )
+        between = np.full(pairs.shape[1], np.inf)
+        np.minimum.at(between, which.reshape(-1), 0.5 * (way[:-1] + way[1:])[joined])
+        return pairs[0], pairs[1], between
+
+    def _lengths(self):
+        """(motions,) mm, 0 of rapid ones."""
         lengths = [
             np.append(0.0, np.linalg.norm(np.diff(a["frames"][:, :3, 3], axis=0), axis=1))
             for a in self.arrays
         ]
-        mine = np.where(self.rapid, 0.0, np.concatenate(lengths))
-        return np.bincount(self.group, mine, len(self)) / np.maximum(feeds, 1e-9)
+        return np.where(self.rapid, 0.0, np.concatenate(lengths))
 
     def with_feeds(self, feeds, factors=None):
         """A copy of the job, its programs given pose by pose, with feeds (commands,) mm/s on all but rapid motions,

@@ -118,7 +118,7 @@ def _try(job, wanted, settings, context):
     if laid["area_mm2"] > MOST_SAMPLES * tried["sampling"]["spacing_mm"] ** 2:
         tried = convergence.scaled(tried, "coarse")
     plan = rounds.plan(tried, {**settings, **QUICK}, context.part(0.2, 1.0))
-    share = max(one["in_tolerance"] for one in plan.rounds)
+    share = max(one.get("expected_share", one["in_tolerance"]) for one in plan.rounds)
     return {"wanted": wanted, "laid": laid, "plan": plan, "in_tolerance": share}
 
 

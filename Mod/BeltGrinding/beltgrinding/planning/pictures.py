@@ -22,6 +22,8 @@ COLOURS = {  # of the reasons, 0xRRGGBBAA
     reasons.BORDER: 0x00897BFF,
     reasons.SLOWEST: 0xE65100FF,
     reasons.FASTEST: 0x1565C0FF,
+    reasons.PRESSURE: 0xC2185BFF,
+    reasons.CHANGE: 0x546E7AFF,
     reasons.KEPT: 0x5D4037FF,
     reasons.SHARED: 0xF9A825FF,
 }
@@ -34,6 +36,8 @@ WORDS = {
     "border": "along the border of the faces",
     "slowest_feed": "too much left at the least feed",
     "fastest_feed": "cut too deep at the greatest feed",
+    "pressure": "too much left at the greatest pressure",
+    "change": "feed or force may not change faster",
     "kept": "its motions must not be changed",
     "shared": "its motions also grind what needs the contrary",
 }

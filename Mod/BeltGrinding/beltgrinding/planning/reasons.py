@@ -7,19 +7,23 @@ from ..inspection import verdict as verdicts
 from ..job.workpiece import read_design
 from ..raster import raster_path, reachable
 from ..raster.clearing import Clearing
+from . import limits
 
-GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED, NO_ROOM = range(8)
+GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED, NO_ROOM, PRESSURE, CHANGE = range(10)
 WORDS = {
     NOT_REACHED: "no_motion",  # none removes anything there, though the wheel fits
     NO_ROOM: "no_room",  # none does, and the wheel would stand in the part there, however its belt travels
     BORDER: "border",  # within a contact's half width of the border of the faces
     SLOWEST: "slowest_feed",  # too much is left, and its motions go as slowly, and press as hard, as they may
     FASTEST: "fastest_feed",  # it is cut too deep, and its motions go as fast, and press as little, as they may
+    PRESSURE: "pressure",  # too much is left at the least feed, and the limit of pressure or heat lets them press no harder
+    CHANGE: "change",  # the feed or the force of its motions could not differ more from their neighbours'
     KEPT: "kept",  # its motions must not be changed
     SHARED: "shared",  # its motions also grind what needs the contrary, or the rounds ended before
 }
 MOST_OF = 0.8  # of what was removed there, by motions at a limit
 AT = 1e-3  # relative, of a limit
+NEARLY = 0.05  # the same of pressure, which moves from round to round
 NEAR = 4.0  # samples from a border
 PLACES = 400  # that are looked at: does the wheel fit?
 LEAST = 5e-4  # of the area
@@ -50,6 +54,12 @@ def find(result, commands, feeds, factors, settings, context=None):
     slow = (feeds <= settings["feed_min_mm_s"] * (1 + AT)) & (factors >= greatest * (1 - AT))
     fast = (feeds >= settings["feed_max_mm_s"] * (1 - AT)) & (factors <= least * (1 + AT))
     slow, fast = slow & ~commands.kept, fast & ~commands.kept
+    most = limits.greatest_factors(result, commands, factors, settings)
+    pressed = (feeds <= settings["feed_min_mm_s"] * (1 + AT)) & (factors >= most * (1 - NEARLY))
+    pressed &= ~slow & ~commands.kept
+    held = limits.bound(commands, feeds, factors, settings)
+    state[(state == SHARED) & (share(held) > MOST_OF)] = CHANGE
+    state[above & (share(pressed) > MOST_OF)] = PRESSURE
     state[above & (share(slow) > MOST_OF)] = SLOWEST
     state[below & (share(fast) > MOST_OF)] = FASTEST
     state[(above | below) & (share(commands.kept) > MOST_OF)] = KEPT

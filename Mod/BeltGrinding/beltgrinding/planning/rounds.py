@@ -19,7 +19,7 @@ from ..inspection import verdict as verdicts
 from ..job import spacing
 from ..job.workpiece import check_faces, read_design
 from ..simulation import convergence, run as runs
-from . import least_time, levels, reasons
+from . import least_time, levels, limits, reasons, sure
 from .commands import Commands
 from .step import SAME, feed_exponent, figures, following
 
@@ -28,6 +28,7 @@ STALLED = 2  # rounds without a gain
 CHECKS = 16.0  # simulations' time: two runs at half the spacing and step
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
+PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 
 
 class Plan(NamedTuple):
@@ -44,6 +45,7 @@ class Plan(NamedTuple):
     factors: np.ndarray  # (commands,) on the forces
     why: dict  # as ``reasons.find``
     checked: dict  # figures of the same job at half the spacing and step, before and after; {}: not asked for
+    settings: dict  # with all defaults
 
 
 def schema():
@@ -82,6 +84,8 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
     settings = validate(settings or {})
     context = context or core.RunContext()
     _refuse(job, settings)
+    sure.refuse(job, settings)
+    limits.refuse(settings)
     commands = Commands(settled(job, context), settings, sources)
     old = commands.feed()
     tries = settings["rounds"] + 1
@@ -92,14 +96,14 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         begun = time.perf_counter()
         part = context.part(number / whole, (number + 1) / whole)
         tried = commands.with_feeds(feeds, factors)
-        result = runs.run(tried, part, influence=True)
-        one = figures(result)
+        result = runs.run(tried, part, influence=True, shifts=True)
+        one = figures(result, settings)
         rounds.append(one)
         if before is None:
             _refuse_without_stock(result)
         before = before or result
         stalled = 0 if best is None or _gains(one, best["figures"], settings) else stalled + 1
-        if best is None or _better(one, best["figures"]):
+        if best is None or _better(one, best["figures"], settings):
             best = _tried(one, feeds, factors, result, tried)
         ends = number + 1 == tries or stalled >= STALLED
         if number == 0 and start is not None and not ends:
@@ -117,7 +121,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         best = least_time.faster(commands, best, settings, rounds, told, context)
     if settings["levels"]:
         best = _in_levels(commands, best, settings, rounds, told, context)
-    better = _better(best["figures"], rounds[0]) or (
+    better = _better(best["figures"], rounds[0], settings) or (
         settings["goal"] == "time" and least_time.saves(best["figures"], rounds[0], settings)
     )
     if not better:
@@ -131,7 +135,8 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         jobs = {"before": commands.with_feeds(old), "after": best["job"]}
         for k, (name, one) in enumerate(jobs.items()):
             part = context.part(done + (1 - done) * k / 2, done + (1 - done) * (k + 1) / 2)
-            checked[name] = figures(runs.run(convergence.scaled(one, "fine"), part))
+            fine = runs.run(convergence.scaled(one, "fine"), part, shifts=True)
+            checked[name] = figures(fine, settings)
     context.report(1.0)
     return Plan(
         best["job"],
@@ -145,6 +150,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         best["factors"],
         why,
         checked,
+        settings,
     )
 
 
@@ -198,15 +204,19 @@ def settled(job, context):
     return spacing.settled(job, shape, [], context.part(0.0, 0.0))[0]
 
 
-def _better(one, other):
-    """Whether figures are better: more in tolerance, or as much and nearer to it."""
-    gain = one["in_tolerance"] - other["in_tolerance"]
+def _better(one, other, settings):
+    """Whether figures are better: nearer to the limit of pressure, or more in tolerance (surely, where that is asked
+    for), or as much and nearer to it."""
+    over = one.get("over_limit", 0.0) - other.get("over_limit", 0.0)
+    if abs(over) > PEAKS:
+        return over < 0.0
+    gain = sure.gain(one, other, settings)
     return gain > WORSE or (gain > -WORSE and one["rms_mm"] < NEARER * other["rms_mm"])
 
 
 def _gains(one, best, settings):
     """Whether a round leads on: enough comes into tolerance, or all comes nearer to it."""
-    gain = one["in_tolerance"] - best["in_tolerance"]
+    gain = sure.gain(one, best, settings)
     return gain >= settings["least_gain"] or one["rms_mm"] < NEARER * best["rms_mm"]
 
 
@@ -226,8 +236,12 @@ def _in_levels(commands, best, settings, rounds, told, context):
     feeds[free] = levels.quantised(feeds[free], lasts[free], settings["levels"])
     tried = commands.with_feeds(feeds, best["factors"])
     begun = time.perf_counter()
-    result = runs.run(tried, context.part(1.0, 1.0), influence=True)
-    one = {**figures(result), "levels": settings["levels"], "seconds": time.perf_counter() - begun}
+    result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
+    one = {
+        **figures(result, settings),
+        "levels": settings["levels"],
+        "seconds": time.perf_counter() - begun,
+    }
     rounds.append(one)
     if told is not None:
         told(one)
@@ -244,8 +258,8 @@ def summary(found):
     forces = found.commands.force(found.factors)
     return {
         "better": found.better,
-        "before": figures(found.before),
-        "after": figures(found.after),
+        "before": figures(found.before, found.settings),
+        "after": figures(found.after, found.settings),
         "checked": found.checked,
         "rounds": [
             {

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine import core
 from ..inspection import verdict as verdicts
+from . import limits, sure
 
 SAME = 1e-9  # relative, of a feed or a force
 HURRIED = {"inner_share": 0.7, "inner_cost": 0.1}  # of the band; of what deviations cost beyond
@@ -23,15 +24,25 @@ def force_exponent(job):
     return float(law["pressure_exponent"]) if law["model"] == "local" else 1.0
 
 
-def figures(result):
+def figures(result, settings):
+    """What is told of a simulation: shares of the area, by the tolerance of each zone, and ``sure.figures``."""
     summary = result.summary
-    return {
+    found = {
         "in_tolerance": summary["in_tolerance_area_share"],
         "above": summary["above_tolerance_area_share"],
         "below": summary["below_tolerance_area_share"],
         "rms_mm": summary["deviation_mm"]["rms"],
         "process_time_s": summary["process_time_s"],
     }
+    if any("tolerance_mm" in zone for zone in result.job["inspection"].get("zones", [])):
+        field = result.field
+        lower, upper = verdicts.limits(result.job, field)
+        height, weight = np.asarray(field.height, dtype=float), sure.seen_areas(field)
+        above, below = (
+            float(weight[off].sum() / weight.sum()) for off in (height > upper, height < lower)
+        )
+        found.update(in_tolerance=1.0 - above - below, above=above, below=below)
+    return {**found, **sure.figures(result, settings), **limits.figures(result, settings)}
 
 
 def following(commands, result, feeds, factors, settings, context, time_cost=None):
@@ -44,12 +55,15 @@ def following(commands, result, feeds, factors, settings, context, time_cost=Non
     field, job = result.field, result.job
     lower, upper = verdicts.limits(job, field)
     height = np.asarray(field.height, dtype=float)
-    seen = (np.asarray(field.flags) & core.MISSED) == 0
-    weight = np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
+    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+    weight = sure.seen_areas(field)
     influence = result.influence.grouped(commands.group, len(commands))
     power = 1.0 - feed_exponent(job)  # removed depth goes with the time to this power
     alpha = force_exponent(job)
     least, greatest = commands.force_range
+    greatest = np.maximum(
+        np.minimum(greatest, limits.greatest_factors(result, commands, factors, settings)), least
+    )
     # How much a command removes, at first order, against the job's: by its time and its force.
     given = (commands.feed() / feeds) ** power * factors**alpha
     slowest = (commands.feed() / settings["feed_min_mm_s"]) ** power * greatest**alpha / given
@@ -65,8 +79,8 @@ def following(commands, result, feeds, factors, settings, context, time_cost=Non
         costs = time_cost * commands.seconds(feeds)
     found = core.plan_dwell(
         influence,
-        height - 0.5 * (lower + upper),
-        0.5 * (upper - lower),
+        height - middle,
+        sure.band(result, settings, half),
         weight,
         fastest,
         slowest,
@@ -84,14 +98,36 @@ def following(commands, result, feeds, factors, settings, context, time_cost=Non
     force = np.clip(rest ** (1.0 / alpha), least, greatest)
     force[abs(force - 1.0) <= SAME] = 1.0
     new, force = np.where(moved, new, feeds), np.where(moved, force, factors)
-    inside = abs(found["excess"]) <= 0.5 * (upper - lower)
+    matter = _matter(influence, weight)
+    new = limits.feeds(commands, new, matter, settings)
+    force = limits.factors(commands, force, matter, new, settings)
+    # What the feeds and forces in the end should do: limits may have changed them.
+    done = (feeds / new) ** power * (force / factors) ** alpha
+    excess = height - middle - _removed(influence, done - 1.0, len(height))
+    inside = abs(excess) <= half
+    predicted = sure.figures(result, settings, middle + excess)
     return (
         new,
         force,
         {
-            "predicted_in_tolerance": float(weight[inside].sum() / weight.sum()),
+            "predicted_in_tolerance": sure.share(
+                {"in_tolerance": float(weight[inside].sum() / weight.sum()), **predicted}
+            ),
             "residual": found["residual"],
             "iterations": found["iterations"],
             "planning_seconds": time.perf_counter() - begun,
         },
     )
+
+
+def _matter(influence, weight):
+    """(commands,) mm4: of each command, the square of what it removes, over the area."""
+    depth = np.asarray(influence.depth, dtype=float)
+    sums = np.append(0.0, np.cumsum(depth**2 * weight[np.asarray(influence.sample)]))
+    return np.diff(sums[np.asarray(influence.first).astype(int)])
+
+
+def _removed(influence, share, samples):
+    """(samples,) mm that motions remove which take so much longer."""
+    each = np.repeat(share, np.diff(influence.first).astype(int))
+    return np.bincount(np.asarray(influence.sample), each * np.asarray(influence.depth), samples)

@@ -29,7 +29,8 @@ class Result:
     as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
     ``recording`` (core.Recording of the heights, or None), ``convergence`` (dict as in
     convergence.json, or None), ``motions`` (as ``motions.of_paths`` gives them, or None), ``verdict``
-    (dict as in verdict.json, or None), ``influence`` (core.Influence, only of a run that was asked for it).
+    (dict as in verdict.json, or None), ``influence`` (core.Influence) and
+    ``shifts`` ((samples, shifted laws) mm), both only of a run that was asked for them.
     """
 
     VERDICT = "verdict.json"
@@ -39,6 +40,7 @@ class Result:
     motions = None
     verdict = None
     influence = None
+    shifts = None
 
     def __init__(self, job, field, summary, events, steps, recording=None):
         self.job = job

@@ -35,17 +35,20 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None, recording=None, early=None, influence=False):
+def run(job, context=None, recording=None, early=None, influence=False, shifts=False):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
     with a list of the first of its warnings before anything is ground; ``influence``: the result has a
-    core.Influence, what every motion of all programs removed where.
+    core.Influence, what every motion of all programs removed where; ``shifts``: it has what laws would have removed
+    more that are a standard deviation off (``law.shifted_laws``).
     """
     warnings = []
     phases = _Phases()
     try:
         context = context or core.RunContext()
-        return _run(job, context, warnings, recording, phases, early, influence)
+        result, by_law = _run(job, context, warnings, recording, phases, early, influence)
+        result.shifts = by_law if shifts else None
+        return result
     except MemoryError:
         raise _out_of_memory(phases.seconds) from None
     except InputError as error:
@@ -170,7 +173,7 @@ def _run(job, context, warnings, recording, phases, early, influence):
     phases.restart()
     result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
     phases.end("verdict")
-    return result
+    return result, shifts
 
 
 def summarise(job, field, events):

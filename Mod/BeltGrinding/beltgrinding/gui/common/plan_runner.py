@@ -17,6 +17,8 @@ def words():
         "border": translate("BeltGrinding", "along the border of the faces"),
         "slowest_feed": translate("BeltGrinding", "too much left at the least feed"),
         "fastest_feed": translate("BeltGrinding", "cut too deep at the greatest feed"),
+        "pressure": translate("BeltGrinding", "too much left at the greatest pressure"),
+        "change": translate("BeltGrinding", "feed or force may not change faster"),
         "kept": translate("BeltGrinding", "its motions must not be changed"),
         "shared": translate("BeltGrinding", "its motions also grind what needs the contrary"),
     }

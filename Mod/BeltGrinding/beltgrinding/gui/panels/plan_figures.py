@@ -95,6 +95,14 @@ class PlanFigures(QtGui.QWidget):
                 [f"{one['process_time_s']:.1f}" for one in (before, after)],
             ),
         )
+        rows += tuple(
+            (name, percent(key))
+            for key, name in (
+                ("sure_share", translate("BeltGrinding", "Surely in tol.")),
+                ("passing", translate("BeltGrinding", "Laws that pass")),
+            )
+            if key in after
+        )
         self.table.setRowCount(len(rows))
         for row, (name, texts) in enumerate(rows):
             for column, text in enumerate((name, *texts)):

@@ -33,6 +33,7 @@ class PlanPanel(RunPanel):
         self.obj, self.document, self.found = obj, obj.Document, None
         body = QtGui.QVBoxLayout(self.form)
         body.addWidget(self._limits())
+        body.addWidget(self._changes())
         body.addWidget(self._rounds())
         row = QtGui.QHBoxLayout()
         self.begin = self._button("plan", translate("BeltGrinding", "Plan"), self.start)
@@ -72,6 +73,8 @@ class PlanPanel(RunPanel):
         }
         box.add("Goal", translate("BeltGrinding", "Goal"), goals)
         box.add("WantedShare", translate("BeltGrinding", "In tolerance, share"))
+        box.add("Probability", translate("BeltGrinding", "Probability"))
+        box.add("PlacementDeviation", translate("BeltGrinding", "Placement, std. dev."))
         box.add("FeedMin", translate("BeltGrinding", "Least feed"))
         box.add("FeedMax", translate("BeltGrinding", "Greatest feed"))
         if self.obj.getParentGroup() is not None and self._by_force():
@@ -101,7 +104,25 @@ class PlanPanel(RunPanel):
 
     def _show_goal(self):
         rows = set(self.limits.rows)
-        self.limits.show_rows(rows if self.obj.Goal == "time" else rows - {"WantedShare"})
+        if self.obj.Goal != "time" and not self.obj.Probability:
+            rows.discard("WantedShare")
+        if not self.obj.Probability:
+            rows.discard("PlacementDeviation")
+        self.limits.show_rows(rows)
+
+    def _changes(self):
+        box = Form(self.obj, "")
+        box.add("FeedChange", translate("BeltGrinding", "Change of feed, mm/s per mm"))
+        box.add("Acceleration", translate("BeltGrinding", "Acceleration"))
+        if self.obj.getParentGroup() is not None and self._by_force():
+            box.add("ForceChange", translate("BeltGrinding", "Change of force, N/s"))
+            box.add("PressureMax", translate("BeltGrinding", "Greatest pressure"))
+            box.add("HeatMax", translate("BeltGrinding", "Pressure × belt speed, MPa·m/s"))
+        box.changed = self._changed
+        self.changes = box
+        return Fold(
+            "foldChanges", translate("BeltGrinding", "Change, pressure, heat"), box, folded=True
+        )
 
     def _has_passes(self):
         try:
@@ -138,7 +159,7 @@ class PlanPanel(RunPanel):
         super().start()
 
     def make_runner(self):
-        for form in (self.limits, self.rounds):
+        for form in (self.limits, self.changes, self.rounds):
             form.check()
         self._check_kept()
         return PlanRunner(self.obj, self.progress, self.done)
@@ -257,7 +278,7 @@ class PlanPanel(RunPanel):
     def _arrange(self, running):
         super()._arrange(running)
         self.begin.setVisible(not running)
-        for widget in (self.limits, self.rounds):
+        for widget in (self.limits, self.changes, self.rounds):
             widget.setEnabled(not running)
         there = bool(self.obj.Fingerprint)
         self.figures.setVisible(running or there)

@@ -1,0 +1,203 @@
+"""What couples neighbouring commands: how fast feed and force may change along the path; and pressure and heat.
+
+The profile that misses a wanted one least, by least squares weighted with how much each command removes, is found by
+coordinate ascent on the multipliers of the limits (Hildreth, Naval Research Logistics Quarterly 4, 1957). What is
+left over is exact: no value is more than its neighbours allow, by sweeps along the path as time-optimal motion
+profiles are found (Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4, 1985).
+"""
+
+import numpy as np
+
+from ..engine import InputError
+
+LIGHT = 1e-4  # of the greatest weight: of motions that remove next to nothing
+ITERATIONS, LINEARISED = 2000, 50
+SETTLED = 1e-4  # mm/s, N
+SWEEPS = 100  # a path that comes back to a line needs a few
+AT = 1e-3  # relative, of a limit
+YIELDING = 0.5  # least exponent with which pressure follows a lowered force: that of a line contact
+
+
+def refuse(settings):
+    """Raises InputError for limits that contradict each other."""
+    if settings["levels"] and (settings["feed_change_mm_s_mm"] or settings["acceleration_mm_s2"]):
+        raise InputError(
+            "planning.levels_and_change",
+            "plan: {key}: few feeds jump from one to the next; either ask for few, or limit {other}",
+            key="levels",
+            other="feed_change_mm_s_mm" if settings["feed_change_mm_s_mm"] else "acceleration_mm_s2",
+        )
+
+
+def feeds(commands, wanted, weight, settings):
+    """(commands,) mm/s: the wanted feeds, changed where they would change too fast from motion to motion. Between
+    motions that must not be changed nothing is. ``weight`` (commands,): what a relative error of each costs."""
+    per_mm, acceleration = settings["feed_change_mm_s_mm"], settings["acceleration_mm_s2"]
+    if not per_mm and not acceleration:
+        return wanted
+    first, second, way = commands.neighbours()
+
+    def step(values):
+        by_way = per_mm * way if per_mm else np.inf
+        if acceleration:
+            by_way = np.minimum(by_way, 2.0 * acceleration * way / (values[first] + values[second]))
+        return by_way
+
+    def up(value, d):
+        by_way = value + per_mm * d if per_mm else np.inf
+        return min(by_way, (value * value + 2.0 * acceleration * d) ** 0.5) if acceleration else by_way
+
+    def down(value, d):
+        by_way = value - per_mm * d if per_mm else 0.0
+        return max(by_way, max(value * value - 2.0 * acceleration * d, 0.0) ** 0.5) if acceleration else by_way
+
+    near = _nearest(wanted, weight, commands.kept, first, second, step)
+    near = np.clip(near, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
+    return _exact(commands, np.where(commands.kept, wanted, near), (first, second, way), up, down)
+
+
+def factors(commands, wanted, weight, feeds, settings):
+    """(commands,) the wanted factors on forces, changed where forces would change too fast. A step that the program has
+    itself stays as great as it is at most. ``weight``: as for ``feeds``."""
+    rate = settings["force_change_N_s"]
+    own = commands.force(np.ones(len(commands)))
+    if not rate or not own.any():
+        return wanted
+    first, second, _ = commands.neighbours()
+    seconds = commands.motion_seconds(feeds)
+    step = np.maximum(
+        0.5 * rate * (seconds[first] + seconds[second]), abs(own[first] - own[second])
+    )
+    near = _nearest(own * wanted, weight, commands.kept, first, second, lambda _: step)
+    near = np.clip(near, *(factor * own for factor in commands.force_range))
+    edges = (first, second, step)
+    given = _exact(commands, near, edges, lambda v, d: v + d, lambda v, d: v - d)
+    least = commands.force_range[0] * own
+    return np.where(own > 0.0, np.maximum(given, least) / np.maximum(own, 1e-300), wanted)
+
+
+def bound(commands, feeds, factors, settings):
+    """(commands,) bool: the feed or the force could not differ more from a neighbour's."""
+    first, second, length = commands.neighbours()
+    one, other = feeds[first], feeds[second]
+    at = np.zeros(len(length), dtype=bool)
+    if settings["feed_change_mm_s_mm"]:
+        at |= abs(one - other) >= (1.0 - AT) * settings["feed_change_mm_s_mm"] * length
+    if settings["acceleration_mm_s2"]:
+        at |= abs(one**2 - other**2) >= (1.0 - AT) * 2.0 * settings["acceleration_mm_s2"] * length
+    if settings["force_change_N_s"]:
+        force, seconds = commands.force(factors), commands.motion_seconds(feeds)
+        step = 0.5 * settings["force_change_N_s"] * (seconds[first] + seconds[second])
+        at |= abs(force[first] - force[second]) >= (1.0 - AT) * step
+    found = np.zeros(len(commands), dtype=bool)
+    found[first[at]] = found[second[at]] = True
+    return found & ~commands.kept
+
+
+def _nearest(wanted, weight, kept, first, second, step):
+    """The profile nearest to a wanted one, nearly within the limits: of each pair's values, no further apart than
+    ``step(values)`` (pairs,)."""
+    weight = np.maximum(weight, LIGHT * max(weight.max(), 1e-300)) / np.maximum(wanted, 1e-9) ** 2
+    give = np.where(kept, 0.0, 1.0 / weight)
+    together = np.maximum(give[first] + give[second], 1e-300)
+    values, pull = wanted.astype(float), np.zeros(len(first))
+    colours = _colours(first, second)
+    for k in range(ITERATIONS):
+        if k % LINEARISED == 0:
+            allowed = np.broadcast_to(step(np.maximum(values, 1e-6)), len(first))
+        worst = 0.0
+        for mine in colours:
+            a, b, room = first[mine], second[mine], together[mine]
+            apart = values[a] - values[b] + pull[mine] * room
+            new = np.sign(apart) * np.maximum(abs(apart) - allowed[mine], 0.0) / room
+            change = new - pull[mine]
+            pull[mine] = new
+            values[a] -= change * give[a]
+            values[b] += change * give[b]
+            worst = max(worst, float(np.max(abs(change) * room, initial=0.0)))
+        if worst < SETTLED and k % LINEARISED:
+            break
+    return np.maximum(values, 1e-6)
+
+
+def _colours(first, second):
+    """Lists of pairs of which no two of a list share a command."""
+    taken, lists = {}, []
+    for k, (a, b) in enumerate(zip(first.tolist(), second.tolist())):
+        used = taken.setdefault(a, set()), taken.setdefault(b, set())
+        colour = next(c for c in range(len(lists) + 1) if c not in used[0] and c not in used[1])
+        if colour == len(lists):
+            lists.append([])
+        lists[colour].append(k)
+        for one in used:
+            one.add(colour)
+    return [np.array(one) for one in lists]
+
+
+def _exact(commands, near, edges, up, down):
+    """The largest profile (commands,) below a near one of which no value is above ``up(value, d)`` or below
+    ``down(value, d)`` of a neighbour's; those of commands that are kept stay, and what is beside them yields."""
+    edges = list(zip(*(one.tolist() for one in edges)))
+    kept = commands.kept
+    floor = _sweep(np.where(kept, near, -np.inf), edges, down, max)
+    ceiling = _sweep(np.where(kept, near, np.inf), edges, up, min)
+    below = np.clip(near, floor, np.maximum(ceiling, floor))
+    found = np.maximum(_sweep(below, edges, up, min), floor)
+    return np.where(kept, near, found)
+
+
+def _sweep(values, edges, allowed, nearest):
+    found = values.tolist()
+    for _ in range(SWEEPS):
+        changed = False
+        for order in (edges, reversed(edges)):
+            for a, b, d in order:
+                for one, other in ((a, b), (b, a)):
+                    if abs(found[one]) == np.inf:
+                        continue
+                    value = nearest(found[other], allowed(found[one], d))
+                    if value != found[other]:
+                        found[other], changed = value, True
+        if not changed:
+            break
+    return np.array(found)
+
+
+def peaks(result, commands):
+    """(commands,) MPa: the greatest pressure of each command's motions."""
+    steps = result.steps
+    begin = np.cumsum([0] + [len(one["feeds"]) for one in commands.arrays])
+    motions = begin[np.asarray(steps["program"], dtype=int)] + np.asarray(steps["pose"], dtype=int)
+    found = np.zeros(len(commands))
+    np.maximum.at(found, commands.group[motions], np.asarray(steps["peak_pressure"], dtype=float))
+    return found
+
+
+def greatest_pressure(job, settings):
+    """MPa, by the settings or else the law; inf: no limit of pressure, nor of pressure times belt speed, or no force may
+    change."""
+    if not settings["force_min_N"] and not settings["force_max_N"]:
+        return np.inf
+    law, speed = job["law"], job["belt_machine"]["belt_speed_m_s"]
+    most = settings["pressure_max_MPa"] or law["pressure_limit_MPa"] or np.inf
+    heat = settings["heat_max_MPa_m_s"] or law["heat_limit_MPa_m_s"]
+    return min(most, heat / speed) if heat and speed > 0.0 else most
+
+
+def greatest_factors(result, commands, factors, settings):
+    """(commands,) up to which the factors on forces keep the limit of pressure: a raised force raises the pressure no more
+    than in proportion, a lowered one lowers it with its square root at least."""
+    most = greatest_pressure(result.job, settings)
+    if most == np.inf:
+        return np.full(len(commands), np.inf)
+    room = most / np.maximum(peaks(result, commands), 1e-9)
+    return factors * np.where(room < 1.0, room ** (1.0 / YIELDING), room)
+
+
+def figures(result, settings):
+    """``peak_pressure_MPa``, and by which share it is ``over_limit``; empty where nothing limits it."""
+    most = greatest_pressure(result.job, settings)
+    if most == np.inf:
+        return {}
+    peak = float(np.max(result.steps["peak_pressure"], initial=0.0))
+    return {"peak_pressure_MPa": peak, "over_limit": max(0.0, peak / most - 1.0)}

@@ -83,7 +83,10 @@ def test_force_changes_no_faster_than_may_be_in_time(job):
     plan = planning.plan(job, {**settings, "force_change_N_s": rate})
     assert plan.better and steps(plan)[plain].max() <= rate * (1 + EXACT)
     forces = plan.commands.force(plan.factors)[own > 0]
-    assert forces.min() >= 5.0 * own[own > 0].min() / own.max() - EXACT and forces.max() <= 90.0 + EXACT
+    assert (
+        forces.min() >= 5.0 * own[own > 0].min() / own.max() - EXACT
+        and forces.max() <= 90.0 + EXACT
+    )
 
 
 @pytest.mark.parametrize("limit", ["pressure_max_MPa", "heat_max_MPa_m_s", "law"])
@@ -93,7 +96,9 @@ def test_forces_keep_to_pressure_and_heat(job, limit):
     peak = free.after.steps["peak_pressure"].max()
     most, given = 0.85 * peak, job
     if limit == "law":
-        given = jobs.validate({**copy.deepcopy(job), "law": {**job["law"], "pressure_limit_MPa": most}})
+        given = jobs.validate(
+            {**copy.deepcopy(job), "law": {**job["law"], "pressure_limit_MPa": most}}
+        )
     else:
         speed = job["belt_machine"]["belt_speed_m_s"] if limit.startswith("heat") else 1.0
         settings = {**settings, limit: most * speed}
@@ -113,7 +118,9 @@ def test_few_feeds_and_gentle_changes_contradict_each_other(job):
 def test_a_profile_is_the_wanted_one_where_that_keeps_the_limits(job):
     plan = planning.plan(job, {**SETTINGS, "rounds": 1})
     wide = rounds.validate({"feed_change_mm_s_mm": 1e5, "acceleration_mm_s2": 1e8})
-    assert np.array_equal(limits.feeds(plan.commands, plan.new, np.ones(len(plan.new)), wide), plan.new)
+    assert np.array_equal(
+        limits.feeds(plan.commands, plan.new, np.ones(len(plan.new)), wide), plan.new
+    )
 
 
 def test_a_time_law_with_acceleration_is_planned_too(job):

@@ -94,15 +94,10 @@ def calibrate_from_scan(
     }
 
 
-def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
-    """``calibrate_from_scan`` for a result's folder (as ``beltgrind run`` writes it) and a scan of the
-    ground part, a mesh's file in the job's coordinates; ``unit_mm``: mm of the file's 1; placement:
-    where the mesh lies, a 4 x 4 matrix. Without a scan: the one that was aligned and measured for
-    the result (``scan.compare``, ``beltgrind scan``). Returns (law with the new coefficient, figures). Raises
-    InputError.
-    """
-    result = Result.read(result)
-    field, law = result.field, result.job["law"]
+def measured_heights(result, scan=None, unit_mm=1.0, placement=None):
+    """(samples,) mm above the design of a ``Result``, as ``from_files`` takes them; NaN where there are none. Raises
+    InputError."""
+    field = result.field
     unmeasured = (np.asarray(field.flags) & core.MISSED) != 0
     if scan is None:
         if not len(field.measured):
@@ -120,6 +115,19 @@ def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
         unmeasured |= (np.asarray(scanned.flags) & core.MISSED) != 0
         measured = np.array(scanned.height)
     measured[unmeasured] = math.nan
+    return measured
+
+
+def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
+    """``calibrate_from_scan`` for a result's folder (as ``beltgrind run`` writes it) and a scan of the
+    ground part, a mesh's file in the job's coordinates; ``unit_mm``: mm of the file's 1; placement:
+    where the mesh lies, a 4 x 4 matrix. Without a scan: the one that was aligned and measured for
+    the result (``scan.compare``, ``beltgrind scan``). Returns (law with the new coefficient, figures). Raises
+    InputError.
+    """
+    result = Result.read(result)
+    field, law = result.field, result.job["law"]
+    measured = measured_heights(result, scan, unit_mm, placement)
     removed = np.asarray(field.stock_height, dtype=float) - field.height
     figures = calibrate_from_scan(
         measured,

@@ -14,6 +14,7 @@ import sys
 from . import (
     belt_plan,
     calibrate,
+    learn,
     faces,
     faults,
     from_faces,
@@ -41,6 +42,7 @@ TOPICS = (
     program,
     faces,
     calibrate,
+    learn,
     inspect,
     measure,
     report,

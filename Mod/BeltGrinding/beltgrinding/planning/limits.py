@@ -25,13 +25,16 @@ def refuse(settings):
             "planning.levels_and_change",
             "plan: {key}: few feeds jump from one to the next; either ask for few, or limit {other}",
             key="levels",
-            other="feed_change_mm_s_mm" if settings["feed_change_mm_s_mm"] else "acceleration_mm_s2",
+            other="feed_change_mm_s_mm"
+            if settings["feed_change_mm_s_mm"]
+            else "acceleration_mm_s2",
         )
 
 
 def feeds(commands, wanted, weight, settings):
     """(commands,) mm/s: the wanted feeds, changed where they would change too fast from motion to motion. Between
-    motions that must not be changed nothing is. ``weight`` (commands,): what a relative error of each costs."""
+    motions that must not be changed nothing is. ``weight`` (commands,): what a relative error of each costs.
+    """
     per_mm, acceleration = settings["feed_change_mm_s_mm"], settings["acceleration_mm_s2"]
     if not per_mm and not acceleration:
         return wanted
@@ -45,11 +48,17 @@ def feeds(commands, wanted, weight, settings):
 
     def up(value, d):
         by_way = value + per_mm * d if per_mm else np.inf
-        return min(by_way, (value * value + 2.0 * acceleration * d) ** 0.5) if acceleration else by_way
+        return (
+            min(by_way, (value * value + 2.0 * acceleration * d) ** 0.5) if acceleration else by_way
+        )
 
     def down(value, d):
         by_way = value - per_mm * d if per_mm else 0.0
-        return max(by_way, max(value * value - 2.0 * acceleration * d, 0.0) ** 0.5) if acceleration else by_way
+        return (
+            max(by_way, max(value * value - 2.0 * acceleration * d, 0.0) ** 0.5)
+            if acceleration
+            else by_way
+        )
 
     near = _nearest(wanted, weight, commands.kept, first, second, step)
     near = np.clip(near, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
@@ -84,7 +93,9 @@ def bound(commands, feeds, factors, settings):
     if settings["feed_change_mm_s_mm"]:
         at |= abs(one - other) >= (1.0 - AT) * settings["feed_change_mm_s_mm"] * length
     if settings["acceleration_mm_s2"]:
-        at |= abs(one**2 - other**2) >= (1.0 - AT) * 2.0 * settings["acceleration_mm_s2"] * length
+        at |= (
+            abs(one**2 - other**2) >= (1.0 - AT) * 2.0 * settings["acceleration_mm_s2"] * length
+        )
     if settings["force_change_N_s"]:
         force, seconds = commands.force(factors), commands.motion_seconds(feeds)
         step = 0.5 * settings["force_change_N_s"] * (seconds[first] + seconds[second])
@@ -136,7 +147,8 @@ def _colours(first, second):
 
 def _exact(commands, near, edges, up, down):
     """The largest profile (commands,) below a near one of which no value is above ``up(value, d)`` or below
-    ``down(value, d)`` of a neighbour's; those of commands that are kept stay, and what is beside them yields."""
+    ``down(value, d)`` of a neighbour's; those of commands that are kept stay, and what is beside them yields.
+    """
     edges = list(zip(*(one.tolist() for one in edges)))
     kept = commands.kept
     floor = _sweep(np.where(kept, near, -np.inf), edges, down, max)

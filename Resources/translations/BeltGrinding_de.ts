@@ -4136,6 +4136,102 @@ im Mittel {} abgetragen</translation>
         <source>too much left at the greatest pressure</source>
         <translation>beim größten Druck bleibt zu viel stehen</translation>
     </message>
+    <message>
+        <source>A part costs {:.3f}, the batch {:.2f}; {:.1f} h</source>
+        <translation>Ein Teil kostet {:.3f}, das Los {:.2f}; {:.1f} h</translation>
+    </message>
+    <message>
+        <source>A worn belt cuts less: each part is ground slower, or pressed harder, so that it loses as much as with a fresh belt. When is a new belt cheaper?</source>
+        <translation>Ein verschlissenes Band trägt weniger ab: jedes Teil wird langsamer geschliffen oder stärker gedrückt, sodass es so viel verliert wie mit einem frischen. Ab wann ist ein neues Band billiger?</translation>
+    </message>
+    <message>
+        <source>Belt plan</source>
+        <translation>Bandplan</translation>
+    </message>
+    <message>
+        <source>Changing it, min</source>
+        <translation>Bandwechsel, min</translation>
+    </message>
+    <message>
+        <source>Cost of a belt</source>
+        <translation>Kosten eines Bands</translation>
+    </message>
+    <message>
+        <source>Cost of a minute</source>
+        <translation>Kosten einer Minute</translation>
+    </message>
+    <message>
+        <source>Folder for the belt plan</source>
+        <translation>Ordner für den Bandplan</translation>
+    </message>
+    <message>
+        <source>Follows the wear</source>
+        <translation>Folgt dem Verschleiß</translation>
+    </message>
+    <message>
+        <source>Greatest force, N</source>
+        <translation>Größte Kraft, N</translation>
+    </message>
+    <message>
+        <source>Least feed, mm/s</source>
+        <translation>Kleinster Vorschub, mm/s</translation>
+    </message>
+    <message>
+        <source>New belts: {}; parts on each belt: {}</source>
+        <translation>Neue Bänder: {}; Teile je Band: {}</translation>
+    </message>
+    <message>
+        <source>Parts</source>
+        <translation>Teile</translation>
+    </message>
+    <message>
+        <source>Save...</source>
+        <translation>Speichern...</translation>
+    </message>
+    <message>
+        <source>With every belt as long as it can: {:.2f}</source>
+        <translation>Jedes Band so lange, wie es kann: {:.2f}</translation>
+    </message>
+    <message>
+        <source>Written into {}: {}</source>
+        <translation>Geschrieben nach {}: {}</translation>
+    </message>
+    <message>
+        <source>cost of the part</source>
+        <translation>Kosten des Teils</translation>
+    </message>
+    <message>
+        <source>cut of the belt, %</source>
+        <translation>Abtrag des Bands, %</translation>
+    </message>
+    <message>
+        <source>feed</source>
+        <translation>Vorschub</translation>
+    </message>
+    <message>
+        <source>force</source>
+        <translation>Kraft</translation>
+    </message>
+    <message>
+        <source>force, then feed</source>
+        <translation>Kraft, dann Vorschub</translation>
+    </message>
+    <message>
+        <source>of the program&apos;s, %</source>
+        <translation>vom Programm, %</translation>
+    </message>
+    <message>
+        <source>part; a new belt where the background changes</source>
+        <translation>Teil; ein neues Band, wo der Grund wechselt</translation>
+    </message>
+    <message>
+        <source>{} parts are ground by belts that have done more than their wear was measured for</source>
+        <translation>{} Teile schleifen Bänder, die mehr getan haben, als ihr Verschleiß gemessen wurde</translation>
+    </message>
+    <message>
+        <source>{} parts, {} new belts, cost {:.2f}</source>
+        <translation>{} Teile, {} neue Bänder, Kosten {:.2f}</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -4157,6 +4253,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Describes contact wheel, belt, force control and cell</source>
         <translation>Beschreibt Kontaktscheibe, Band, Kraftregelung und Zelle</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_BeltPlan</name>
+    <message>
+        <source>Belt plan...</source>
+        <translation>Bandplan...</translation>
+    </message>
+    <message>
+        <source>When to change the belt over a batch of parts, and how feed or force follow its wear</source>
+        <translation>Wann das Band über ein Los von Teilen zu wechseln ist, und wie Vorschub oder Kraft seinem Verschleiß folgen</translation>
     </message>
 </context>
 <context>

@@ -106,7 +106,9 @@ def test_intervals_hold_the_truth_about_as_often_as_they_say():
         }
         law = BELIEVED
         for work in (0.0, 4000.0):
-            law = learning.learn(job_of(law, work), ground(true, work, random, 0.08)[0], drift=0.0).law
+            law = learning.learn(
+                job_of(law, work), ground(true, work, random, 0.08)[0], drift=0.0
+            ).law
         calibration = law["calibration"]
         k = calibration["parameters"].index("coefficient")
         off = math.log(law["coefficient_mm2_per_N"] / true["coefficient_mm2_per_N"])

@@ -52,7 +52,9 @@ def learn(job, measured, scatter=None, drift=DRIFT, context=None):
     law = job["law"]
     if law["model"] in ("geometric", "hammann"):
         raise InputError(
-            "calibration.learn_model", "learn: a {model} law has no coefficient to learn", model=law["model"]
+            "calibration.learn_model",
+            "learn: a {model} law has no coefficient to learn",
+            model=law["model"],
         )
     calibration = law["calibration"]
     if scatter is None:
@@ -221,7 +223,8 @@ def _applied(law, names, found):
 def _wear_slope(law, belt):
     """By how much ln k_t changes with the logarithm of the wear's scale."""
     low, high = (
-        core.belt_remaining(laws.engine_wear(_applied(law, [WEAR], [by])), belt) for by in (-STEP, STEP)
+        core.belt_remaining(laws.engine_wear(_applied(law, [WEAR], [by])), belt)
+        for by in (-STEP, STEP)
     )
     return (math.log(max(high, 1e-12)) - math.log(max(low, 1e-12))) / (2.0 * STEP)
 

@@ -1,12 +1,9 @@
 """When to change the belt over a batch, and how feed or force follow its wear."""
 
-import json
 from pathlib import Path
 
 from . import background, outputs
 from .messages import print_text
-
-FILES = ("belt_plan.json", "parts.csv", "belt_plan.png")
 
 
 def add(commands):
@@ -44,10 +41,9 @@ def add(commands):
 
 
 def _belt_plan(arguments):
-    from ..base.files import cannot_be_written, write_whole
     from ..engine import InputError
     from ..job import inputs, load as jobs
-    from ..planning import belt_chart, belt_plan
+    from ..planning import belt_plan
 
     if arguments.follow != "feed" and arguments.force_max <= 0.0:
         raise InputError(
@@ -55,7 +51,9 @@ def _belt_plan(arguments):
         )
     out = Path(arguments.output)
     job = jobs.load(arguments.job)
-    outputs.check(arguments, [out / name for name in FILES], [arguments.job, *inputs.files(job)])
+    outputs.check(
+        arguments, [out / name for name in belt_plan.FILES], [arguments.job, *inputs.files(job)]
+    )
     costs = belt_plan.Costs(arguments.belt_cost, 60.0 * arguments.change_min, arguments.minute_cost)
 
     def work(context):
@@ -66,19 +64,7 @@ def _belt_plan(arguments):
 
     found = background.run(work, arguments.quiet)
     data = belt_plan.summary(found, costs)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        for name, content in zip(
-            FILES,
-            (
-                (json.dumps(data, indent=1) + "\n").encode(),
-                belt_plan.table(found).encode(),
-                belt_chart.draw(found),
-            ),
-        ):
-            write_whole(out / name, content)
-    except OSError as error:
-        raise cannot_be_written(out, error) from None
+    belt_plan.write(found, costs, out)
     if not arguments.quiet:
         print_text(_text(data))
 

@@ -20,9 +20,7 @@ def add(commands):
         nargs="?",
         help="mesh of the ground part, where the job's design lies; none: what 'scan' measured",
     )
-    learn.add_argument(
-        "-o", "--output", required=True, help="file for the next part's law (.json)"
-    )
+    learn.add_argument("-o", "--output", required=True, help="file for the next part's law (.json)")
     learn.add_argument("--report", help="file for what was learned (.json)")
     learn.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
     learn.add_argument(

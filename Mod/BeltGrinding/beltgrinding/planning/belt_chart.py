@@ -5,69 +5,94 @@ from PIL import Image, ImageDraw
 
 from ..inspection import picture
 
-WIDTH, ROW, LEFT, TOP, BOTTOM = 1400, 240, 150, 50, 60  # pixels
-LETTERS = 22
+WIDTH, ROW, LEFT, TOP, BOTTOM = 1400, 240, 110, 50, 60  # pixels
+LETTERS, MARGIN = 22, 6  # pixels
 INK, GRID = (34, 38, 43), (215, 218, 222)
 COLOURS = ((31, 95, 168), (166, 61, 47))
 BELT = (235, 239, 244)
 
 
-def draw(found):
-    """Bytes of a PNG of a ``BeltPlan``."""
-    rows = found.rows
+WORDS = {
+    "title": "{} parts, {} new belts, cost {:.2f}",
+    "cut": "cut of the belt, %",
+    "pace": "of the program's, %",
+    "feed": "feed",
+    "force": "force",
+    "cost": "cost of the part",
+    "part": "part; a new belt where the background changes",
+}
+
+
+class _Pen:
+    """Where and how large it is drawn; ``share``: of the size in the manual."""
+
+    def __init__(self, width, rows, share, top):
+        self.left, self.top, self.row, self.bottom = (share * v for v in (LEFT, top, ROW, BOTTOM))
+        self.right, self.share = width - 20 * share, share
+        self.image = Image.new(
+            "RGB", (width, int(self.top + rows * self.row + self.bottom)), "white"
+        )
+        self.pen, self.font = ImageDraw.Draw(self.image), picture.font(int(LETTERS * share))
+
+    def text(self, x, y, text, fill=INK, right=False):
+        x -= self.length(text) if right else 0.0
+        self.pen.text((x, y), text, font=self.font, fill=fill)
+
+    def length(self, text):
+        return self.pen.textlength(text, font=self.font)
+
+
+def draw(found, words=None, width=WIDTH, share=1.0):
+    """Bytes of a PNG of a ``BeltPlan``. ``words``: as ``WORDS``; ``width``: pixels; ``share``: of the size of letters and
+    charts in the manual."""
+    rows, words = found.rows, words or WORDS
     charts = (
-        ("cut of the belt, %", (("", [100.0 * row["cut"] for row in rows]),)),
+        (words["cut"], (("", [100.0 * row["cut"] for row in rows]),)),
         (
-            "of the program's, %",
+            words["pace"],
             (
-                ("feed", [100.0 * row["feed_factor"] for row in rows]),
-                ("force", [100.0 * row["force_factor"] for row in rows]),
+                (words["feed"], [100.0 * row["feed_factor"] for row in rows]),
+                (words["force"], [100.0 * row["force_factor"] for row in rows]),
             ),
         ),
-        ("cost of the part", (("", [row["cost"] for row in rows]),)),
+        (words["cost"], (("", [row["cost"] for row in rows]),)),
     )
-    image = Image.new("RGB", (WIDTH, TOP + len(charts) * ROW + BOTTOM), "white")
-    pen, font = ImageDraw.Draw(image), picture.font(LETTERS)
-    x = LEFT + (np.arange(len(rows) + 1)) / max(len(rows), 1) * (WIDTH - LEFT - 20)
-    _belts(pen, rows, x, TOP + len(charts) * ROW)
-    text = f"{len(rows)} parts, {found.belts} new belts, cost {found.cost:.2f}"
-    pen.text((LEFT, 12), text, font=font, fill=INK)
-    for k, (name, lines) in enumerate(charts):
-        _chart(pen, font, x, TOP + k * ROW, name, lines)
-    y = TOP + len(charts) * ROW + 8
-    pen.text((LEFT, y), "1", font=font, fill=INK)
-    last = str(len(rows))
-    pen.text((WIDTH - 20 - pen.textlength(last, font=font), y), last, font=font, fill=INK)
-    pen.text((LEFT + 40, y), "part; a new belt where the background changes", font=font, fill=INK)
-    return picture.png(np.asarray(image))
-
-
-def _belts(pen, rows, x, bottom):
-    """Every other belt's parts on a tinted ground."""
-    for k, row in enumerate(rows):
+    pen = _Pen(width, len(charts), share, TOP if words["title"] else MARGIN)
+    x = pen.left + np.arange(len(rows) + 1) / max(len(rows), 1) * (pen.right - pen.left)
+    end = pen.top + len(charts) * pen.row
+    for k, row in enumerate(rows):  # every other belt's parts on a tinted ground
         if row["belt"] % 2 == 0:
-            pen.rectangle([x[k], TOP, x[k + 1], bottom], fill=BELT)
+            pen.pen.rectangle([x[k], pen.top, x[k + 1], end], fill=BELT)
+    title = words["title"].format(len(rows), found.belts, found.cost)
+    pen.text(pen.left, 12 * share, title)
+    for k, (name, lines) in enumerate(charts):
+        _chart(pen, x, pen.top + k * pen.row, name, lines)
+    y = end + 8 * share
+    pen.text(pen.left, y, "1")
+    pen.text(pen.right, y, str(len(rows)), right=True)
+    pen.text(pen.left + 40 * share, y, words["part"])
+    return picture.png(np.asarray(pen.image))
 
 
-def _chart(pen, font, x, top, name, lines):
+def _chart(pen, x, top, name, lines):
     most = _above(max((max(values) for _, values in lines if values), default=1.0))
-    upper, lower = top + 34, top + ROW - 16
+    upper, lower = top + 34 * pen.share, top + pen.row - 16 * pen.share
     for share in (0.0, 0.5, 1.0):
         y = lower - share * (lower - upper)
-        pen.line([LEFT, y, WIDTH - 20, y], fill=GRID)
-        text = f"{share * most:.3g}"
-        pen.text((LEFT - 10 - pen.textlength(text, font=font), y - 13), text, font=font, fill=INK)
-    pen.text((LEFT, top + 4), name, font=font, fill=INK)
-    at = LEFT + pen.textlength(name, font=font) + 30
+        pen.pen.line([pen.left, y, pen.right, y], fill=GRID)
+        pen.text(pen.left - 10 * pen.share, y - 13 * pen.share, f"{share * most:.3g}", right=True)
+    at = pen.left
+    pen.text(at, top + 4 * pen.share, name)
+    at += pen.length(name) + 30 * pen.share
     for (what, values), colour in zip(lines, COLOURS):
-        pen.text((at, top + 4), what, font=font, fill=colour)
-        at += pen.textlength(what, font=font) + 24
+        pen.text(at, top + 4 * pen.share, what, fill=colour)
+        at += pen.length(what) + 24 * pen.share
         points = []
         for k, value in enumerate(values):
             y = lower - value / most * (lower - upper)
             points += [(x[k], y), (x[k + 1], y)]
         if len(points) > 1:
-            pen.line(points, fill=colour, width=3)
+            pen.pen.line(points, fill=colour, width=max(int(3 * pen.share), 2))
 
 
 def _above(value):

@@ -8,11 +8,14 @@ are left (Bellman, Dynamic Programming, 1957), which is exact: each belt begins 
 
 import csv
 import io
+import json
 import math
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
 from ..job import law as laws
 from ..simulation import run as runs
@@ -20,6 +23,7 @@ from . import rounds, step
 from .commands import Commands
 
 FOLLOW = ("feed", "force", "both")
+FILES = ("belt_plan.json", "parts.csv", "belt_plan.png")
 MOST_PARTS = 100_000
 NEAR = 1e-6  # of the removal, that a part may lack at a limit
 INNER = 8  # how often a part's own wear is looked at, for its mean cut
@@ -277,6 +281,32 @@ def summary(found, costs):
         "cost_until_worn_out": found.until_worn_out,
         "costs": costs._asdict(),
     }
+
+
+def write(found, costs, folder, words=None, replace=True):
+    """Writes ``FILES`` into a folder: figures, a line a part, chart; ``replace``: files that are there already. Raises
+    InputError."""
+    from . import belt_chart  # pictures are drawn only for files
+
+    folder = Path(folder)
+    there = [name for name in FILES if (folder / name).exists()]
+    if there and not replace:
+        raise InputError(
+            "planning.belts_there",
+            "{file}: is there already; choose another folder",
+            file=folder / there[0],
+        )
+    contents = (
+        (json.dumps(summary(found, costs), indent=1) + "\n").encode(),
+        table(found).encode(),
+        belt_chart.draw(found, words),
+    )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in zip(FILES, contents):
+            write_whole(folder / name, content)
+    except OSError as error:
+        raise cannot_be_written(folder, error) from None
 
 
 def table(found):

@@ -44,6 +44,7 @@ MENU = (  # the same steps and what else belongs to each, divided
         results.Contact,
         results.Plan,
         results.GrindFaces,
+        results.BeltPlan,
         report.CheckSettings,
     ),
     (

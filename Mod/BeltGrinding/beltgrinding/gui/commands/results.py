@@ -46,6 +46,20 @@ class Plan(Command):
         show(obj)
 
 
+class BeltPlan(Command):
+    NAME = "BeltGrinding_BeltPlan"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_BeltPlan", "Belt plan...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_BeltPlan",
+        "When to change the belt over a batch of parts, and how feed or force follow its wear",
+    )
+
+    def run(self):
+        from ..panels.belt_plan_panel import BeltPlanPanel
+
+        Gui.Control.showDialog(BeltPlanPanel(active_job()))
+
+
 class GrindFaces(Command):
     NAME = "BeltGrinding_GrindFaces"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_GrindFaces", "Grind these faces...")

@@ -1,15 +1,13 @@
 """What a plan found, in its panel: rounds, before and after side by side, why the rest stays, a picture."""
 
-from pathlib import Path
-
 import FreeCADGui as Gui
 
 from ...objects import preferences
 from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
 from ..charts.feed_chart import FeedChart
+from ..widgets.picture_label import PictureLabel
 
-PICTURE_WIDTH = 160  # pixels, least; the panel must fit the combo view as it comes
 LARGE = 0.9  # of the screen
 
 
@@ -46,7 +44,7 @@ class PlanFigures(QtGui.QWidget):
             translate("BeltGrinding", "Of the area, what stays out of tolerance:")
         )
         self.why.setWordWrap(True)
-        self.picture = _Picture(self.enlarge)
+        self.picture = PictureLabel("planPicture", self.enlarge)
         for widget in (self.rounds, self.table, self.checked, self.why, self.reasons, self.picture):
             body.addWidget(widget)
 
@@ -172,41 +170,6 @@ def _passes(one):
         "BeltGrinding", "Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses"
     )
     return text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
-
-
-class _Picture(QtGui.QLabel):
-    """A picture as wide as the panel; a click calls ``clicked()``."""
-
-    def __init__(self, clicked):
-        super().__init__()
-        self.setObjectName("planPicture")
-        self.clicked, self.pixmap_ = clicked, QtGui.QPixmap()
-        self.setMinimumWidth(PICTURE_WIDTH)
-        self.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
-        self.setCursor(QtCore.Qt.PointingHandCursor)
-        self.setToolTip(translate("BeltGrinding", "Click for a larger picture"))
-
-    def show_file(self, path):
-        self.pixmap_ = QtGui.QPixmap(path) if path and Path(path).exists() else QtGui.QPixmap()
-        self.setVisible(not self.pixmap_.isNull())
-        self._fit()
-
-    def resizeEvent(self, event):
-        super().resizeEvent(event)
-        self._fit()
-
-    def _fit(self):
-        if self.pixmap_.isNull():
-            return
-        width = max(self.width(), PICTURE_WIDTH)
-        ratio = self.devicePixelRatioF()
-        fitted = self.pixmap_.scaledToWidth(int(width * ratio), QtCore.Qt.SmoothTransformation)
-        fitted.setDevicePixelRatio(ratio)
-        self.setPixmap(fitted)
-        self.setFixedHeight(int(fitted.height() / ratio))
-
-    def mousePressEvent(self, event):
-        self.clicked()
 
 
 def _table(name, *columns, stretched=0):

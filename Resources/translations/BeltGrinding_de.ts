@@ -4232,6 +4232,34 @@ im Mittel {} abgetragen</translation>
         <source>{} parts, {} new belts, cost {:.2f}</source>
         <translation>{} Teile, {} neue Bänder, Kosten {:.2f}</translation>
     </message>
+    <message>
+        <source>Coefficient</source>
+        <translation>Beiwert</translation>
+    </message>
+    <message>
+        <source>Correct the law</source>
+        <translation>Gesetz berichtigen</translation>
+    </message>
+    <message>
+        <source>Learning from the scan...</source>
+        <translation>Lerne aus dem Scan...</translation>
+    </message>
+    <message>
+        <source>Measured removal is {:.3f} of the predicted.</source>
+        <translation>Gemessen ist das {:.3f}-Fache des vorhergesagten Abtrags.</translation>
+    </message>
+    <message>
+        <source>The job has this law now; simulate or plan the next part.</source>
+        <translation>Der Auftrag hat jetzt dieses Gesetz; simulieren oder planen Sie das nächste Teil.</translation>
+    </message>
+    <message>
+        <source>Wear scale</source>
+        <translation>Verschleißskala</translation>
+    </message>
+    <message>
+        <source>law and wear of the belt, as far as they are unsure, by what the scan shows: for the next part</source>
+        <translation>Gesetz und Verschleiß des Bands, soweit sie unsicher sind, nach dem, was der Scan zeigt: für das nächste Teil</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

@@ -35,6 +35,7 @@ scan = ground.Mesh.copy()
 scan.translate(0.4, -0.3, 0.5)
 scan.write(os.path.abspath("scan.stl"))
 menu("Compare a scan...")
+assert not field("correctLaw").isEnabled()
 type_in("scan", os.path.abspath("scan.stl"))
 press("Compare")
 table, note = field("figures"), widgets(QtGui.QLabel, "note")[0]
@@ -45,11 +46,18 @@ simulation = doc.Simulation
 assert abs(simulation.DifferenceMean.Value) < 0.01, simulation.DifferenceMean
 assert simulation.ScanResidual.Value < 0.02
 assert deviation.ColourBy == "difference"
+# A law that removes as the scan shows stays; one that removes too little is corrected.
+coefficient = job.LawCoefficient
+press("Correct the law")
+wait(lambda: "the next part" in note.text(), 120)
+assert abs(job.LawCoefficient / coefficient - 1.0) < 0.03 and job.Calibration, job.LawCoefficient
+assert simulation.OutOfDate and not field("correctLaw").isEnabled()
 FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
 FreeCADGui.SendMsgToActiveView("ViewFit")
 settle()
 press("Cancel")
 assert not getattr(doc.Simulation, "ScanFigures", "")
+assert job.LawCoefficient == coefficient
 assert deviation.ColourBy == "deviation"
 assert len(simulation.Proxy.field(simulation).measured) == 0
 

@@ -71,7 +71,7 @@ for program in programs:
 for program in programs:
     doc.removeObject(program.Name)
 beltgrinding.make_plan(job, Rounds=1, Check=False, ForceMax="40 N")
-for command in ("Plan", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan"):
+for command in ("Plan", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan", "BeltPlan"):
     Gui.runCommand("BeltGrinding_" + command)
     look(command)
 assert not wide, wide

@@ -77,6 +77,15 @@ doc = FreeCAD.openDocument(os.path.abspath("scan.FCStd"))
 field = doc.Simulation.Proxy.field(doc.Simulation)
 assert np.isfinite(field.measured).mean() > 0.95
 job = doc.Simulation.getParentGroup()
+before = job.LawCoefficient
+learned = beltgrinding.learn_scan(job, scatter=0.01)  # 0.03 mm more is left
+assert learned.factor < 0.97 and job.LawCoefficient < 0.98 * before
+assert near(job.LawCoefficient, learned.law["coefficient_mm2_per_N"]) and doc.Simulation.OutOfDate
+try:
+    beltgrinding.learn_scan(job)
+    assert False, "of another result"
+except beltgrinding.InputError as error:
+    assert "out of date" in str(error)
 beltgrinding.simulate(job)  # another result: the measurement was of the old one
 assert doc.Simulation.ScanFigures == ""
 assert len(doc.Simulation.Proxy.field(doc.Simulation).measured) == 0

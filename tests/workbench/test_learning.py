@@ -92,6 +92,17 @@ def test_one_part_tells_the_coefficient_and_not_the_wear_of_a_fresh_belt(factor)
     assert found.factor == pytest.approx(factor, rel=0.1)
 
 
+@pytest.mark.parametrize("model", ["local", "local_linear"])
+def test_a_law_that_was_never_calibrated_learns_its_coefficient(model):
+    law = {"model": model, "coefficient_mm2_per_N": 1.25e-4}
+    true = {**law, "coefficient_mm2_per_N": 2e-4}
+    found = learning.learn(job_of(law), ground(true, 0.0)[0], scatter=0.01)
+    assert [one["parameter"] for one in found.report] == ["coefficient"]
+    assert found.law["coefficient_mm2_per_N"] == pytest.approx(2e-4, rel=0.03)
+    again = learning.learn(job_of(found.law), ground(true, 0.0)[0])
+    assert again.factor == pytest.approx(1.0, abs=0.03)
+
+
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """Laws drawn from what is believed, each tried on two parts."""
     random, held = np.random.default_rng(3), []

@@ -105,6 +105,7 @@ DOCUMENT_FUNCTIONS = (
     "open_job",
     "make_ground_mesh",
     "compare_scan",
+    "learn_scan",
 )
 
 

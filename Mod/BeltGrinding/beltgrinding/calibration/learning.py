@@ -181,10 +181,11 @@ def _prior(law, drift):
     """(names, covariance) before the part: the calibration's, with the drift of a part."""
     calibration = law["calibration"]
     given = list(calibration.get("parameters", []))
-    covariance = np.array(calibration.get("covariance", []), dtype=float).reshape(len(given), -1)
+    laws.shifted_laws(law)  # refuses what is no covariance
+    covariance = np.array(calibration.get("covariance", []), dtype=float)
+    covariance = covariance.reshape(len(given), len(given))
     learnt = (COEFFICIENT, WEAR, *(laws.EXPONENTS if law["model"] == "local" else ()))
     kept = [k for k, name in enumerate(given) if name in learnt]
-    laws.shifted_laws(law)  # refuses what is no covariance
     names = [given[k] for k in kept]
     sizes = {}
     if WEAR not in names and law["wear"]["model"] in ("exponential", "two_stage"):

@@ -10,6 +10,7 @@ from .first_settings import set_up
 from .exchange import export_job, open_example, open_job
 from .inspection import (
     compare_scan,
+    learn_scan,
     make_deviation,
     make_ground_mesh,
     make_section,
@@ -37,6 +38,7 @@ __all__ = [
     "apply_plan",
     "check_settings",
     "compare_scan",
+    "learn_scan",
     "export_job",
     "export_program",
     "follow_path",

@@ -125,3 +125,12 @@ def compare_scan(job, path, **options):
     simulation.touch()
     job.Document.recompute()
     return figures
+
+
+def learn_scan(job, **options):
+    """Corrects the job's law and the wear of its belt by the scan that ``compare_scan`` took, for the next part; returns
+    ``calibration.learning.Learned``. ``options``: scatter, drift. The result is out of date then.
+    """
+    learned = part_scan.learn(simulated(job), job, **options)
+    job.Document.recompute()
+    return learned

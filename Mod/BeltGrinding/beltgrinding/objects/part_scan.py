@@ -3,10 +3,11 @@
 import json
 from types import SimpleNamespace
 
+from ..calibration import learning, part_scan
 from ..engine import InputError, core
 from ..scan import comparison as scan
-from . import job_inputs, result_files
-from .properties import Output, add_outputs
+from . import job_data, job_inputs, result_files
+from .properties import Output, add_outputs, from_job
 
 OUTPUTS = (
     Output("ScanFile", "String", "Scan", "the scan of the ground part that was compared"),
@@ -67,3 +68,23 @@ def compare(simulation, job, path, **options):
     figures = scan.compare(result, path, **options)
     store(simulation, result, figures)
     return figures
+
+
+def to_learn(simulation, job):
+    """(job as data, measured heights (samples,)) of the scan that was compared, as ``learning.learn`` takes them. Raises
+    InputError where there is none."""
+    result = prepare(simulation, job)
+    return result.job, part_scan.measured_heights(result)
+
+
+def take(job, learned):
+    """Puts what was learned into the job's law."""
+    from_job(job, job_data.KEYS, {"law": learned.law})
+
+
+def learn(simulation, job, **options):
+    """``learning.learn`` from the scan that was compared, into the job's law; returns what was learned."""
+    data, measured = to_learn(simulation, job)
+    learned = learning.learn(data, measured, **options)
+    take(job, learned)
+    return learned

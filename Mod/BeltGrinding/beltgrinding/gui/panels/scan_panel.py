@@ -3,6 +3,7 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+from ...calibration import learning
 from ...engine import InputError
 from ...objects import deviation, ground_mesh, part_scan, preferences, simulation
 from ...objects.job_data import child, children
@@ -54,6 +55,16 @@ class ScanPanel(Panel):
         self.button.setObjectName("compare")
         self.button.clicked.connect(self.compare)
         self.body.addWidget(self.button)
+        self.correct = QtGui.QPushButton(translate("BeltGrinding", "Correct the law"))
+        self.correct.setObjectName("correctLaw")
+        self.correct.setToolTip(
+            translate(
+                "BeltGrinding",
+                "law and wear of the belt, as far as they are unsure, by what the scan shows: for the next part",
+            )
+        )
+        self.correct.clicked.connect(self.learn)
+        self.body.addWidget(self.correct)
         self.table = QtGui.QTableWidget(0, 2)
         self.table.setObjectName("figures")
         self.table.horizontalHeader().hide()
@@ -64,6 +75,7 @@ class ScanPanel(Panel):
         self.body.addWidget(self.table, 1)
         self.finish()
         self._enable()
+        self._may_learn()
 
     def _add_alignment(self, rows):
         """What of the start is kept, and how much of the scan decides."""
@@ -161,8 +173,7 @@ class ScanPanel(Panel):
         except InputError as error:
             self.tell(error_text(error), True)
             return
-        self.button.setEnabled(False)
-        self.tell(translate("BeltGrinding", "Aligning and measuring..."))
+        self._busy(translate("BeltGrinding", "Aligning and measuring..."))
         work = SimpleNamespace(result=result)
 
         def run(context):
@@ -171,8 +182,7 @@ class ScanPanel(Panel):
         self.work = Background(run, self._done)
 
     def _done(self, found, error):
-        self.work = None
-        self.button.setEnabled(True)
+        self._free()
         if error is not None:
             self.tell(error_text(error), True)
             return
@@ -189,6 +199,60 @@ class ScanPanel(Panel):
         self.show(figures)
         told = " ".join(error_text(warning) for warning in figures["warnings"])
         self.tell(told, bool(told))
+        self._may_learn()
+
+    def learn(self):
+        """Begins; ``_learned`` follows."""
+        try:
+            data, measured = part_scan.to_learn(self.obj, self.job)
+        except InputError as error:
+            self.tell(error_text(error), True)
+            return
+        self._busy(translate("BeltGrinding", "Learning from the scan..."))
+        self.work = Background(
+            lambda context: learning.learn(data, measured, context=context), self._learned
+        )
+
+    def _learned(self, found, error):
+        self._free()
+        if error is not None:
+            self.tell(error_text(error), True)
+            return
+        part_scan.take(self.job, found)
+        self.document.recompute()
+        self._may_learn()
+        lines = [
+            translate("BeltGrinding", "Measured removal is {:.3f} of the predicted.").format(
+                found.factor
+            )
+        ]
+        for one in found.report:
+            name = {
+                learning.COEFFICIENT: translate("BeltGrinding", "Coefficient"),
+                learning.WEAR: translate("BeltGrinding", "Wear scale"),
+            }.get(one["parameter"], one["parameter"].replace("_", " "))
+            values = (one["before"], one["after"], *one["interval"])
+            lines.append(
+                f"{name}: {values[0]:.3g} → {values[1]:.3g} ({values[2]:.3g}…{values[3]:.3g})"
+            )
+        lines.append(
+            translate("BeltGrinding", "The job has this law now; simulate or plan the next part.")
+        )
+        self.tell("\n".join(lines))
+
+    def _may_learn(self):
+        there = bool(getattr(self.obj, "ScanFigures", "")) and not self.obj.OutOfDate
+        self.correct.setEnabled(there)
+
+    def _busy(self, text):
+        for button in (self.button, self.correct):
+            button.setEnabled(False)
+        self.tell(text)
+
+    def _free(self):
+        self.work = None
+        self.button.setEnabled(True)
+        self._may_learn()
 
     def show(self, figures):
         """The figures of a comparison."""

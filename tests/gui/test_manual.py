@@ -217,7 +217,6 @@ scan = ground.Mesh.copy()
 scan.translate(0.4, -0.3, 0.5)
 scan.write(str(Path("scan.stl").resolve()))
 ground.ViewObject.Visibility = False
-doc.Design.ViewObject.Visibility = True
 
 job.LawCoefficient = said
 menu("Simulate")

@@ -4260,6 +4260,18 @@ im Mittel {} abgetragen</translation>
         <source>law and wear of the belt, as far as they are unsure, by what the scan shows: for the next part</source>
         <translation>Gesetz und Verschleiß des Bands, soweit sie unsicher sind, nach dem, was der Scan zeigt: für das nächste Teil</translation>
     </message>
+    <message>
+        <source>Laid on the design with {} rms.</source>
+        <translation>Auf den Entwurf gelegt mit {} rms.</translation>
+    </message>
+    <message>
+        <source>Lay the scan on the design</source>
+        <translation>Scan auf den Entwurf legen</translation>
+    </message>
+    <message>
+        <source>Laying the scan on the design...</source>
+        <translation>Lege den Scan auf den Entwurf...</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

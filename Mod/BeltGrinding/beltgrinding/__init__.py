@@ -80,6 +80,7 @@ def ground_mesh(result, path=None, ground=True, deflection_mm=None, context=None
 DOCUMENT_FUNCTIONS = (
     "make_job",
     "make_stock",
+    "lay_stock",
     "make_belt_machine",
     "make_belt",
     "wear_belt",

@@ -33,18 +33,20 @@ from .set_up import (
     make_stock,
     wear_belt,
 )
+from .stock_scan import lay_stock
 
 __all__ = [
     "apply_plan",
     "check_settings",
     "compare_scan",
-    "learn_scan",
     "export_job",
     "export_program",
     "follow_path",
     "import_program",
     "import_result",
     "is_job",
+    "lay_stock",
+    "learn_scan",
     "make_belt",
     "make_belt_machine",
     "make_deviation",

@@ -1,12 +1,10 @@
 """A job's stock, machine and passes, with first values chosen from the part (raster/proposal.py)."""
 
 from ..engine import InputError
-from ..job import load as jobs
-from ..job.workpiece import OwnBrep
 from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
-from .job_data import child, children, design, required
+from .job_data import child, children
 from .raster_path import RasterPath, generate, proposed
 from .set_up import make_belt_machine, make_raster, make_stock
 from .stock import Stock
@@ -40,13 +38,7 @@ def set_up(job, text=""):
 def propose(job, text=""):
     """First settings for the job's faces, stock, law and belt, as ``proposal.propose`` gives them."""
     with job_inputs.scratch_folder() as folder:
-        data = job_inputs.without_geometry(job)
-        shape, data["design"]["faces"] = design(job)
-        data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
-        stock = required(job, Stock, "stock")
-        data["stock"] = stock.Proxy.to_job(stock, folder)
-        data["programs"] = [{"poses": []}]
-        data = jobs.validate(data, folder)
+        data = job_inputs.without_programs(job, folder)
         return waiting.wait(lambda context: proposal.propose(data, context), text)
 
 

@@ -29,6 +29,17 @@ def without_geometry(job):
     return data
 
 
+def without_programs(job, folder):
+    """The job as validated plain data, as ``to_data`` gives it, before it has paths. Raises InputError."""
+    data = without_geometry(job)
+    shape, data["design"]["faces"] = design(job)
+    data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
+    stock = required(job, Stock, "stock")
+    data["stock"] = stock.Proxy.to_job(stock, folder)
+    data["programs"] = [{"poses": []}]
+    return jobs.validate(data, folder)
+
+
 def _paths(job):
     paths = children(job, RobotPath)
     if not paths:

@@ -29,6 +29,7 @@ APART = 2e-3  # of the datum's radius: placements that are no farther from each 
 LEAST_APART = 0.05  # mm
 ALIKE = 1.25  # times the residual per share of points used: fits nearly as well
 BETTER = 0.8
+LEAST_RMS = 1e-5  # mm: what is below is rounding
 POOR = 3.0  # bands of the tolerance: a datum that the scan is farther from is not the scan's
 
 
@@ -170,7 +171,7 @@ def _tried(register, matrix):
 
 
 def _score(found):
-    return found["rms"] / max(found["used_share"], 1e-9)
+    return max(found["rms"], LEAST_RMS) / max(found["used_share"], 1e-9)
 
 
 def _size(motion, radius):

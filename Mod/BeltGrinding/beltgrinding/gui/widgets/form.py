@@ -245,6 +245,8 @@ class Form(QtGui.QGroupBox):
             widget.blockSignals(False)
         elif self.obj.getTypeIdOfProperty(name) in QUANTITIES:
             show_quantity(widget, value)
+        elif isinstance(widget, FrameField):
+            widget.show_placement(value)
         else:
             widget.setText(f"{value:g}")
 
@@ -344,6 +346,15 @@ class FrameField(QtGui.QWidget):
             grid.addWidget(field, i, 1)
             self.fields.append(field)
         self.notify = changed
+
+    def show_placement(self, placement):
+        """Shows one that was set from elsewhere, and tells nobody."""
+        notify, self.notify = self.notify, lambda _: None
+        for i, (field, value) in enumerate(
+            zip(self.fields, (*placement.Base, *placement.Rotation.toEuler()))
+        ):
+            show_quantity(field, Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
+        self.notify = notify
 
     def _changed(self):
         x, y, z, a, b, c = (float(field.property("rawValue")) for field in self.fields)

@@ -4272,6 +4272,10 @@ im Mittel {} abgetragen</translation>
         <source>Laying the scan on the design...</source>
         <translation>Lege den Scan auf den Entwurf...</translation>
     </message>
+    <message>
+        <source>At {} places feed or force change faster than they may: the program&apos;s own steps, or motions that stay.</source>
+        <translation>An {} Stellen ändern sich Vorschub oder Kraft schneller, als sie dürfen: eigene Stufen des Programms, oder Bewegungen, die bleiben.</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

@@ -9,6 +9,7 @@ from beltgrinding import planning
 from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs
 from beltgrinding.planning import limits, rounds
+from beltgrinding.planning.commands import Commands
 from beltgrinding.simulation import run as runs
 from test_plan import SETTINGS, job  # noqa: F401 (a fixture)
 
@@ -65,6 +66,35 @@ def test_motions_that_stay_bound_their_neighbours(job):
     assert kept.any() and np.array_equal(plan.new[kept], plan.old[kept])
     free = ~(kept[first] & kept[second])
     assert (abs(plan.new[first] - plan.new[second]) <= way + EXACT)[free].all()
+
+
+def test_what_contradicts_itself_already_stays(job):
+    """Two motions that stay and differ by more than is allowed; positioning faster than any planned feed."""
+    wild = copy.deepcopy(job)
+    commands = Commands(job, rounds.validate({}))
+    program = commands.with_feeds(commands.feed())["programs"][0]
+    wild["programs"] = [program]
+    for k, pose in enumerate(program["poses"]):
+        if 20 <= k < 24:
+            pose["feed_mm_s"] = 20.0 if k % 2 else 90.0
+        if 30 <= k < 32:
+            pose.update(feed_mm_s=400.0, force_N=0.0)
+    wild = jobs.validate(wild)
+    keep = [{"program": 1, "first_pose": 21, "last_pose": 24}]
+    plan = planning.plan(wild, {**SETTINGS, "keep": keep, "feed_change_mm_s_mm": 3.0})
+    kept = plan.commands.kept
+    assert kept.sum() == 4 and np.array_equal(plan.new[kept], plan.old[kept])
+    assert np.isfinite(plan.new).all() and np.isfinite(plan.factors).all()
+    rapid = np.bincount(plan.commands.group, plan.commands.rapid) > 0
+    assert rapid.any() and np.array_equal(plan.new[rapid], plan.old[rapid])
+    first, second, way = pairs(plan)
+    free = ~(kept[first] & kept[second])
+    good = abs(plan.new[first] - plan.new[second]) <= 3.0 * way + EXACT
+    told = rounds.summary(plan)["beyond_limits"]
+    assert plan.better and told["after"] == (~good).sum() > 0 and told["before"] > told["after"]
+    # Beside those that stay and contradict each other nothing can be right; everywhere else it is.
+    apart = np.flatnonzero(kept)[[0, -1]]
+    assert good[free & ((second < apart[0] - 2) | (first > apart[1] + 2))].all()
 
 
 def test_force_changes_no_faster_than_may_be_in_time(job):

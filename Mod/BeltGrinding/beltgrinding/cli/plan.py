@@ -94,6 +94,11 @@ def text(summary):
     out = {k: v for k, v in summary["out_of_tolerance"].items() if v > 0.0005}
     for word, share in sorted(out.items(), key=lambda pair: -pair[1]):
         lines.append(f"  out of tolerance, {100 * share:.1f} %: {WORDS[word]}")
+    if summary["beyond_limits"]["after"]:
+        lines.append(
+            f"at {summary['beyond_limits']['after']} places feed or force change faster than they may: the program's own "
+            "steps, or motions that stay"
+        )
     feeds = summary["feed_mm_s"]
     lines.append(
         f"feeds {feeds['least']:.3g} to {feeds['greatest']:.3g} mm/s; {summary['changed']} of "

@@ -14,7 +14,7 @@ LIGHT = 1e-4  # of the greatest weight: of motions that remove next to nothing
 ITERATIONS, LINEARISED = 2000, 50
 SETTLED = 1e-4  # mm/s, N
 SWEEPS = 100  # a path that comes back to a line needs a few
-AT = 1e-3  # relative, of a limit
+AT, EXACT = 1e-3, 1e-6  # relative, of a limit
 YIELDING = 0.5  # least exponent with which pressure follows a lowered force: that of a line contact
 
 
@@ -61,7 +61,12 @@ def feeds(commands, wanted, weight, settings):
         )
 
     near = _nearest(wanted, weight, commands.kept, first, second, step)
-    near = np.clip(near, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
+    # What nothing is planned for, as positioning, may be outside of the limits as it is.
+    near = np.clip(
+        near,
+        np.minimum(settings["feed_min_mm_s"], wanted),
+        np.maximum(settings["feed_max_mm_s"], wanted),
+    )
     return _exact(commands, np.where(commands.kept, wanted, near), (first, second, way), up, down)
 
 
@@ -87,27 +92,41 @@ def factors(commands, wanted, weight, feeds, settings):
 
 def bound(commands, feeds, factors, settings):
     """(commands,) bool: the feed or the force could not differ more from a neighbour's."""
+    first, second, used = _used(commands, feeds, factors, settings)
+    at, found = used >= 1.0 - AT, np.zeros(len(commands), dtype=bool)
+    found[first[at]] = found[second[at]] = True
+    return found & ~commands.kept
+
+
+def beyond(commands, feeds, factors, settings):
+    """Number of places where feed or force change faster than they may: those of a program that breaks the limits
+    itself, or of motions that must not be changed."""
+    return int((_used(commands, feeds, factors, settings)[2] > 1.0 + EXACT).sum())
+
+
+def _used(commands, feeds, factors, settings):
+    """(first, second (pairs,) commands, share (pairs,) of the limits that the change between them uses)."""
     first, second, length = commands.neighbours()
-    one, other = feeds[first], feeds[second]
-    at = np.zeros(len(length), dtype=bool)
+    one, other, length = feeds[first], feeds[second], np.maximum(length, 1e-12)
+    used = np.zeros(len(length))
     if settings["feed_change_mm_s_mm"]:
-        at |= abs(one - other) >= (1.0 - AT) * settings["feed_change_mm_s_mm"] * length
+        used = np.maximum(used, abs(one - other) / (settings["feed_change_mm_s_mm"] * length))
     if settings["acceleration_mm_s2"]:
-        at |= (
-            abs(one**2 - other**2) >= (1.0 - AT) * 2.0 * settings["acceleration_mm_s2"] * length
+        used = np.maximum(
+            used, abs(one**2 - other**2) / (2.0 * settings["acceleration_mm_s2"] * length)
         )
     if settings["force_change_N_s"]:
         force, seconds = commands.force(factors), commands.motion_seconds(feeds)
         step = 0.5 * settings["force_change_N_s"] * (seconds[first] + seconds[second])
-        at |= abs(force[first] - force[second]) >= (1.0 - AT) * step
-    found = np.zeros(len(commands), dtype=bool)
-    found[first[at]] = found[second[at]] = True
-    return found & ~commands.kept
+        used = np.maximum(used, abs(force[first] - force[second]) / np.maximum(step, 1e-12))
+    return first, second, used
 
 
 def _nearest(wanted, weight, kept, first, second, step):
     """The profile nearest to a wanted one, nearly within the limits: of each pair's values, no further apart than
     ``step(values)`` (pairs,)."""
+    free = ~(kept[first] & kept[second])
+    first, second = first[free], second[free]
     weight = np.maximum(weight, LIGHT * max(weight.max(), 1e-300)) / np.maximum(wanted, 1e-9) ** 2
     give = np.where(kept, 0.0, 1.0 / weight)
     together = np.maximum(give[first] + give[second], 1e-300)
@@ -115,7 +134,7 @@ def _nearest(wanted, weight, kept, first, second, step):
     colours = _colours(first, second)
     for k in range(ITERATIONS):
         if k % LINEARISED == 0:
-            allowed = np.broadcast_to(step(np.maximum(values, 1e-6)), len(first))
+            allowed = np.broadcast_to(step(np.maximum(values, 1e-6)), len(free))[free]
         worst = 0.0
         for mine in colours:
             a, b, room = first[mine], second[mine], together[mine]

@@ -269,6 +269,13 @@ def summary(found):
             for one in found.rounds
         ],
         "out_of_tolerance": found.why["shares"],
+        "beyond_limits": {
+            name: limits.beyond(found.commands, feeds, factors, found.settings)
+            for name, feeds, factors in (
+                ("before", found.old, np.ones(len(found.commands))),
+                ("after", found.new, found.factors),
+            )
+        },
         "commands": len(found.commands),
         "changed": int(changed(found).sum()),
         "feed_mm_s": {

@@ -204,6 +204,13 @@ class PlanPanel(RunPanel):
         else:
             text = translate("BeltGrinding", "{:.1f} % in tolerance as planned; {:.1f} % before.")
             text = text.format(obj.InTolerance, obj.InToleranceBefore)
+        beyond = (obj.Proxy.data(obj) or {}).get("beyond_limits", {}).get("after", 0)
+        if beyond:
+            more = translate(
+                "BeltGrinding",
+                "At {} places feed or force change faster than they may: the program's own steps, or motions that stay.",
+            )
+            text += "\n" + more.format(beyond)
         self._say(text, obj.OutOfDate)
         self._enable()
 

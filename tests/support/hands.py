@@ -11,12 +11,13 @@ import FreeCADGui as Gui
 import Part
 from PySide import QtCore, QtGui
 
+from support import pictures
+
 window = Gui.getMainWindow()
 window.setAnimated(False)  # a dock that slides in is not where a click goes
 _patched = []  # (holder, name, what it was)
 _taken = []  # names of pictures
 TIME_TAKEN = re.compile(r"(computed in )[\d.,]+ s")
-PICTURES = Path(__file__).resolve().parents[2] / "build" / "pictures"
 
 
 def settle():
@@ -226,17 +227,22 @@ def screenshot(path):
 
 
 def picture(name):
-    """A picture of the manual: the whole screen, to build/pictures."""
-    PICTURES.mkdir(parents=True, exist_ok=True)
+    """A picture of the manual: the whole screen, to build/pictures. One that is not as the manual's is
+    taken once more, later: what FreeCAD still had to do may have begun after the screen was at rest.
+    """
+    pictures.MADE.mkdir(parents=True, exist_ok=True)
     replaced = _as_everywhere()
-    _come_to_rest()
-    screenshot(PICTURES / f"{name}.png")
+    for quiet in (0.7, 3):
+        _come_to_rest(quiet)
+        screenshot(pictures.MADE / f"{name}.png")
+        if not pictures.stale([name]):
+            break
     for widget, text in replaced:
         _set_silently(widget, text)
     _taken.append(name)
 
 
-def _come_to_rest(quiet=0.7, patience=3, most=10):
+def _come_to_rest(quiet, patience=3, most=10):
     """Waits until the screen has shown the same for ``quiet`` seconds: FreeCAD greys out its buttons and
     brings its tree and status bar up to date by timers of its own, late on a busy machine. Its bar of
     loading may come when the loading is over, and then stay: after ``patience`` seconds it is put away.

@@ -45,14 +45,20 @@ def difference(one, other):
     """How far two pictures (paths) differ where they differ most: the mean difference of the colour
     that differs most, 0 to 255, in a square of ``WINDOW`` pixels; inf if they are not of one size.
     """
+    return largest_difference(one, other)[0]
+
+
+def largest_difference(one, other):
+    """(``difference``, (x, y) of that square's upper left corner; None if they are not of one size)."""
     a, b = (np.asarray(Image.open(path).convert("RGB")).astype(float) for path in (one, other))
     if a.shape != b.shape:
-        return float("inf")
+        return float("inf"), None
     sums = np.pad(np.abs(a - b).max(axis=2).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
     rows, columns = (min(WINDOW, size) for size in a.shape[:2])
     inside = sums[rows:] - sums[:-rows]
     inside = inside[:, columns:] - inside[:, :-columns]
-    return float(inside.max() / (rows * columns))
+    y, x = np.unravel_index(inside.argmax(), inside.shape)
+    return float(inside.max() / (rows * columns)), (int(x), int(y))
 
 
 def keep(name, picture):
@@ -76,7 +82,10 @@ def stale(names):
         if not kept.exists():
             wrong.append(f"{name} is not in docs/images")
             continue
-        away = difference(kept, made)
+        away, at = largest_difference(kept, made)
         if away > ALIKE:
-            wrong.append(f"{name} shows something else now ({away:.1f} of {ALIKE:.1f} allowed)")
+            where = "its size" if at is None else f"at x {at[0]}, y {at[1]}"
+            wrong.append(
+                f"{name} shows something else now: {where} ({away:.1f} of {ALIKE:.1f} allowed)"
+            )
     return wrong

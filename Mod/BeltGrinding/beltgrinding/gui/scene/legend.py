@@ -172,7 +172,9 @@ class Legend:
         self.box = left, bottom, left + size[0], bottom + size[1]
         volume = coin.SoViewVolumeElement.get(state)
         depth = volume.getNearDist() + 0.5 * volume.getDepth()
-        at = volume.getPlanePoint(depth, coin.SbVec2f(left / width, bottom / height))
+        # Coin cuts what it projects back to whole pixels: on a border, rounding would say which.
+        corner = coin.SbVec2f((left + 0.25) / width, (bottom + 0.25) / height)
+        at = volume.getPlanePoint(depth, corner)
         model = coin.SoModelMatrixElement.get(state)
         self.shift.translation = model.inverse().multVecMatrix(at)
 

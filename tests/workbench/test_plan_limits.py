@@ -136,7 +136,7 @@ def test_forces_keep_to_pressure_and_heat(job, limit):
     told = rounds.summary(plan)["after"]
     assert plan.better
     assert told["peak_pressure_MPa"] == pytest.approx(plan.after.steps["peak_pressure"].max())
-    assert told["over_limit"] <= 0.02, "rounds come to it from both sides"
+    assert told["over_limit"] <= EXACT, "the last rounds lower what is above it"
     assert told["in_tolerance"] > plan.rounds[0]["in_tolerance"] + 0.1
 
 

@@ -86,9 +86,9 @@ def text(summary):
             lines[1] += " (both at half the spacing and step)"
         if "sure_share" in after:
             lines += [f"before, {_sure(before)}", f"planned, {_sure(after)}"]
-        if after.get("over_limit", 0.0) > 0.0:
+        if after.get("over_limit", 0.0) > 1e-6:
             lines.append(
-                f"the greatest pressure, {after['peak_pressure_MPa']:.3g} MPa, is {100 * after['over_limit']:.0f} % "
+                f"the greatest pressure, {after['peak_pressure_MPa']:.3g} MPa, is {100 * after['over_limit']:.1f} % "
                 "above its limit"
             )
     out = {k: v for k, v in summary["out_of_tolerance"].items() if v > 0.0005}

@@ -15,6 +15,7 @@ ITERATIONS, LINEARISED = 2000, 50
 SETTLED = 1e-4  # mm/s, N
 SWEEPS = 100  # a path that comes back to a line needs a few
 AT, EXACT = 1e-3, 1e-6  # relative, of a limit
+BELOW = 1.0 - 1e-3  # of the limit of pressure, to which what is above it is brought
 YIELDING = 0.5  # least exponent with which pressure follows a lowered force: that of a line contact
 
 
@@ -73,18 +74,25 @@ def feeds(commands, wanted, weight, settings):
 def factors(commands, wanted, weight, feeds, settings):
     """(commands,) the wanted factors on forces, changed where forces would change too fast. A step that the program has
     itself stays as great as it is at most. ``weight``: as for ``feeds``."""
-    rate = settings["force_change_N_s"]
     own = commands.force(np.ones(len(commands)))
-    if not rate or not own.any():
+    if not settings["force_change_N_s"] or not own.any():
         return wanted
-    first, second, _ = commands.neighbours()
-    seconds = commands.motion_seconds(feeds)
-    step = np.maximum(
-        0.5 * rate * (seconds[first] + seconds[second]), abs(own[first] - own[second])
-    )
+    first, second, step = _force_steps(commands, own, feeds, settings)
     near = _nearest(own * wanted, weight, commands.kept, first, second, lambda _: step)
     near = np.clip(near, *(factor * own for factor in commands.force_range))
-    edges = (first, second, step)
+    return _forces_within(commands, own, near, wanted, (first, second, step))
+
+
+def _force_steps(commands, own, feeds, settings):
+    """(first, second (pairs,) commands, N (pairs,) by which their forces may differ)."""
+    first, second, _ = commands.neighbours()
+    seconds = commands.motion_seconds(feeds)
+    step = 0.5 * settings["force_change_N_s"] * (seconds[first] + seconds[second])
+    return first, second, np.maximum(step, abs(own[first] - own[second]))
+
+
+def _forces_within(commands, own, near, wanted, edges):
+    """(commands,) factors: the forces ``near``, the greater of two that are too far apart lowered."""
     given = _exact(commands, near, edges, lambda v, d: v + d, lambda v, d: v - d)
     least = commands.force_range[0] * own
     return np.where(own > 0.0, np.maximum(given, least) / np.maximum(own, 1e-300), wanted)
@@ -223,6 +231,20 @@ def greatest_factors(result, commands, factors, settings):
         return np.full(len(commands), np.inf)
     room = most / np.maximum(peaks(result, commands), 1e-9)
     return factors * np.where(room < 1.0, room ** (1.0 / YIELDING), room)
+
+
+def below_pressure(result, commands, feeds, factors, settings):
+    """(commands,) factors on forces, lowered where a simulation found a pressure above the limit, and beside that as far
+    as the limit on their change asks."""
+    room = greatest_pressure(result.job, settings) / np.maximum(peaks(result, commands), 1e-9)
+    over = (room < 1.0) & ~commands.kept
+    force = np.where(over, factors * (BELOW * room) ** (1.0 / YIELDING), factors)
+    force = np.maximum(force, np.minimum(commands.force_range[0], factors))
+    own = commands.force(np.ones(len(commands)))
+    if not settings["force_change_N_s"] or not own.any():
+        return force
+    edges = _force_steps(commands, own, feeds, settings)
+    return _forces_within(commands, own, own * force, force, edges)
 
 
 def figures(result, settings):

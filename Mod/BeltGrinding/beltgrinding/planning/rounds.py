@@ -28,6 +28,7 @@ STALLED = 2  # rounds without a gain
 CHECKS = 16.0  # simulations' time: two runs at half the spacing and step
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
+LOWERED = 6  # simulations, at most, in which forces are lowered to the limit of pressure
 PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 
 
@@ -121,6 +122,7 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         best = least_time.faster(commands, best, settings, rounds, told, context)
     if settings["levels"]:
         best = _in_levels(commands, best, settings, rounds, told, context)
+    best = _below_pressure(commands, best, settings, rounds, told, context)
     better = _better(best["figures"], rounds[0], settings) or (
         settings["goal"] == "time" and least_time.saves(best["figures"], rounds[0], settings)
     )
@@ -246,6 +248,29 @@ def _in_levels(commands, best, settings, rounds, told, context):
     if told is not None:
         told(one)
     return _tried(one, feeds, best["factors"], result, tried)
+
+
+def _below_pressure(commands, best, settings, rounds, told, context):
+    """``best`` with forces lowered where they still press above the limit of pressure: the rounds come to it from both
+    sides. Where commands that stay are above it, those alone are left so."""
+    for _ in range(LOWERED):
+        if best["figures"].get("over_limit", 0.0) <= 0.0:
+            break
+        begun = time.perf_counter()
+        force = limits.below_pressure(
+            best["result"], commands, best["feeds"], best["factors"], settings
+        )
+        if (force >= best["factors"] * (1.0 - SAME)).all():
+            break  # all that may be lowered is
+        tried = commands.with_feeds(best["feeds"], force)
+        result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
+        one = {**figures(result, settings), "seconds": time.perf_counter() - begun}
+        rounds.append(one)
+        if told is not None:
+            told(one)
+        best["result"].influence = None
+        best = _tried(one, best["feeds"], force, result, tried)
+    return best
 
 
 def changed(found):

@@ -24,8 +24,8 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 FaceLattice::FaceLattice(const FaceSurface& surface, const SurfaceMetric& metric,
                          const PlaneGrid& grid, const Boundary& boundary, double spacing,
-                         std::size_t row_count, const RunContext& context) {
-    lay_rows(metric, grid, boundary, spacing, row_count);
+                         std::size_t row_count, SampleBudget& budget, const RunContext& context) {
+    lay_rows(metric, grid, boundary, spacing, row_count, budget);
     parallel_blocks(rows_.size(), kRowBlock, context, [&](std::size_t begin, std::size_t end) {
         const GeomAdaptor_Surface evaluator = surface.evaluator();
         for (std::size_t j = begin; j < end; ++j) {
@@ -42,12 +42,13 @@ FaceLattice::FaceLattice(const FaceSurface& surface, const SurfaceMetric& metric
             }
         }
     });
-    clear_border(grid, boundary, spacing);
+    clear_border(metric, grid, boundary, spacing);
     find_whole_cells(context);
 }
 
 void FaceLattice::lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid,
-                           const Boundary& boundary, double spacing, std::size_t row_count) {
+                           const Boundary& boundary, double spacing, std::size_t row_count,
+                           SampleBudget& budget) {
     rows_.resize(row_count + 1);
     row_height_ = metric.height() / double(row_count);
     const TrimScan scan(boundary, metric.height() * grid.y_scale, row_count);
@@ -75,6 +76,7 @@ void FaceLattice::lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid,
             row.runs.push_back(run);
         }
     }
+    budget.take(nodes);
     points_.resize(nodes);
     s_.resize(nodes);
     state_.assign(nodes, 0);
@@ -90,7 +92,16 @@ std::uint32_t FaceLattice::find(std::size_t row, int column) const {
     return run.first + static_cast<std::uint32_t>(column - run.begin);
 }
 
-void FaceLattice::clear_border(const PlaneGrid& grid, const Boundary& boundary, double spacing) {
+void FaceLattice::clear_border(const SurfaceMetric& metric, const PlaneGrid& grid,
+                               const Boundary& boundary, double spacing) {
+    const auto distance = [&](std::uint32_t node, double t, const Vec3& a, const Vec3& b) {
+        const SurfacePoint& at = points_[node];
+        if (!metric.stretched()) return segment_distance(at.point, a, b);
+        const auto stretched = [&](const Vec3& p) {
+            return metric.stretched(p - at.point, at, s_[node], t);
+        };
+        return segment_distance(Vec3::Zero(), stretched(a), stretched(b));
+    };
     const int last = static_cast<int>(rows_.size()) - 1;
     for (const auto& segment : boundary.segments) {
         const auto &a = boundary.nodes[segment.a], &b = boundary.nodes[segment.b];
@@ -112,8 +123,7 @@ void FaceLattice::clear_border(const PlaneGrid& grid, const Boundary& boundary, 
                 const std::uint32_t node = find(static_cast<std::size_t>(j), k);
                 if (node == kNone) continue;
                 if (j + 1 >= low && j <= high && k >= k0 - 1 && k <= k1) state_[node] |= kCrossed;
-                if (segment_distance(points_[node].point, pa, pb) < kClearance * spacing)
-                    state_[node] |= kDead;
+                if (distance(node, row.t, pa, pb) < kClearance * spacing) state_[node] |= kDead;
             }
         }
     }

@@ -17,10 +17,11 @@ namespace beltgrinding {
 class FaceLattice {
   public:
     /// Lays the rows, evaluates the nodes inside the border, drops those near it. `row_count`
-    /// intervals of equal height. In parallel over rows; throws Standard_Failure.
+    /// intervals of equal height. In parallel over rows; throws Standard_Failure, and InputError
+    /// where the budget is spent.
     FaceLattice(const FaceSurface& surface, const SurfaceMetric& metric, const PlaneGrid& grid,
                 const Boundary& boundary, double spacing, std::size_t row_count,
-                const RunContext& context);
+                SampleBudget& budget, const RunContext& context);
 
     std::size_t size() const { return points_.size(); }
     const SurfacePoint& at(std::uint32_t node) const { return points_[node]; }
@@ -50,8 +51,9 @@ class FaceLattice {
   private:
     enum : std::uint8_t { kDead = 1, kCrossed = 2 };
     void lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid, const Boundary& boundary,
-                  double spacing, std::size_t row_count);
-    void clear_border(const PlaneGrid& grid, const Boundary& boundary, double spacing);
+                  double spacing, std::size_t row_count, SampleBudget& budget);
+    void clear_border(const SurfaceMetric& metric, const PlaneGrid& grid, const Boundary& boundary,
+                      double spacing);
     void find_whole_cells(const RunContext& context);
 
     std::vector<Row> rows_;

@@ -36,7 +36,8 @@ class FaceSampler {
             throw InputError(
                 "brep.empty_trim",
                 "its trimming edges enclose nothing; repair the shape or leave the face out");
-        const SurfaceMetric metric(surface_, request_.spacing);
+        const SurfaceMetric metric(surface_,
+                                   {request_.spacing, request_.precision, request_.edge_spacing});
         if (!std::isfinite(metric.max_length() + metric.height()))
             throw InputError(
                 "brep.surface_nan",
@@ -51,7 +52,9 @@ class FaceSampler {
         boundary_ = sample_boundary(trim, surface_, metric, grid_, request_.spacing);
         const auto rows =
             static_cast<std::size_t>(std::max(1.0, std::round(metric.height() / request_.spacing)));
-        FaceLattice lattice(surface_, metric, grid_, boundary_, request_.spacing, rows, context_);
+        SampleBudget unlimited;
+        FaceLattice lattice(surface_, metric, grid_, boundary_, request_.spacing, rows,
+                            request_.budget != nullptr ? *request_.budget : unlimited, context_);
         lattice_ = &lattice;
         sign_ = (surface_.swap != request_.reverse) ? -1.0 : 1.0;
         gather_samples();

@@ -7,15 +7,19 @@
 
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/run_context.h"
+#include "sample_density.h"
 
 namespace beltgrinding {
 
 struct FaceRequest {
     TopoDS_Face face;
-    double spacing = 0;       ///< mm
-    double area = 0;          ///< mm2, exact; the samples' areas are scaled to it
-    bool reverse = false;     ///< the normal points against the surface's own
-    bool parameters = false;  ///< fill FaceSamples::parameters
+    double spacing = 0;              ///< mm
+    double precision = 0;            ///< mm, as SampleDensity::precision
+    double edge_spacing = 0;         ///< mm, as SampleDensity::finest
+    double area = 0;                 ///< mm2, exact; the samples' areas are scaled to it
+    bool reverse = false;            ///< the normal points against the surface's own
+    bool parameters = false;         ///< fill FaceSamples::parameters
+    SampleBudget* budget = nullptr;  ///< of all faces; null: no limit
 };
 
 /// Samples and triangles of one face; the indices count from 0.

@@ -15,6 +15,10 @@ constexpr double kPoleFloor = 1e-6;       // of the longest row: keeps rows at p
 constexpr double kSingularStep = 1e-6;    // of the parameter range, to step off a singular point
 constexpr double kPreferEven = 0.9;       // v rows must be this much evener to be taken
 constexpr double kSmallestVariance = 1e-6;
+constexpr double kTableTurn = 0.2;  // rad, of the normal within a cell of the table
+constexpr std::size_t kLines = 16;  // on which the surface's turning is looked at, each way
+constexpr int kHalvings = 10;
+constexpr double kGrading = 0.25;  // mm of spacing per mm of way
 
 Vec3 vec(const gp_XYZ& v) {
     return {v.X(), v.Y(), v.Z()};
@@ -101,6 +105,26 @@ SurfacePoint FaceSurface::at(const GeomAdaptor_Surface& evaluator, double s, dou
     return result;
 }
 
+std::array<double, 2> FaceSurface::bend(const GeomAdaptor_Surface& evaluator, double s,
+                                        double t) const {
+    gp_Pnt p;
+    gp_Vec u, v, uu, vv, uv;
+    try {
+        evaluator.D2(swap ? t : s, swap ? s : t, p, u, v, uu, vv, uv);
+    } catch (const Standard_Failure&) {
+        return {0.0, 0.0};
+    }
+    const gp_Vec normal = u.Crossed(v);
+    const double size = normal.Magnitude();
+    const auto along = [&](const gp_Vec& first, const gp_Vec& second) {
+        const double bend = std::abs(normal.Dot(second)) / (size * first.SquareMagnitude());
+        return std::isfinite(bend) ? bend : 0.0;
+    };
+    const double by_u = along(u, uu), by_v = along(v, vv);
+    if (swap) return {by_v, by_u};
+    return {by_u, by_v};
+}
+
 std::vector<double> FaceSurface::knots(bool along_s) const {
     const double low = along_s ? s0 : t0, high = along_s ? s1 : t1;
     std::vector<double> result{low};
@@ -126,7 +150,39 @@ std::vector<double> FaceSurface::knots(bool along_s) const {
     return result;
 }
 
-SurfaceMetric::SurfaceMetric(FaceSurface& surface, double spacing) {
+/// First derivatives at the nodes of a table, [t][s].
+struct SurfaceMetric::Table {
+    std::vector<double> length, across, jacobian;
+
+    Table(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator,
+          const std::vector<double>& s, const std::vector<double>& t) {
+        for (const double at_t : t) {
+            for (const double at_s : s) {
+                const SurfacePoint p = surface.at(evaluator, at_s, at_t);
+                length.push_back(p.ds.norm());
+                across.push_back(p.dt.norm());
+                jacobian.push_back(p.ds.cross(p.dt).norm());
+            }
+        }
+    }
+
+    /// As if s and t were swapped; `ns` columns.
+    void turn(std::size_t ns) {
+        const std::size_t nt = length.size() / ns;
+        const auto turned = [&](const std::vector<double>& values) {
+            std::vector<double> result(values.size());
+            for (std::size_t j = 0; j < nt; ++j)
+                for (std::size_t i = 0; i < ns; ++i) result[i * nt + j] = values[j * ns + i];
+            return result;
+        };
+        std::vector<double> along = turned(across);
+        across = turned(length);
+        length = std::move(along);
+        jacobian = turned(jacobian);
+    }
+};
+
+SurfaceMetric::SurfaceMetric(FaceSurface& surface, const SampleDensity& density) {
     const GeomAdaptor_Surface evaluator = surface.evaluator();
     // A first look at the size says how fine the table should be.
     double length_s = 0, length_t = 0;
@@ -141,65 +197,129 @@ SurfaceMetric::SurfaceMetric(FaceSurface& surface, double spacing) {
         }
     }
     const auto cells = [&](double length) {
-        const double wanted = kCellsPerSample * length / spacing;
+        const double wanted = kCellsPerSample * length / density.spacing;
         return static_cast<std::size_t>(
             std::clamp(std::isfinite(wanted) ? wanted : 0.0, double(kFewestCells), 200.0));
     };
     s_ = refine(surface.knots(true), cells(length_s));
     t_ = refine(surface.knots(false), cells(length_t));
     const std::size_t ns = s_.size(), nt = t_.size();
-    std::vector<double> length(ns * nt), across(ns * nt), jacobian(ns * nt);
-    for (std::size_t j = 0; j < nt; ++j) {
-        for (std::size_t i = 0; i < ns; ++i) {
-            const SurfacePoint p = surface.at(evaluator, s_[i], t_[j]);
-            length[j * ns + i] = p.ds.norm();
-            across[j * ns + i] = p.dt.norm();
-            jacobian[j * ns + i] = p.ds.cross(p.dt).norm();
-        }
-    }
-    const double uneven_s = unevenness(length, jacobian, nt, ns, ns, 1);
-    const double uneven_t = unevenness(across, jacobian, ns, nt, 1, ns);
+    Table table(surface, evaluator, s_, t_);
+    const double uneven_s = unevenness(table.length, table.jacobian, nt, ns, ns, 1);
+    const double uneven_t = unevenness(table.across, table.jacobian, ns, nt, 1, ns);
     if (uneven_t + kSmallestVariance < kPreferEven * uneven_s) {
         surface.swap_parameters();
-        std::vector<double> turned(ns * nt), turned_across(ns * nt), turned_jacobian(ns * nt);
-        for (std::size_t j = 0; j < nt; ++j) {
-            for (std::size_t i = 0; i < ns; ++i) {
-                turned[i * nt + j] = across[j * ns + i];
-                turned_across[i * nt + j] = length[j * ns + i];
-                turned_jacobian[i * nt + j] = jacobian[j * ns + i];
-            }
-        }
-        length.swap(turned);
-        across.swap(turned_across);
-        jacobian.swap(turned_jacobian);
+        table.turn(ns);
         s_.swap(t_);
     }
+    if (density.active()) {
+        refine_where_bent(surface, evaluator);
+        table = Table(surface, evaluator, s_, t_);
+        stretch(surface, evaluator, density, table);
+    }
+    fill(table);
+}
 
+/// Halves the cells of the table in which the surface turns by more than kTableTurn, as far as
+/// kLines lines each way show.
+void SurfaceMetric::refine_where_bent(const FaceSurface& surface,
+                                      const GeomAdaptor_Surface& evaluator) {
+    const auto halve = [&](std::vector<double>& grid, const std::vector<double>& others,
+                           bool along_s) {
+        for (int round = 0; round < kHalvings && grid.size() < kMostCells; ++round) {
+            std::vector<char> bent(grid.size(), 0);
+            for (std::size_t line = 0; line <= kLines; ++line) {
+                const double other = others[line * (others.size() - 1) / kLines];
+                Vec3 before = Vec3::Zero();
+                for (std::size_t i = 0; i < grid.size(); ++i) {
+                    const SurfacePoint p = along_s ? surface.at(evaluator, grid[i], other)
+                                                   : surface.at(evaluator, other, grid[i]);
+                    const Vec3 normal = p.ds.cross(p.dt).normalized();
+                    if (i > 0 && normal.dot(before) < std::cos(kTableTurn)) bent[i] = 1;
+                    before = normal;
+                }
+            }
+            std::vector<double> finer;
+            for (std::size_t i = 0; i < grid.size(); ++i) {
+                if (bent[i] && finer.size() < kMostCells)
+                    finer.push_back(0.5 * (grid[i - 1] + grid[i]));
+                finer.push_back(grid[i]);
+            }
+            if (finer.size() == grid.size()) break;
+            grid = std::move(finer);
+        }
+    };
+    halve(s_, t_, true);
+    halve(t_, s_, false);
+}
+
+/// Finds by how much lengths are stretched, so that the spacing follows the curvature and changes
+/// by kGrading a unit of length at most.
+void SurfaceMetric::stretch(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator,
+                            const SampleDensity& density, const Table& table) {
+    const std::size_t ns = s_.size(), nt = t_.size();
+    std::vector<double> along(ns * nt), across(ns * nt);
+    for (std::size_t j = 0; j < nt; ++j) {
+        for (std::size_t i = 0; i < ns; ++i) {
+            const auto [bend_s, bend_t] = surface.bend(evaluator, s_[i], t_[j]);
+            along[j * ns + i] = density.at(bend_s);
+            across[j * ns + i] = density.at(bend_t);
+        }
+    }
+    const auto grade = [](std::vector<double>& wanted, std::size_t count, std::size_t first,
+                          std::size_t step, const std::vector<double>& at,
+                          const std::vector<double>& speed) {
+        const auto limit = [&](std::size_t i, std::size_t neighbour, std::size_t cell) {
+            const std::size_t k = first + i * step, n = first + neighbour * step;
+            const double apart = 0.5 * (speed[k] + speed[n]) * (at[cell] - at[cell - 1]);
+            wanted[k] = std::min(wanted[k], wanted[n] + kGrading * apart);
+        };
+        for (std::size_t i = 1; i < count; ++i) limit(i, i - 1, i);
+        for (std::size_t i = count - 1; i-- > 0;) limit(i, i + 1, i + 1);
+    };
+    for (std::size_t j = 0; j < nt; ++j) grade(along, ns, j * ns, 1, s_, table.length);
+    for (std::size_t i = 0; i < ns; ++i) grade(across, nt, i, ns, t_, table.across);
+    stretch_s_.resize(ns * nt);
+    stretch_t_.resize(nt);
+    for (std::size_t k = 0; k < ns * nt; ++k) stretch_s_[k] = density.spacing / along[k];
+    for (std::size_t j = 0; j < nt; ++j) {
+        const auto row = across.begin() + static_cast<std::ptrdiff_t>(j * ns);
+        stretch_t_[j] =
+            density.spacing / *std::min_element(row, row + static_cast<std::ptrdiff_t>(ns));
+    }
+}
+
+void SurfaceMetric::fill(const Table& table) {
+    const auto& [length, across, jacobian] = table;
     const std::size_t columns = s_.size(), rows = t_.size();
     cumulative_.resize(columns * rows);
     std::vector<double> gap(rows);
     double area = 0;
     for (std::size_t j = 0; j < rows; ++j) {
-        double sum = 0, row_area = 0, row_across = 0;
+        double sum = 0, row_area = 0, row_across = 0, stretched = 0;
         for (std::size_t i = 0; i < columns; ++i) {
             const std::size_t k = j * columns + i;
             if (i > 0) {
                 const double step = s_[i] - s_[i - 1];
-                sum += 0.5 * (length[k] + length[k - 1]) * step;
+                const double piece = 0.5 * (length[k] + length[k - 1]) * step;
+                sum += piece;
+                stretched +=
+                    stretch_s_.empty() ? piece : piece * 0.5 * (stretch_s_[k] + stretch_s_[k - 1]);
                 row_area += 0.5 * (jacobian[k] + jacobian[k - 1]) * step;
                 row_across += 0.5 * (across[k] + across[k - 1]) * step;
             }
-            cumulative_[k] = sum;
+            cumulative_[k] = stretched;
         }
         const double range = s_.back() - s_.front();
         gap[j] = sum > 0 ? row_area / sum : row_across / range;
         if (gap[j] <= 0) gap[j] = row_across / range;
-        max_length_ = std::max(max_length_, sum);
+        if (!stretch_t_.empty()) gap[j] *= stretch_t_[j];
+        max_length_ = std::max(max_length_, stretched);
         if (!std::isfinite(sum + row_area)) max_length_ = sum + row_area;
         const double weight =
             (j > 0 ? t_[j] - t_[j - 1] : 0.0) + (j + 1 < rows ? t_[j + 1] - t_[j] : 0.0);
         area += 0.5 * weight * row_area;
-        mean_length_ += 0.5 * weight * sum / (t_.back() - t_.front());
+        mean_length_ += 0.5 * weight * stretched / (t_.back() - t_.front());
     }
     mean_jacobian_ = area / ((t_.back() - t_.front()) * (s_.back() - s_.front()));
     const double floor = kPoleFloor * std::max(max_length_, 1e-300);
@@ -210,6 +330,24 @@ SurfaceMetric::SurfaceMetric(FaceSurface& surface, double spacing) {
     y_.assign(rows, 0.0);
     for (std::size_t j = 1; j < rows; ++j)
         y_[j] = y_[j - 1] + (0.5 * (gap[j] + gap[j - 1]) + least) * (t_[j] - t_[j - 1]);
+}
+
+Vec3 SurfaceMetric::stretched(const Vec3& offset, const SurfacePoint& at, double s,
+                              double t) const {
+    const double speed = at.ds.norm();
+    if (!(speed > 0)) return offset;
+    const Vec3 along = at.ds / speed;
+    const Vec3 cross = at.dt - at.dt.dot(along) * along;
+    const double size = cross.norm();
+    if (!(size > 0)) return offset;
+    const Vec3 across = cross / size;
+    const auto [j, v] = bracket(t_.data(), t_.size(), t);
+    const auto [i, w] = bracket(s_.data(), s_.size(), s);
+    const double *a = &stretch_s_[j * s_.size()], *b = a + s_.size();
+    const double by_s =
+        (1 - v) * ((1 - w) * a[i] + w * a[i + 1]) + v * ((1 - w) * b[i] + w * b[i + 1]);
+    const double by_t = (1 - v) * stretch_t_[j] + v * stretch_t_[j + 1];
+    return {by_s * offset.dot(along), by_t * offset.dot(across), offset.dot(along.cross(across))};
 }
 
 double SurfaceMetric::y_of(double t) const {

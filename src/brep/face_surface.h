@@ -4,9 +4,11 @@
 
 #include <GeomAdaptor_Surface.hxx>
 #include <Geom_Surface.hxx>
+#include <array>
 #include <vector>
 
 #include "beltgrinding/geometry.h"
+#include "sample_density.h"
 
 namespace beltgrinding {
 
@@ -32,19 +34,23 @@ struct FaceSurface {
     GeomAdaptor_Surface evaluator() const { return GeomAdaptor_Surface(surface); }
     /// Exact point and first derivatives. Throws Standard_Failure.
     SurfacePoint at(const GeomAdaptor_Surface& evaluator, double s, double t) const;
+    /// Normal curvatures along s and along t, 1/mm, without sign; 0 where there are none.
+    std::array<double, 2> bend(const GeomAdaptor_Surface& evaluator, double s, double t) const;
     /// Parameters along s (or t) between which the surface is smooth, the rectangle's own included.
     std::vector<double> knots(bool along_s) const;
 };
 
 /// The map from the rectangle to the sampler's plane: x in [0, 1] is the share of arc length along
 /// a row of constant t, y is in mean arc length across the rows, mm. Made from a table of first
-/// derivatives; any strictly monotone map is right, a good one makes spacing even.
+/// derivatives; any strictly monotone map is right, a good one makes spacing even. Where a density
+/// is asked for, all lengths of the map are stretched by the spacing over that wanted there, along
+/// rows and across them each by its own: spacing that is even on the map is then as wanted.
 class SurfaceMetric {
   public:
     /// Chooses the direction of the rows (may swap `surface`): that in which neighbouring rows
-    /// keep the evener distance. `spacing` sets how fine a table is worth while. Throws
+    /// keep the evener distance. The spacing sets how fine a table is worth while. Throws
     /// Standard_Failure; returns non-finite lengths if the surface gives NaN.
-    SurfaceMetric(FaceSurface& surface, double spacing);
+    SurfaceMetric(FaceSurface& surface, const SampleDensity& density);
 
     double height() const { return y_.back(); }          ///< mm, across the rows
     double mean_length() const { return mean_length_; }  ///< mm, of a row
@@ -64,10 +70,24 @@ class SurfaceMetric {
     double s_of(const Row& row, double x) const;
     double x_of(double s, double t) const;
 
+    /// Whether anything is stretched.
+    bool stretched() const { return !stretch_s_.empty(); }
+    /// `offset` (mm, at s, t, where the surface has the derivatives of `at`) as stretched: along s,
+    /// across it in the surface, along the normal.
+    Vec3 stretched(const Vec3& offset, const SurfacePoint& at, double s, double t) const;
+
   private:
+    struct Table;
+    void fill(const Table& table);
+    void refine_where_bent(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator);
+    void stretch(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator,
+                 const SampleDensity& density, const Table& table);
+
     std::vector<double> s_, t_;       ///< table's parameters
     std::vector<double> cumulative_;  ///< [t][s], mm
     std::vector<double> y_;           ///< at t_, mm
+    std::vector<double> stretch_s_;   ///< [t][s]; empty: 1 everywhere
+    std::vector<double> stretch_t_;   ///< at t_
     double mean_length_ = 0, max_length_ = 0, mean_jacobian_ = 0;
 };
 

@@ -26,6 +26,8 @@ constexpr double kMostTurn = 1.0472;   // rad, between neighbouring samples of a
 constexpr double kFinestShare = 0.1;   // of the spacing: turning makes no denser samples than this
 constexpr double kMergeShare = 1e-3;   // of the spacing: ends of chains that are one node
 constexpr int kRefinements = 7;        // halvings of chords that cross
+constexpr double kLookTurn = 0.2;      // rad, between looks at an edge whose samples are uneven
+constexpr int kLookHalvings = 10;
 
 int looks(const TrimCurve& c) {
     int spans = 1;
@@ -37,8 +39,42 @@ int looks(const TrimCurve& c) {
     return std::clamp(kLooksPerSpan * spans, kFewestLooks, kMostLooks);
 }
 
-/// Parameters at equal arc length along one use of an edge.
+/// Halves what lies between looks where the edge turns.
+void look_where_bent(const TrimCurve& c, const FaceSurface& surface,
+                     const GeomAdaptor_Surface& evaluator, std::vector<double>& at) {
+    for (int round = 0; round < kLookHalvings && at.size() < kMostLooks; ++round) {
+        std::vector<double> finer{at.front()};
+        Vec3 last = Vec3::Zero(), before = Vec3::Zero();
+        bool bent = false;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const gp_Pnt2d uv = c.curve->Value(at[i]);
+            const Vec3 p =
+                surface
+                    .at(evaluator, surface.swap ? uv.Y() : uv.X(), surface.swap ? uv.X() : uv.Y())
+                    .point;
+            if (i == 0) {
+                last = p;
+                continue;
+            }
+            const Vec3 way = p - last;
+            const bool turns =
+                i > 1 && way.dot(before) < std::cos(kLookTurn) * way.norm() * before.norm();
+            // Both chords that meet in the turn.
+            if (turns && !bent) finer.insert(finer.end() - 1, 0.5 * (at[i - 2] + at[i - 1]));
+            if (turns) finer.push_back(0.5 * (at[i - 1] + at[i]));
+            finer.push_back(at[i]);
+            bent = turns;
+            last = p;
+            before = way;
+        }
+        if (finer.size() == at.size()) return;
+        at = std::move(finer);
+    }
+}
+
+/// Parameters at equal arc length along one use of an edge, as the metric stretches it.
 std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surface,
+                                    const SurfaceMetric& metric,
                                     const GeomAdaptor_Surface& evaluator, double spacing,
                                     bool& degenerate) {
     const auto even = [&](std::size_t n) {
@@ -49,6 +85,7 @@ std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surfa
     };
     if (degenerate) return even(kPoleNodes);
     std::vector<double> at = even(static_cast<std::size_t>(looks(c)));
+    if (metric.stretched()) look_where_bent(c, surface, evaluator, at);
     std::vector<double> length;
     double turn = 0;
     std::size_t intervals = 1;
@@ -58,13 +95,14 @@ std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surfa
         Vec3 last = Vec3::Zero(), direction = Vec3::Zero();
         for (std::size_t i = 0; i < at.size(); ++i) {
             const gp_Pnt2d uv = c.curve->Value(at[i]);
-            const Vec3 p =
-                surface
-                    .at(evaluator, surface.swap ? uv.Y() : uv.X(), surface.swap ? uv.X() : uv.Y())
-                    .point;
+            const double s = surface.swap ? uv.Y() : uv.X(), t = surface.swap ? uv.X() : uv.Y();
+            const SurfacePoint here = surface.at(evaluator, s, t);
+            const Vec3 p = here.point;
             if (i > 0) {
                 const Vec3 step = p - last;
-                length[i] = length[i - 1] + step.norm();
+                length[i] =
+                    length[i - 1] +
+                    (metric.stretched() ? metric.stretched(step, here, s, t).norm() : step.norm());
                 if (step.norm() > kZeroLength) {
                     const Vec3 d = step.normalized();
                     if (direction != Vec3::Zero())
@@ -90,6 +128,7 @@ std::vector<double> edge_parameters(const TrimCurve& c, const FaceSurface& surfa
         intervals = static_cast<std::size_t>(wanted);
         if (2 * intervals <= at.size()) break;
         if (round == 0) at = even(2 * intervals);
+        if (round == 0 && metric.stretched()) look_where_bent(c, surface, evaluator, at);
     }
     std::vector<double> parameters(intervals + 1);
     std::size_t k = 0;
@@ -300,7 +339,7 @@ Boundary sample_boundary(const TrimCurves& trim, const FaceSurface& surface,
         const auto edge = static_cast<std::size_t>(c.edge);
         if (!parameters[edge].empty()) continue;
         bool pole = c.degenerate;
-        parameters[edge] = edge_parameters(c, surface, evaluator, spacing, pole);
+        parameters[edge] = edge_parameters(c, surface, metric, evaluator, spacing, pole);
         degenerate[edge] = pole;
     }
     BoundaryBuilder builder(trim, surface, metric, grid, spacing);

@@ -14,12 +14,14 @@
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
 #include "face_sampler.h"
+#include "heightfield/edge_rays.h"
 #include "shape_impl.h"
 
 namespace beltgrinding {
 namespace {
 
-constexpr double kZeroArea = 1e-9;  // mm2
+constexpr double kZeroArea = 1e-9;    // mm2
+constexpr double kMostSamples = 4e9;  // indices are 32 bits wide
 // Held while sampling: the field's arrays with two triangles a sample, and the face's own before
 // they are copied into it.
 constexpr double kBytesPerSample = 2 * (57 + 2 * sizeof(Triangle)) + 110;
@@ -42,9 +44,8 @@ void refuse_if_too_large(double area, double length, double spacing, std::size_t
     const auto bytes = [&](double h) {
         return (area / (h * h) + 2 * length / h) * kBytesPerSample;
     };
-    const double most_samples = 4e9;  // indices are 32 bits wide
     const auto fits = [&](double h) {
-        return bytes(h) <= limit && area / (h * h) + 2 * length / h < most_samples;
+        return bytes(h) <= limit && area / (h * h) + 2 * length / h < kMostSamples;
     };
     if (fits(spacing)) return;
     double fitting = spacing;
@@ -116,6 +117,12 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     if (!(options.spacing > 0) || !std::isfinite(options.spacing))
         throw InputError("brep.spacing", "the spacing must be above 0 mm, not {spacing:.3g}",
                          {{"spacing", options.spacing}});
+    for (const double value : {options.precision, options.edge_spacing})
+        if (!(value >= 0) || !std::isfinite(value))
+            throw InputError("brep.precision",
+                             "a precision, and a spacing at edges, must not be below 0 mm, as "
+                             "{value:.3g} is",
+                             {{"value", value}});
     if (!(options.depth > 0) || !std::isfinite(options.depth))
         throw InputError("brep.depth", "the depth must be above 0 mm, not {depth:.3g}",
                          {{"depth", options.depth}});
@@ -157,6 +164,10 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
         border += length[i];
     }
     refuse_if_too_large(area, border, options.spacing, options.max_bytes);
+    SampleBudget budget;
+    const double allowed =
+        options.max_bytes > 0 ? double(options.max_bytes) : 0.5 * double(usable_memory());
+    budget.limit = static_cast<std::size_t>(std::min(allowed / kBytesPerSample, kMostSamples));
     const std::vector<char> reversed = shape.reversed(context);
     context.report(0.05);
 
@@ -174,7 +185,10 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
                 FaceRequest request;
                 request.face = impl.face(job.face);
                 request.spacing = options.spacing;
+                request.precision = options.precision;
+                request.edge_spacing = options.edge_spacing;
                 request.area = job.area;
+                if (options.precision > 0 || options.edge_spacing > 0) request.budget = &budget;
                 request.parameters = options.parameters && report != nullptr;
                 request.reverse =
                     (request.face.Orientation() == TopAbs_REVERSED) != (reversed[job.face] != 0);
@@ -210,6 +224,7 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     field.spacing = options.spacing;
     field.depth = options.depth;
     append_all(jobs, field, context);
+    lean_at_edges(field, context);
     if (field.size() == 0)
         throw InputError("brep.no_area", "{shape}: none of the chosen faces has an area",
                          {{"shape", impl.name}});

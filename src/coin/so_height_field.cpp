@@ -124,11 +124,10 @@ SoHeightField::~SoHeightField() {
     living().erase(this);
     SoContextHandler::removeContextDestructionCallback(contextDestroyed, this);
     for (const auto& [context, b] : buffers_) {
-        SoGLCacheContextElement::scheduleDeleteCallback(
-            // Out of memory, nothing would be left to do.
-            // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new)
-            context, delete_orphans,
-            new Orphans{{b.vertex, b.normal, b.colour, b.value, b.index}, b.texture});
+        // Out of memory, nothing would be left to do.
+        // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new)
+        auto* orphans = new Orphans{{b.vertex, b.normal, b.colour, b.value, b.index}, b.texture};
+        SoGLCacheContextElement::scheduleDeleteCallback(context, delete_orphans, orphans);
     }
 }
 

@@ -10,6 +10,8 @@
 namespace beltgrinding {
 namespace {
 
+constexpr int kDrops = 65;  // at which a profile is sampled, from the middle to the side
+
 WheelRimDesign rim_of(const ContactModelParameters& p, const ContactWheel& wheel) {
     WheelRimDesign design;
     design.outer_radius = wheel.radius;
@@ -18,6 +20,13 @@ WheelRimDesign rim_of(const ContactModelParameters& p, const ContactWheel& wheel
         design.layers.push_back({layer.thickness, {layer.youngs_modulus, layer.poissons_ratio}});
     if (design.layers.empty())
         design.layers = {{p.rim_thickness, {p.youngs_modulus, p.poissons_ratio}}};
+    if (wheel.crown_radius > 0.0 || !wheel.profile.empty()) {
+        wheel.validate();
+        for (int k = 0; k < kDrops; ++k) {
+            const double y = 0.5 * wheel.width * k / (kDrops - 1);
+            design.drop.push_back(0.5 * (wheel.drop(y) + wheel.drop(-y)));
+        }
+    }
     return design;
 }
 

@@ -49,6 +49,10 @@ void ContactProblem::validate(const ContactGrid& grid) const {
         throw InputError("contact.cells",
                          "contact: gap and coverage must have one value per cell of the grid");
     }
+    if (drop.size() != 0 && (drop.size() != grid.ny || !drop.isFinite().all())) {
+        throw InputError("contact.rows",
+                         "contact: the wheel's profile must have one value per row of the grid");
+    }
     if (gap.isNaN().any() || !coverage.isFinite().all()) {
         throw InputError("contact.not_a_number",
                          "contact: the gap or the coverage holds a value that is not a number");

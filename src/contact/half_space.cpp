@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -42,49 +44,72 @@ double love(const ContactGrid& grid, double x, double y, const Elasticity& elast
 
 class ConvolutionOperator final : public ComplianceOperator {
   public:
-    /// `length`, `rows`: of the padded grid.
-    ConvolutionOperator(const ContactGrid& grid, std::string description, int length, int rows,
-                        std::shared_ptr<const ConvolutionModel::Spectrum> influence)
+    using Spectra = std::function<std::shared_ptr<const ConvolutionModel::Spectrum>(int length)>;
+    /// `rows`: of the padded grid; `spectra`: by its length.
+    ConvolutionOperator(const ContactGrid& grid, std::string description, int rows, Spectra spectra)
         : ComplianceOperator(grid, std::move(description)),
           rows_(rows),
-          influence_(std::move(influence)),
-          transform_(grid.ny, grid.nx, length),
-          values_(static_cast<std::size_t>(grid.cells())),
-          spectrum_(influence_->values.size()) {}
-    double diagonal() const override { return influence_->centre; }
+          spectra_(std::move(spectra)) {
+        ConvolutionOperator::do_work_on_columns();
+    }
+    double diagonal() const override { return plan_->influence->influence[0]; }
 
   private:
-    void do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                  Eigen::ArrayXd& displacement) override;
+    /// What a number of columns needs.
+    struct Plan {
+        std::shared_ptr<const ConvolutionModel::Spectrum> influence;
+        RowTransform transform;
+        std::vector<float> values;
+        std::vector<std::complex<float>> narrow, spectrum;
+    };
+
+    bool by_columns() const override { return true; }
+    void do_work_on_columns() override;
+    void do_apply(const Eigen::ArrayXd& pressure, Eigen::ArrayXd& displacement) override;
 
     int rows_;
-    std::shared_ptr<const ConvolutionModel::Spectrum> influence_;
-    RowTransform transform_;
-    std::vector<float> values_;
-    std::vector<std::complex<float>> spectrum_;
+    Spectra spectra_;
+    std::map<int, Plan> plans_;
+    Plan* plan_ = nullptr;
 };
 
-void ConvolutionOperator::do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                                   Eigen::ArrayXd& displacement) {
+void ConvolutionOperator::do_work_on_columns() {
+    const int nx = working().nx, ny = working().ny;
+    auto at = plans_.find(nx);
+    if (at == plans_.end()) {
+        Plan plan;
+        const int length = quick_fft_length(2 * nx - 1);
+        plan.influence = spectra_(length);
+        plan.transform = RowTransform(ny, nx, length);
+        plan.values.resize(static_cast<std::size_t>(working().cells()));
+        plan.narrow.resize(static_cast<std::size_t>(plan.transform.wavenumbers()) *
+                           static_cast<std::size_t>(ny));
+        plan.spectrum.resize(plan.influence->values.size());
+        at = plans_.emplace(nx, std::move(plan)).first;
+    }
+    plan_ = &at->second;
+}
+
+void ConvolutionOperator::do_apply(const Eigen::ArrayXd& pressure, Eigen::ArrayXd& displacement) {
     using Values = Eigen::Map<Eigen::ArrayXf>;
-    Values(values_.data(), pressure.size()) = (coverage * pressure).cast<float>();
+    auto& [influence, transform, values, narrow, spectrum] = *plan_;
+    Values(values.data(), pressure.size()) = pressure.cast<float>();
     // Rows beyond the grid's are zero: the transform along the circumference skips them.
-    const auto waves = static_cast<std::size_t>(transform_.wavenumbers());
+    const auto waves = static_cast<std::size_t>(transform.wavenumbers());
     const auto ny = static_cast<std::size_t>(grid().ny), rows = static_cast<std::size_t>(rows_);
-    std::vector<std::complex<float>> narrow(waves * ny);
-    transform_.forward(values_.data(), narrow.data());
-    std::fill(spectrum_.begin(), spectrum_.end(), std::complex<float>());
+    transform.forward(values.data(), narrow.data());
     for (std::size_t k = 0; k < waves; ++k) {
-        std::copy_n(narrow.data() + k * ny, ny, spectrum_.data() + k * rows);
+        std::complex<float>* row = spectrum.data() + k * rows;
+        std::copy_n(narrow.data() + k * ny, ny, row);
+        std::fill(row + ny, row + rows, std::complex<float>());
     }
-    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, true);
-    for (std::size_t i = 0; i < spectrum_.size(); ++i) spectrum_[i] *= influence_->values[i];
-    transform_rows(spectrum_.data(), transform_.wavenumbers(), rows_, false);
-    for (std::size_t k = 0; k < waves; ++k) {
-        std::copy_n(spectrum_.data() + k * rows, ny, narrow.data() + k * ny);
-    }
-    transform_.backward(narrow.data(), values_.data());
-    displacement = Values(values_.data(), pressure.size()).cast<double>();
+    transform_rows(spectrum.data(), transform.wavenumbers(), rows_, true);
+    for (std::size_t i = 0; i < spectrum.size(); ++i) spectrum[i] *= influence->values[i];
+    transform_rows(spectrum.data(), transform.wavenumbers(), rows_, false);
+    for (std::size_t k = 0; k < waves; ++k)
+        std::copy_n(spectrum.data() + k * rows, ny, narrow.data() + k * ny);
+    transform.backward(narrow.data(), values.data());
+    displacement = Values(values.data(), pressure.size()).cast<double>();
 }
 
 }  // namespace
@@ -106,13 +131,15 @@ double Elasticity::plane_strain_modulus() const {
     return youngs_modulus / (1.0 - poissons_ratio * poissons_ratio);
 }
 
-ConvolutionModel::Spectrum ConvolutionModel::build(const ContactGrid& grid, int length,
-                                                   int rows) const {
+ConvolutionModel::Spectrum ConvolutionModel::build(
+    int length, int rows, const std::function<float(int, int)>& influence) {
+    Spectrum result;
     // The influence function wrapped around the padded grid; even, so that its spectrum is real.
     std::vector<float> kernel(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length));
     for (int j = 0; j <= rows / 2; ++j) {
         for (int i = 0; i <= length / 2; ++i) {
-            const auto value = static_cast<float>(influence(grid, i * grid.ds, j * grid.dy));
+            const float value = influence(i, j);
+            result.influence.push_back(value);
             for (const int jj : {j, (rows - j) % rows}) {
                 for (const int ii : {i, (length - i) % length}) {
                     kernel[static_cast<std::size_t>(jj) * static_cast<std::size_t>(length) +
@@ -126,7 +153,7 @@ ConvolutionModel::Spectrum ConvolutionModel::build(const ContactGrid& grid, int 
                                               static_cast<std::size_t>(rows));
     whole.forward(kernel.data(), spectrum.data());
     transform_rows(spectrum.data(), whole.wavenumbers(), rows, true);
-    Spectrum result{std::vector<float>(spectrum.size()), kernel[0]};
+    result.values.resize(spectrum.size());
     const float scale = 1.0F / static_cast<float>(rows);
     std::transform(spectrum.begin(), spectrum.end(), result.values.begin(),
                    [&](std::complex<float> c) { return c.real() * scale; });
@@ -136,9 +163,21 @@ ConvolutionModel::Spectrum ConvolutionModel::build(const ContactGrid& grid, int 
 std::unique_ptr<ComplianceOperator> ConvolutionModel::make_operator(const ContactGrid& grid) const {
     const int length = quick_fft_length(2 * grid.nx - 1);
     const int rows = quick_fft_length(2 * grid.ny - 1);
-    return std::make_unique<ConvolutionOperator>(
-        grid, describe(), length, rows,
-        spectra_.get(grid, length, [&] { return build(grid, length, rows); }));
+    auto whole = spectra_->get(grid, length, [&] {
+        return build(length, rows, [&](int i, int j) {
+            return static_cast<float>(influence(grid, i * grid.ds, j * grid.dy));
+        });
+    });
+    // Fewer columns see part of the same function.
+    auto spectra = [cache = spectra_, whole, grid, length, rows](int shorter) {
+        if (shorter == length) return whole;
+        return cache->get(grid, shorter, [&] {
+            return build(shorter, rows, [&](int i, int j) {
+                return whole->influence[static_cast<std::size_t>(j * (length / 2 + 1) + i)];
+            });
+        });
+    };
+    return std::make_unique<ConvolutionOperator>(grid, describe(), rows, std::move(spectra));
 }
 
 HalfSpace::HalfSpace(Elasticity elasticity) : elasticity_(elasticity) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "beltgrinding/error.h"
@@ -16,6 +17,9 @@ constexpr double kLargestRatio = 0.499;  // Poisson's
 constexpr int kNodes = 8;                // of the serendipity element
 constexpr int kDofs = 3 * kNodes;
 constexpr double kCoarsest = 1.0 / 6.0;  // widest element, as a share of the rim's thickness
+constexpr double kSideDecay = 0.5;       // of the axial displacement, in thicknesses
+constexpr double kThinnest = 0.1;        // of the outermost layer that a profile leaves
+constexpr double kStill = 1e-9;          // mean square of a mode that moves no cell
 
 using ElementMatrix = Eigen::Matrix<double, kDofs, kDofs>;
 using Strains = Eigen::Matrix<double, 6, kDofs>;
@@ -54,22 +58,32 @@ Eigen::Matrix<double, 6, 6> stiffness(const Elasticity& e) {
     return d;
 }
 
+/// The radii of an element's sides, mm: inner and outer one, at its ends along y.
+struct Sides {
+    std::array<double, 2> inner, outer;
+};
+
 /// K0, K1 and K2 of an element: K(n) = K0 + n K1 + n^2 K2.
-std::array<ElementMatrix, 3> element(double r0, double r1, double y0, double y1,
+std::array<ElementMatrix, 3> element(const Sides& sides, double length,
                                      const Eigen::Matrix<double, 6, 6>& d) {
     std::array<ElementMatrix, 3> k;
     for (ElementMatrix& m : k) m.setZero();
-    const double half_r = 0.5 * (r1 - r0), half_y = 0.5 * (y1 - y0);
+    const double half_y = 0.5 * length;
     const double gauss = 1.0 / std::sqrt(3.0);
     std::array<double, kNodes> n{}, n_xi{}, n_eta{};
     for (const double xi : {-gauss, gauss}) {
         for (const double eta : {-gauss, gauss}) {
             shape_functions(xi, eta, n, n_xi, n_eta);
-            const double r = 0.5 * (r0 + r1) + half_r * xi;
+            const double inner = std::lerp(sides.inner[0], sides.inner[1], 0.5 * (1.0 + eta));
+            const double outer = std::lerp(sides.outer[0], sides.outer[1], 0.5 * (1.0 + eta));
+            const double half_r = 0.5 * (outer - inner), r = 0.5 * (inner + outer) + half_r * xi;
+            const double slope = 0.25 * ((1.0 - xi) * (sides.inner[1] - sides.inner[0]) +
+                                         (1.0 + xi) * (sides.outer[1] - sides.outer[0]));
             Strains b0 = Strains::Zero(), b1 = Strains::Zero();
             for (int a = 0; a < kNodes; ++a) {
                 const auto i = static_cast<std::size_t>(a);
-                const double n_r = n_xi[i] / half_r, n_y = n_eta[i] / half_y, by_r = n[i] / r;
+                const double n_r = n_xi[i] / half_r, by_r = n[i] / r;
+                const double n_y = (n_eta[i] - n_r * slope) / half_y;
                 const int u = 3 * a, v = u + 1, w = u + 2;
                 b0(0, u) = n_r;
                 b0(1, u) = by_r;
@@ -108,6 +122,15 @@ double WheelRimDesign::softest() const {
     return 1.0 / compliance;
 }
 
+double WheelRimDesign::drop_at(double y) const {
+    if (drop.empty()) return 0.0;
+    const auto last = static_cast<double>(drop.size() - 1);
+    const double at = std::min(2.0 * std::abs(y) / width, 1.0) * last;
+    const auto k = static_cast<std::size_t>(at);
+    const double here = drop[k], next = drop[std::min(k + 1, drop.size() - 1)];
+    return std::lerp(here, next, at - std::floor(at));
+}
+
 void WheelRimDesign::validate() const {
     const auto positive = [](double value, const char* code, const char* form) {
         if (!std::isfinite(value) || value <= 0.0) throw InputError(code, form, {{"value", value}});
@@ -121,6 +144,9 @@ void WheelRimDesign::validate() const {
                  "wheel rim: the thickness is {value:f} mm; give a positive one");
         layer.elasticity.validate(kLargestRatio);
     }
+    for (const double d : drop) {
+        if (!std::isfinite(d) || d < 0.0) throw std::invalid_argument("WheelRimDesign: drop");
+    }
     if (thickness() >= outer_radius) {
         throw InputError(
             "rim.no_core",
@@ -128,6 +154,20 @@ void WheelRimDesign::validate() const {
             "mm radius; lower the rim's thickness, or take a larger wheel",
             {{"thickness", thickness()}, {"radius", outer_radius}});
     }
+}
+
+SideMode::SideMode(double width, double thickness, int cells, bool outwards)
+    : half_width_(0.5 * width), decay_(kSideDecay * thickness), other_(outwards ? -1.0 : 1.0) {
+    double square = 0.0;
+    for (int j = 0; j < cells; ++j) {
+        const double value = form((j + 0.5) * width / cells - half_width_);
+        square += value * value;
+    }
+    scale_ = square > kStill * cells ? 1.0 / std::sqrt(square) : 0.0;
+}
+
+double SideMode::form(double y) const {
+    return std::exp((y - half_width_) / decay_) + other_ * std::exp(-(y + half_width_) / decay_);
 }
 
 RimSection::RimSection(const WheelRimDesign& design, int cells, double finest)
@@ -192,13 +232,23 @@ RimSection::Half RimSection::assemble(const WheelRimDesign& design, bool symmetr
             }
         }
     }
+    const double border = design.outer_radius - design.layers.back().thickness;
+    const auto turned = [&](double radius, double y) {
+        const double outermost = design.layers.back().thickness;
+        const double left = std::max(1.0 - design.drop_at(y) / outermost, kThinnest);
+        return radius > border ? border + (radius - border) * left : radius;
+    };
     std::array<std::vector<Eigen::Triplet<double>>, 3> triplets;
     for (int i = 0; i < rows; ++i) {
         const auto row = static_cast<std::size_t>(i);
         const auto d = stiffness(design.layers[static_cast<std::size_t>(layer_[row])].elasticity);
         for (int j = 0; j < columns; ++j) {
             const auto column = static_cast<std::size_t>(j);
-            const auto k = element(r_[row], r_[row + 1], y_[column], y_[column + 1], d);
+            const auto at_y = [&](double radius) {
+                return std::array{turned(radius, y_[column]), turned(radius, y_[column + 1])};
+            };
+            const auto k =
+                element({at_y(r_[row]), at_y(r_[row + 1])}, y_[column + 1] - y_[column], d);
             std::array<int, kDofs> map{};
             for (std::size_t a = 0; a < kNodes; ++a) {
                 for (int c = 0; c < 3; ++c) {
@@ -224,18 +274,26 @@ RimSection::Half RimSection::assemble(const WheelRimDesign& design, bool symmetr
         matrix->setFromTriplets(list->begin(), list->end());
     }
     const int count = symmetric ? even() : odd();
-    half.loads = Eigen::MatrixXd::Zero(size, count);
+    half.loads = Eigen::MatrixXd::Zero(size, count + 1);
+    const SideMode mode(design.width, design.thickness(), cells_, symmetric);
     for (int j = 0; j < columns; ++j) {
         const auto column = static_cast<std::size_t>(j);
         // The middle cell of an odd number has no antisymmetric part.
         const int load = cell_[column] - (!symmetric && cells_ % 2 == 1 ? 1 : 0);
-        if (load < 0) continue;
         const double length = y_[column + 1] - y_[column];
-        const double scale =
-            std::sqrt(radius_ / cell_width_[static_cast<std::size_t>(cell_[column])]);
+        const double width = cell_width_[static_cast<std::size_t>(cell_[column])];
+        const double scale = std::sqrt(radius_ / width);
+        // A pair of cells moves as both do, sqrt(2) times each; the middle one is alone.
+        const double dy = design.width / cells_;
+        const bool middle = cells_ % 2 == 1 && cell_[column] == 0;
+        const double y = (cell_[column] + (cells_ % 2 == 1 ? 0.0 : 0.5)) * dy;
+        const double moved = mode.at(y) * (middle ? 1.0 : std::sqrt(2.0));
         for (const auto& [offset, share] : {std::pair{0, 1.0 / 6}, {1, 4.0 / 6}, {2, 1.0 / 6}}) {
-            const int to = at(height - 1, 2 * j + offset, 0);
-            if (to >= 0) half.loads(to, load) += share * length * scale;
+            const int radial = at(height - 1, 2 * j + offset, 0);
+            const int axial = at(height - 1, 2 * j + offset, 2);
+            if (radial >= 0 && load >= 0) half.loads(radial, load) += share * length * scale;
+            // Pressure is a load against the radius: so that both have one sign.
+            if (axial >= 0) half.loads(axial, count) -= moved * share * length * scale;
         }
     }
     return half;

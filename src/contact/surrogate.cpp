@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "beltgrinding/error.h"
+#include "contact/peak_pressure.h"
 
 namespace beltgrinding {
 namespace {
@@ -234,7 +235,7 @@ ContactSolution PreparedSurrogate::do_solve(const ContactProblem& problem, const
         solution.force = problem.force;
     }
     solution.area = (solution.pressure > 0.0).select(weight, 0.0).sum();
-    solution.peak_pressure = solution.pressure.maxCoeff();
+    solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
     return solution;
 }
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "convolution.h"
+#include "rim_operator.h"
 
 namespace beltgrinding {
 namespace {
@@ -20,7 +21,8 @@ constexpr int kWaves = 24;          // sampled wavenumbers
 constexpr double kFirstWave = 0.3;  // times 1 / thickness
 constexpr double kAliases = 4.0;    // the sum along the circumference ends at 2 pi / ds times this
 constexpr double kPi = std::numbers::pi;
-constexpr double kSame = 1e-9;  // relative: of two computations, by another library perhaps
+constexpr double kBeside = 0.05;  // of the thickness: a side face bulges that far at most
+constexpr double kSame = 1e-9;    // relative: of two computations, by another library perhaps
 constexpr int kReadable = 6, kExact = 17;  // digits: for the report; that tell two doubles apart
 
 /// The sampled wavenumbers: 0 to `last` (1/mm), close together where waves are long.
@@ -58,24 +60,6 @@ Eigen::MatrixXd spline_weights(const std::vector<double>& at, int count) {
     return weights;
 }
 
-/// y += A x for a complex x laid out as pairs: A is n x n, column by column.
-// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
-// the loader chooses between them.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-__attribute__((target_clones("avx2,arch=haswell", "default")))
-#endif
-void multiply(const float* matrix, int n, const float* x, float* re, float* im) {
-    for (int j = 0; j < n; ++j) {
-        const float a = x[2 * j], b = x[2 * j + 1];
-        const float* column = matrix + static_cast<std::ptrdiff_t>(j) * n;
-        for (int i = 0; i < n; ++i) {
-            re[i] += column[i] * a;
-            im[i] += column[i] * b;
-        }
-    }
-}
-
 /// -d2/dy2 of cell values with free ends, for `cells` cells of width dy, 1/mm2.
 Eigen::MatrixXd second_difference(int cells, double dy) {
     Eigen::MatrixXd l = Eigen::MatrixXd::Zero(cells, cells);
@@ -110,79 +94,7 @@ bool fits(const RimSamples& samples, int cells) {
                    return m.rows() == size && m.cols() == size && m.allFinite();
                });
     };
-    return all(samples.even, (cells + 1) / 2) && all(samples.odd, cells / 2);
-}
-
-class RimOperator final : public ComplianceOperator {
-  public:
-    /// `length`: of the padded grid along the circumference.
-    RimOperator(const ContactGrid& grid, std::string description, int length,
-                std::shared_ptr<const WheelRim::Spectrum> spectrum)
-        : ComplianceOperator(grid, std::move(description)),
-          spectrum_(std::move(spectrum)),
-          transform_(grid.ny, grid.nx, length),
-          values_(static_cast<std::size_t>(grid.cells())),
-          waves_(static_cast<std::size_t>(transform_.wavenumbers()) *
-                 static_cast<std::size_t>(grid.ny)),
-          image_(waves_.size()) {}
-    double diagonal() const override { return spectrum_->diagonal; }
-
-  private:
-    void do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                  Eigen::ArrayXd& displacement) override;
-
-    std::shared_ptr<const WheelRim::Spectrum> spectrum_;
-    RowTransform transform_;
-    std::vector<float> values_;
-    std::vector<std::complex<float>> waves_, image_;
-};
-
-void RimOperator::do_apply(const Eigen::ArrayXd& pressure, const Eigen::ArrayXd& coverage,
-                           Eigen::ArrayXd& displacement) {
-    const int nx = grid().nx, ny = grid().ny, ne = (ny + 1) / 2, no = ny / 2;
-    const auto root = std::sqrt(0.5);
-    using Rows = Eigen::Map<Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic>>;
-    Rows parts(values_.data(), nx, ny);  // a column is a row of the grid
-    const auto row = [&](const Eigen::ArrayXd& a, int j) { return a.segment(j * nx, nx); };
-    const int shift = ny % 2;
-    for (int a = 0; a < ne; ++a) {
-        const int up = ny / 2 + a, down = ny - 1 - up;
-        const Eigen::ArrayXd p = row(pressure, up) * row(coverage, up);
-        if (up == down) {
-            parts.col(a) = p.cast<float>();
-            continue;
-        }
-        const Eigen::ArrayXd q = row(pressure, down) * row(coverage, down);
-        parts.col(a) = (root * (p + q)).cast<float>();
-        parts.col(ne + a - shift) = (root * (p - q)).cast<float>();
-    }
-    transform_.forward(values_.data(), waves_.data());
-    const float* matrix = spectrum_->matrices.data();
-    std::vector<float> re(static_cast<std::size_t>(ny)), im(re.size());
-    for (int k = 0; k < transform_.wavenumbers(); ++k) {
-        std::fill(re.begin(), re.end(), 0.0F);
-        std::fill(im.begin(), im.end(), 0.0F);
-        const auto* x = reinterpret_cast<const float*>(waves_.data() + k * ny);
-        multiply(matrix, ne, x, re.data(), im.data());
-        multiply(matrix + ne * ne, no, x + 2 * ne, re.data() + ne, im.data() + ne);
-        matrix += ne * ne + no * no;
-        for (int j = 0; j < ny; ++j) {
-            const auto i = static_cast<std::size_t>(j);
-            image_[static_cast<std::size_t>(k * ny + j)] = {re[i], im[i]};
-        }
-    }
-    transform_.backward(image_.data(), values_.data());
-    for (int a = 0; a < ne; ++a) {
-        const int up = ny / 2 + a, down = ny - 1 - up;
-        const Eigen::ArrayXd even = parts.col(a).cast<double>();
-        if (up == down) {
-            displacement.segment(up * nx, nx) = even;
-            continue;
-        }
-        const Eigen::ArrayXd odd = parts.col(ne + a - shift).cast<double>();
-        displacement.segment(up * nx, nx) = root * (even + odd);
-        displacement.segment(down * nx, nx) = root * (even - odd);
-    }
+    return all(samples.even, (cells + 1) / 2 + 1) && all(samples.odd, cells / 2 + 1);
 }
 
 }  // namespace
@@ -198,10 +110,16 @@ WheelRim::WheelRim(WheelRimDesign design, BeltPlate belt, std::shared_ptr<RimCac
 
 std::unique_ptr<ComplianceOperator> WheelRim::make_operator(const ContactGrid& grid) const {
     const auto samples = samples_.get(grid, 0, [&] { return sample(grid); });
-    const int length = quick_fft_length(2 * grid.nx - 1);
-    return std::make_unique<RimOperator>(
-        grid, samples->description, length,
-        spectra_.get(grid, length, [&] { return build(grid, *samples, length); }));
+    auto spectra = [cache = spectra_, design = design_, samples, grid](int length) {
+        return cache->get(grid, length, [&] { return build(design, grid, *samples, length); });
+    };
+    const double width = grid.ny * grid.dy;
+    const auto mode = [&](bool outwards) {
+        return SideMode(width, design_.thickness(), grid.ny, outwards);
+    };
+    // A belt is far stiffer along the axis than the rubber, and its own edges do not bulge.
+    return std::make_unique<RimOperator>(grid, samples->description, std::move(spectra),
+                                         std::array{mode(true), mode(false)}, !has_belt());
 }
 
 WheelRim::Samples WheelRim::sample(const ContactGrid& grid) const {
@@ -217,7 +135,7 @@ WheelRim::Samples WheelRim::sample(const ContactGrid& grid) const {
     std::ostringstream text;
     text.precision(kExact);
     text << describe_design(kExact) << "; cells " << grid.ny << " x " << grid.dy << " mm, "
-         << grid.ds << " mm; waves " << kWaves << " from " << scale.first << "\n";
+         << grid.ds << " mm; waves " << kWaves << " from " << scale.first << "; sides\n";
     const std::string key = text.str();
     samples.description += " (cached as " + rim_cache_name(key) + ")";
     if (auto kept = cache_->read(key);
@@ -241,7 +159,7 @@ RimSamples WheelRim::compute(const ContactGrid& grid, const std::vector<double>&
         for (std::size_t m = begin; m < end; ++m)
             section.compliance(waves[m], samples.even[m], samples.odd[m]);
     });
-    if (belt_.tension > 0.0 || belt_.bending > 0.0) {
+    if (has_belt()) {
         const Eigen::MatrixXd across = second_difference(grid.ny, grid.dy);
         for (std::size_t m = 0; m < waves.size(); ++m) {
             const double k2 = waves[m] * waves[m];
@@ -250,9 +168,13 @@ RimSamples WheelRim::compute(const ContactGrid& grid, const std::vector<double>&
             const Eigen::MatrixXd plate = belt_.tension * k2 * one + belt_.bending * bend * bend;
             for (const bool even : {true, false}) {
                 const Eigen::MatrixXd basis = combinations(grid.ny, even);
-                Eigen::MatrixXd& c = even ? samples.even[m] : samples.odd[m];
-                if (c.size() == 0) continue;
-                c = (c.inverse() + basis.transpose() * plate * basis).inverse().eval();
+                Eigen::MatrixXd& all = even ? samples.even[m] : samples.odd[m];
+                const Eigen::Index count = basis.cols();
+                const Eigen::MatrixXd rubber = all.topLeftCorner(count, count);
+                all.setZero();
+                if (count == 0) continue;
+                all.topLeftCorner(count, count) =
+                    (rubber.inverse() + basis.transpose() * plate * basis).inverse();
             }
         }
     }
@@ -271,15 +193,15 @@ bool WheelRim::holds(const ContactGrid& grid, const std::vector<double>& waves,
     return same(kept.even[m], anew.even[0]) && same(kept.odd[m], anew.odd[0]);
 }
 
-WheelRim::Spectrum WheelRim::build(const ContactGrid& grid, const Samples& samples,
-                                   int length) const {
+WheelRim::Spectrum WheelRim::build(const WheelRimDesign& design, const ContactGrid& grid,
+                                   const Samples& samples, int length) {
     // The influence function along the circumference, of the wheel's whole numbers of waves, as
     // weights of the sampled matrices.
     const auto& [even, odd] = samples.compliance;
-    const double radius = design_.outer_radius, ds = grid.ds;
-    const double offset = 1.0 / design_.thickness();
+    const double radius = design.outer_radius, ds = grid.ds;
+    const double offset = 1.0 / design.thickness();
     const double last = samples.waves.back();
-    const WaveScale scale(design_.thickness(), last);
+    const WaveScale scale(design.thickness(), last);
     const int terms = static_cast<int>(kAliases * 2.0 * kPi / ds * radius);
     std::vector<double> place(static_cast<std::size_t>(terms) + 1);
     for (int n = 0; n <= terms; ++n) {
@@ -321,7 +243,10 @@ WheelRim::Spectrum WheelRim::build(const ContactGrid& grid, const Samples& sampl
     result.diagonal = 0.0;
     for (int m = 0; m < kWaves; ++m) {
         const auto i = static_cast<std::size_t>(m);
-        result.diagonal += influence(0, m) * (even[i].trace() + odd[i].trace()) / grid.ny;
+        const auto cells = [](const Eigen::MatrixXd& c) {
+            return c.diagonal().head(c.rows() - 1).sum();
+        };
+        result.diagonal += influence(0, m) * (cells(even[i]) + cells(odd[i])) / grid.ny;
     }
     const Eigen::Index ne = even[0].size(), no = odd[0].size();
     result.matrices.resize(static_cast<std::size_t>((half + 1) * (ne + no)));
@@ -344,6 +269,10 @@ double WheelRim::thickness() const {
     return design_.thickness();
 }
 
+double WheelRim::beside() const {
+    return has_belt() ? 0.0 : kBeside * design_.thickness();
+}
+
 std::string WheelRim::describe() const {
     return describe_design(kReadable);
 }
@@ -356,7 +285,12 @@ std::string WheelRim::describe_design(int digits) const {
         text << ", " << layer.thickness << " mm of E " << layer.elasticity.youngs_modulus
              << " MPa, nu " << layer.elasticity.poissons_ratio;
     }
-    if (belt_.tension > 0.0 || belt_.bending > 0.0) {
+    if (!design_.drop.empty()) {
+        text << ", turned to a profile";
+        if (digits == kExact)
+            for (const double drop : design_.drop) text << ' ' << drop;
+    }
+    if (has_belt()) {
         text << ", belt of " << belt_.tension << " N/mm tension, " << belt_.bending
              << " N mm bending stiffness";
     }

@@ -22,6 +22,17 @@ constexpr std::array kKinds = {
               "the force control is at the end of its travel and presses more than commanded",
               "move the pose away from the work, or enlarge the travel of the force control"},
     EventKind{
+        "force_overshoot", kWarning, "N", kLarger,
+        "the force control takes time, and presses more than commanded by a larger share than "
+        "stated: on the way up a rib or an edge, or when the wheel meets the work",
+        "lower the feed there, or take a lighter or a better damped force control; let the "
+        "pass begin and end away from edges, with less force"},
+    EventKind{
+        "bounces", kWarning, "s", kLarger,
+        "the wheel leaves the work and comes back to it within a short time, by the motion of "
+        "the force control; the value is how long it was off",
+        "lower the feed there, or take a lighter or a better damped force control"},
+    EventKind{
         "over_pressure", kWarning, "MPa", kLarger,
         "the pressure exceeds the limit that the process law has",
         "lower the force, take a softer or a wider wheel, or lead it over the edge more gently"},
@@ -102,6 +113,13 @@ constexpr std::array kKinds = {
               "is how much",
               "lower simulation.max_travel_mm; or raise the feed, lower the force or the law's "
               "coefficient, if one of them is a mistake"},
+    EventKind{
+        "volume_lost", kWarning, "mm3", kLarger,
+        "less is ground than the law takes under the wheel's pressure: no sample has it, since "
+        "the wheel's own surface stands in the way, or the samples are too coarse for the "
+        "part's form there; the value is how much on the whole path",
+        "lower sampling.spacing_mm; or the force or the law's coefficient, if it is a "
+        "mistake"},
     EventKind{"not_converged", kWarning, "iterations", kLarger,
               "the contact was not solved to the tolerance asked for",
               "refine the contact grid, or raise belt_machine.contact_tolerance"},

@@ -17,6 +17,7 @@ std::size_t RemovalTrace::bytes() const {
 
 void HeightField::resize(std::size_t n) {
     point.resize(n, Vec3::Zero());
+    if (!rays.empty()) rays.resize(n, Vec3f::UnitZ());
     normal.resize(n, Vec3f::UnitZ());
     area.resize(n, 0.0F);
     stock_height.resize(n, 0.0F);
@@ -27,9 +28,10 @@ void HeightField::resize(std::size_t n) {
 
 std::size_t HeightField::bytes() const {
     return point.capacity() * sizeof(Vec3) + normal.capacity() * sizeof(Vec3f) +
-           area.capacity() * sizeof(float) + stock_height.capacity() * sizeof(float) +
-           height.capacity() * sizeof(double) + face.capacity() * sizeof(std::uint32_t) +
-           flags.capacity() + height_sd.capacity() * sizeof(float) + trace.bytes() +
+           rays.capacity() * sizeof(Vec3f) + area.capacity() * sizeof(float) +
+           stock_height.capacity() * sizeof(float) + height.capacity() * sizeof(double) +
+           face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
+           height_sd.capacity() * sizeof(float) + trace.bytes() +
            triangles.capacity() * sizeof(Triangle);
 }
 

@@ -39,6 +39,7 @@ void each_trace_array(Trace& t, Visit&& visit) {
 constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
 constexpr const char* kMeasured = "measured_mm";      // where a scan was compared
 constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
+constexpr const char* kRays = "ray";                  // where some lean
 
 Fact within(const std::string& path) {
     return {"heightfield.file", "{file}: the height field ", {{"file", path}}};
@@ -54,6 +55,7 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
     }
+    if (!field.rays.empty()) write_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
     if (!field.measured.empty()) {
         write_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
     }
@@ -100,9 +102,12 @@ void check(const HeightField& f) {
     for (const float height : f.measured) {
         require(!std::isinf(height), "heightfield.measured", "its measured heights are no lengths");
     }
+    require(f.rays.empty() || f.rays.size() == n, "heightfield.lengths",
+            "its arrays differ in length");
     for (std::size_t i = 0; i < n; ++i) {
-        if (!f.point[i].allFinite() || !f.normal[i].allFinite() || !std::isfinite(f.height[i]) ||
-            !std::isfinite(f.area[i]) || !std::isfinite(f.stock_height[i])) {
+        if (!f.point[i].allFinite() || !f.ray(i).allFinite() || !f.normal[i].allFinite() ||
+            !std::isfinite(f.height[i]) || !std::isfinite(f.area[i]) ||
+            !std::isfinite(f.stock_height[i])) {
             require(false, "heightfield.sample", "sample {sample} is not finite", {{"sample", i}});
         }
     }
@@ -151,6 +156,9 @@ HeightField read_hdf5_image(std::string_view image, const std::string& name,
         each_array(field, [&](const char* array, auto& data, hid_t type, hsize_t row) {
             read_array(file, array, data, type, row);
         });
+        if (H5Lexists(file, kRays, H5P_DEFAULT) > 0) {
+            read_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
+        }
         if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
             read_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
         }

@@ -147,7 +147,7 @@ struct KDopTree<K>::Impl {
         for (std::uint32_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
             const std::uint32_t s = order[i];
             dop.add(field.top(s));
-            dop.add(Vec3(field.point[s] - field.depth * field.normal[s].cast<double>()));
+            dop.add(field.bottom(s));
         }
         return dop;
     }
@@ -201,8 +201,7 @@ void KDopTree<K>::Impl::query_node(const HeightField& field, const Query& q, std
     const std::uint32_t leaf = node - (leaves - 1);
     for (std::uint32_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
         const std::uint32_t s = order[i];
-        const Vec3 bottom = field.point[s] - field.depth * field.normal[s].template cast<double>();
-        if (segment_meets(q.reach, bottom, field.top(s))) hits.push_back(s);
+        if (segment_meets(q.reach, field.bottom(s), field.top(s))) hits.push_back(s);
     }
 }
 

@@ -87,6 +87,7 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
         for (std::size_t v = begin; v < end; ++v) {
             conditions.clear();
             bool on_ground = false, on_other = false;
+            Vec3 aside = Vec3::Zero();
             double sum = 0;
             int heights = 0;
             for (std::uint32_t m = first[v]; m < first[v + 1]; ++m) {
@@ -101,6 +102,7 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
                     if (height) {
                         h = *height;
                         sum += h;
+                        aside = h * lookup.lean(*place);
                         ++heights;
                     }
                 }
@@ -115,6 +117,7 @@ void displace(const SurfaceMesh& mesh, const HeightField& field, const RunContex
             out.deviation[v] = static_cast<float>(sum / heights);
             bool held = false;
             out.vertices[v] += displacement(conditions, held);
+            if (conditions.size() == 1) out.vertices[v] += aside;  // borders have their own
             if (held) ++limited;
         }
     });

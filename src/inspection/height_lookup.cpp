@@ -123,4 +123,14 @@ std::optional<double> HeightLookup::height(const Place& place) const {
     return sum / weight;
 }
 
+Vec3 HeightLookup::lean(const Place& place) const {
+    Vec3 sum = Vec3::Zero();
+    if (field_.rays.empty()) return sum;
+    for (int k = 0; k < 3; ++k) {
+        const std::uint32_t s = place.samples[static_cast<std::size_t>(k)];
+        sum += place.weight[k] * (field_.rays[s] - field_.normal[s]).cast<double>();
+    }
+    return sum;
+}
+
 }  // namespace beltgrinding

@@ -27,6 +27,9 @@ class HeightLookup {
     /// The height there, linear between the samples that met stock; none where all missed it.
     std::optional<double> height(const Place& place) const;
 
+    /// What rays have there beside the normal, mm aside for each mm of height.
+    Vec3 lean(const Place& place) const;
+
   private:
     using Cell = std::uint64_t;
     struct Entry {

@@ -64,11 +64,14 @@ void append(SectionPiece& piece, const HeightField& field, const Crossing& c) {
     if (!piece.point.empty() && (piece.point.back() - point).norm() < kSamePoint) return;
     const Vec3 normal = (1.0 - c.share) * field.normal[c.a].cast<double>() +
                         c.share * field.normal[c.b].cast<double>();
+    const Vec3 ray =
+        (1.0 - c.share) * field.ray(c.a).cast<double>() + c.share * field.ray(c.b).cast<double>();
     // A missed sample has no height; one that the line does not touch does no harm.
     const bool missed = ((field.flags[c.a] & kMissed) != 0 && c.share < 1.0) ||
                         ((field.flags[c.b] & kMissed) != 0 && c.share > 0.0);
     piece.point.push_back(point);
     piece.normal.push_back(normal.normalized());
+    piece.ray.push_back(ray);
     piece.stock_height.push_back(
         missed ? kNaN : mix(field.stock_height[c.a], field.stock_height[c.b], c.share));
     piece.height.push_back(missed ? kNaN : mix(field.height[c.a], field.height[c.b], c.share));
@@ -178,6 +181,7 @@ template <class Visit>
 void each_array(const SectionPiece& from, SectionPiece& to, Visit&& visit) {
     visit(from.point, to.point);
     visit(from.normal, to.normal);
+    visit(from.ray, to.ray);
     visit(from.stock_height, to.stock_height);
     visit(from.height, to.height);
     visit(from.height_sd, to.height_sd);

@@ -5,8 +5,9 @@ namespace beltgrinding::python {
 namespace {
 
 constexpr std::array<const char*, kGrindParameters> kNames{
-    "ln_coefficient", "pressure_exponent", "speed_exponent", "feed_exponent",      "time_exponent",
-    "area_exponent",  "ln_wear_scale",     "wear_rest",      "pressure_threshold", "ln_saturation"};
+    "ln_coefficient",     "pressure_exponent", "speed_exponent", "feed_exponent",
+    "time_exponent",      "area_exponent",     "ln_wear_scale",  "wear_rest",
+    "pressure_threshold", "ln_saturation",     "wear_exponent"};
 
 MeasuredGrinds grinds_from(const py::dict& given) {
     py::dict d = copy_of(given);
@@ -19,6 +20,7 @@ MeasuredGrinds grinds_from(const py::dict& given) {
     g.wear = take(d, "wear", Eigen::ArrayXd());
     g.spread = take(d, "spread", Eigen::ArrayXd());
     g.measured = take(d, "measured", Eigen::ArrayXd());
+    g.relative = take(d, "relative", Eigen::ArrayXXd());
     g.areas = take(d, "areas", Eigen::ArrayXd());
     refuse_rest(d, "grinds");
     g.validate();
@@ -59,15 +61,19 @@ void bind_calibration(py::module_& m) {
         py::arg("parameters"), py::arg("grinds"), py::arg("references"),
         "ln of what is removed (n,) and its gradient (n, parameters), by GRIND_PARAMETERS; "
         "grinds: dict of arrays (n,) force N, area mm2, speed mm/s, feed mm/s (0: stationary), "
-        "time s, wear, spread mm2 (1: volumes; nan: depth over the area), measured.");
+        "time s, wear, spread mm2 (1: volumes; nan: depth over the area), measured, relative (n, "
+        "m) "
+        "pressure over the mean on equal shares of the contact.");
     m.def(
         "calibrate",
         [](const py::dict& grinds, const py::dict& references, const GrindVector& start,
            const GrindVector& lower, const GrindVector& upper,
-           const std::array<bool, kGrindParameters>& free) {
+           const std::array<bool, kGrindParameters>& free, const GrindVector& prior_mean,
+           const GrindVector& prior_deviation) {
             const MeasuredGrinds g = grinds_from(grinds);
             const GrindReferences r = references_from(references);
-            const CalibrationSettings settings{start, lower, upper, free};
+            const CalibrationSettings settings{start, lower,      upper,
+                                               free,  prior_mean, prior_deviation};
             Calibration c;
             {
                 const py::gil_scoped_release release;
@@ -79,6 +85,7 @@ void bind_calibration(py::module_& m) {
             d["information"] = c.information;
             d["at_bound"] = c.at_bound;
             d["scatter"] = c.scatter;
+            d["log_likelihood"] = c.log_likelihood;
             d["residual"] = c.residual;
             d["weight"] = c.weight;
             d["shares"] = c.shares;
@@ -88,10 +95,12 @@ void bind_calibration(py::module_& m) {
             return d;
         },
         py::arg("grinds"), py::arg("references"), py::arg("start"), py::arg("lower"),
-        py::arg("upper"), py::arg("free"),
-        "Robust least squares of ln(measured) with bounds; grinds as log_grinds takes them, with "
+        py::arg("upper"), py::arg("free"), py::arg("prior_mean"), py::arg("prior_deviation"),
+        "Robust least squares of ln(measured) with bounds and normal priors (deviation inf: none); "
+        "grinds as log_grinds takes them, with "
         "'areas' (k,) mm2 that an unknown (nan) area can be. parameters, covariance, information "
-        "(sandwich, and sum of w J J^T), at_bound, scatter, residual and weight (n,), shares (k,), "
+        "(sandwich, and sum of w J J^T), at_bound, scatter, log_likelihood, residual and weight "
+        "(n,), shares (k,), "
         "posterior (n, k), iterations, converged.");
 }
 

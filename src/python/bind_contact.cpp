@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "beltgrinding/contact_factory.h"
+#include "contact/displaced.h"
 #include "contact/regression.h"
 #include "contact/single_contact.h"
 #include "dict.h"
@@ -40,6 +41,9 @@ Workpiece workpiece_from(const py::dict& given) {
     workpiece.shape = Workpiece::shape_named(take<std::string>(d, "shape", "plane"));
     workpiece.radius = take(d, "radius", workpiece.radius);
     workpiece.width = take(d, "width", workpiece.width);
+    workpiece.ring_radius = take(d, "ring_radius", workpiece.ring_radius);
+    workpiece.edge = take(d, "edge", workpiece.edge);
+    workpiece.tilt = take(d, "tilt_deg", 0.0) * std::numbers::pi / 180.0;
     workpiece.axis_angle = take(d, "axis_angle_deg", 0.0) * std::numbers::pi / 180.0;
     refuse_rest(d, "workpiece");
     return workpiece;
@@ -113,6 +117,24 @@ py::dict contact_to_dict(const ContactGrid& grid, const ContactSolution& solutio
     return d;
 }
 
+void add_displaced(py::dict& d, const ContactGrid& grid, const ContactSolution& solution,
+                   const Eigen::ArrayXd& coverage) {
+    const DisplacedPressure found = displaced(grid, solution, coverage);
+    d["displaced_pressure"] = cells(grid, found.pressure);
+    py::array_t<double> beside({2, grid.nx}), reach({2, grid.nx});
+    const auto fill = [](py::array_t<double>& array, const Eigen::ArrayXd& values) {
+        Eigen::Map<Eigen::ArrayXd> to(array.mutable_data(), array.size());
+        if (values.size() == to.size())
+            to = values;
+        else
+            to.setZero();
+    };
+    fill(beside, found.beside);
+    fill(reach, found.reach);
+    d["beside"] = beside;
+    d["reach"] = reach;
+}
+
 void bind_contact(py::module_& m) {
     m.def(
         "check_wheel", [](const py::dict& wheel) { wheel_from(wheel).validate(); },
@@ -144,6 +166,7 @@ void bind_contact(py::module_& m) {
             py::dict d = contact_to_dict(result.grid, result.solution);
             d["gap"] = cells(result.grid, result.gap);
             d["coverage"] = cells(result.grid, result.coverage);
+            add_displaced(d, result.grid, result.solution, result.coverage);
             d["beyond_placed"] = 0.0;
             d["time"] = result.time;
             d["model"] = result.model;
@@ -154,7 +177,11 @@ void bind_contact(py::module_& m) {
         py::arg("tolerance") = 1e-4,
         "One contact of a wheel with an analytic workpiece: dict(x (nx,) along the circumference, "
         "y (ny,), pressure (ny, nx) MPa, force N, approach mm from first touch, contact_area mm2, "
-        "peak_pressure, iterations, converged, time s of all solves, model).");
+        "peak_pressure, iterations, converged, time s of all solves, model; displaced_pressure "
+        "(ny, "
+        "nx), where the rubber has moved to, and beyond the side faces at -y and +y: beside (2, "
+        "nx) "
+        "MPa, up to reach (2, nx) mm).");
 }
 
 }  // namespace beltgrinding::python

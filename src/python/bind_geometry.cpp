@@ -147,8 +147,11 @@ void bind_geometry(py::module_& m) {
     m.def(
         "sample_faces",
         [](const Shape& shape, const std::vector<std::size_t>& faces, double spacing, double depth,
-           std::size_t max_bytes, const RunContext* context, bool parameters) {
+           std::size_t max_bytes, const RunContext* context, bool parameters, double precision,
+           double edge_spacing) {
             SamplingOptions options;
+            options.precision = precision;
+            options.edge_spacing = edge_spacing;
             options.spacing = spacing;
             options.depth = depth;
             options.max_bytes = max_bytes;
@@ -174,7 +177,10 @@ void bind_geometry(py::module_& m) {
         },
         py::arg("shape"), py::arg("faces"), py::arg("spacing"), py::arg("depth") = 1.0,
         py::arg("max_bytes") = 0, py::arg("context") = nullptr, py::arg("parameters") = false,
-        "Samples faces (from 0; all if empty). Returns (HeightField, dict(face_area, warnings)); "
+        py::arg("precision") = 0.0, py::arg("edge_spacing") = 0.0,
+        "Samples faces (from 0; all if empty), on curved places so densely that chords bulge by "
+        "precision mm, edge_spacing mm apart at least (0: unused). Returns (HeightField, "
+        "dict(face_area, warnings)); "
         "with parameters also parameters (n, 2): u, v of every sample, and period of every face.");
 }
 

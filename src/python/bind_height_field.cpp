@@ -38,6 +38,15 @@ void bind_height_field(py::module_& m) {
         .def_readonly("depth", &HeightField::depth)
         .BELTGRINDING_VIEW("points", point, double, 3)
         .BELTGRINDING_VIEW("normals", normal, float, 3)
+        .def_property_readonly(
+            "rays",
+            [](const py::object& self) {
+                const auto& field = self.cast<const HeightField&>();
+                return view<float>(field.rays.empty() ? field.normal : field.rays, 3, self);
+            },
+            "(n, 3): along which heights are measured, from the points; the normals, but beside "
+            "sharp edges between faces, where they lean towards the edge's bisector and are longer "
+            "than 1, so that a height is the part along the normal.")
         .BELTGRINDING_VIEW("areas", area, float, 1)
         .BELTGRINDING_VIEW("stock_height", stock_height, float, 1)
         .BELTGRINDING_VIEW("height", height, double, 1)

@@ -22,6 +22,7 @@ py::dict to_dict(Section&& section) {
         d["s"] = own(std::move(piece.arc_length));
         d["point"] = rows(piece.point);
         d["normal"] = rows(piece.normal);
+        d["ray"] = rows(piece.ray);
         d["stock_height"] = own(std::move(piece.stock_height));
         d["height"] = own(std::move(piece.height));
         if (!piece.height_sd.empty()) d["height_sd"] = own(std::move(piece.height_sd));
@@ -52,7 +53,7 @@ void bind_section(py::module_& m) {
     m.def("section_by_plane", &section<section_by_plane>, py::arg("field"), py::arg("point"),
           py::arg("normal"),
           "Section of the design surface by a plane: point, normal, pieces, each a dict of face, "
-          "closed, s, point, normal, stock_height, height and, where known, height_sd; mm.");
+          "closed, s, point, normal, ray, stock_height, height and, where known, height_sd; mm.");
     m.def("section_between", &section<section_between>, py::arg("field"), py::arg("start"),
           py::arg("end"), "The line on the surface between two points (mm), as section_by_plane.");
 }

@@ -47,6 +47,7 @@ BeltWear wear_from(const py::dict& given) {
     p.rest = take(d, "rest", p.rest);
     p.first_share = take(d, "first_share", p.first_share);
     p.first_scale = take(d, "first_scale", p.first_scale);
+    p.exponent = take(d, "exponent", p.exponent);
     p.curve = curve_from(d, "curve");
     refuse_rest(d, "wear");
     return BeltWear(p);
@@ -62,6 +63,18 @@ BeltState belt_from(const py::dict& given) {
     return belt;
 }
 
+void take_dynamics(const py::dict& given, SimulationOptions& o) {
+    py::dict d = copy_of(given);
+    ForceDynamics& dynamics = o.process.dynamics;
+    dynamics.lag = take(d, "lag", dynamics.lag);
+    dynamics.mass = take(d, "mass", dynamics.mass);
+    dynamics.damping = take(d, "damping", dynamics.damping);
+    dynamics.speed_limit = take(d, "speed_limit", dynamics.speed_limit);
+    o.limits.overshoot = take(d, "overshoot", o.limits.overshoot);
+    o.limits.bounce = take(d, "bounce", o.limits.bounce);
+    refuse_rest(d, "force_dynamics");
+}
+
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
     o.process.wheel = wheel_from(wheel_given);
@@ -69,6 +82,8 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.process.force_control = take(d, "force_control", o.process.force_control);
     o.process.force = take(d, "force", o.process.force);
     o.process.force_travel = take(d, "force_travel", o.process.force_travel);
+    o.process.wheel_growth = take(d, "wheel_growth", o.process.wheel_growth);
+    take_dynamics(take(d, "force_dynamics", py::dict()), o);
     o.process.robot_stiffness = take(d, "robot_stiffness", o.process.robot_stiffness);
     o.process.belt_speed = take(d, "belt_speed", o.process.belt_speed);
     o.process.belt_wear = take(d, "belt_wear", o.process.belt_wear);
@@ -89,6 +104,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.resolution.max_angle = take(d, "max_angle", o.resolution.max_angle);
     o.outputs.trace = take(d, "trace", o.outputs.trace);
     o.outputs.influence = take(d, "influence", o.outputs.influence);
+    o.outputs.force_influence = take(d, "force_influence", o.outputs.force_influence);
     o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
@@ -110,6 +126,7 @@ py::dict pose_contact_to_dict(const PoseContact& contact) {
     d["commanded_force"] = contact.commanded;
     d["gap"] = cells(contact.grid, contact.gap);
     d["coverage"] = cells(contact.grid, contact.coverage);
+    add_displaced(d, contact.grid, contact.solution, contact.coverage);
     d["model"] = contact.model;
     return d;
 }
@@ -155,6 +172,7 @@ py::dict to_dict(const SimulationResult& result) {
     d["process_time"] = result.process_time;
     d["removed_volume"] = result.removed_volume;
     d["integrated_rate"] = result.integrated_rate;
+    d["lost_volume"] = result.lost_volume();
     d["wall"] = wall;
     return d;
 }
@@ -317,6 +335,9 @@ void bind_simulation(py::module_& m) {
             py::dict d = to_dict(result);
             d["influence"] =
                 o.outputs.influence ? py::cast(std::move(result.influence)) : py::none();
+            d["force_influence"] = o.outputs.force_influence
+                                       ? py::cast(std::move(result.force_influence))
+                                       : py::none();
             d["compliance"] = result.model;
             d["law"] = removal->describe() + ", " + o.process.wear.describe();
             return d;
@@ -326,7 +347,7 @@ void bind_simulation(py::module_& m) {
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
         py::arg("recording") = nullptr,
         "Grinds field along path; see simulation/simulation.h for units. A recording goes on with "
-        "the path. With the option influence: an Influence; else None.");
+        "the path. With the options influence and force_influence: an Influence; else None.");
     m.def(
         "contact_at",
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,

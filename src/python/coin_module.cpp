@@ -49,13 +49,13 @@ PYBIND11_MODULE(beltgrinding_coin, m) {
             node_at(node).setSamples(values(points), values(normals), values(triangles));
         },
         py::arg("node"), py::arg("points"), py::arg("normals"), py::arg("triangles"),
-        "Design points (n, 3) in mm, unit normals (n, 3), triangles (m, 3).");
+        "Design points (n, 3) in mm, rays of the samples (n, 3), triangles (m, 3).");
     m.def(
         "set_heights",
         [](std::uintptr_t node, const Array<double>& heights) {
             node_at(node).setHeights(values(heights));
         },
-        py::arg("node"), py::arg("heights"), "(n,) mm along the normals.");
+        py::arg("node"), py::arg("heights"), "(n,) mm along the rays.");
     m.def(
         "set_colours",
         [](std::uintptr_t node, const Array<std::uint32_t>& colours) {

@@ -49,5 +49,8 @@ py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values)
 
 /// x, y, pressure, cell_area, force, approach, contact_area, peak_pressure, iterations, converged.
 py::dict contact_to_dict(const ContactGrid& grid, const ContactSolution& solution);
+/// Adds where the pressure acts: displaced_pressure, beside and reach (see single_contact).
+void add_displaced(py::dict& d, const ContactGrid& grid, const ContactSolution& solution,
+                   const Eigen::ArrayXd& coverage);
 
 }  // namespace beltgrinding::python

@@ -20,9 +20,11 @@ BeltWear::Model BeltWear::model_named(const std::string& name) {
     if (name == "none") return Model::kNone;
     if (name == "exponential") return Model::kExponential;
     if (name == "two_stage") return Model::kTwoStage;
+    if (name == "power") return Model::kPower;
     if (name == "curve") return Model::kCurve;
     throw InputError("call.wear",
-                     "wear: there is no model '{name}'; use none, exponential, two_stage or curve",
+                     "wear: there is no model '{name}'; use none, exponential, two_stage, power or "
+                     "curve",
                      {{"name", name}});
 }
 
@@ -45,6 +47,11 @@ BeltWear::BeltWear(Parameters parameters) : parameters_(std::move(parameters)) {
             throw InputError("wear.scale",
                              "wear: the scale must be positive and the rest lie in [0, 1]");
         }
+    }
+    if (p.model == Model::kPower &&
+        (!positive(p.scale) || !std::isfinite(p.exponent) || p.exponent < 0.0)) {
+        throw InputError("wear.power",
+                         "wear: the scale must be positive and the exponent zero or positive");
     }
     if (p.model == Model::kTwoStage &&
         (!positive(p.first_scale) || !share(p.first_share) || p.rest + p.first_share > 1.0)) {
@@ -69,6 +76,8 @@ double BeltWear::remaining(const BeltState& state) const {
         case Model::kTwoStage:
             return p.rest + p.first_share * std::exp(-w / p.first_scale) +
                    (1.0 - p.rest - p.first_share) * std::exp(-w / p.scale);
+        case Model::kPower:
+            return std::pow(1.0 + w / p.scale, -p.exponent);
         case Model::kCurve:
             return p.curve(w);
     }
@@ -92,6 +101,9 @@ std::string BeltWear::describe() const {
         case Model::kTwoStage:
             text << "wear in two stages over " << p.first_scale << " and " << p.scale << unit
                  << " to " << p.rest;
+            break;
+        case Model::kPower:
+            text << "wear as (1 + W / " << p.scale << unit << ")^-" << p.exponent;
             break;
         case Model::kCurve:
             text << "wear by a curve to " << p.curve.upper() << unit;

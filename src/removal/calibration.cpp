@@ -14,18 +14,43 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kCauchy = 2.385;
+// Hampel's parts, in scatters: up to the first a row counts in full, up to the second with the same
+// pull, and from the third on not at all.
+constexpr double kFull = 3.0, kLevel = 5.0, kNone = 8.0;
 constexpr double kMad = 1.4826;         // median of |r| to deviation, for a normal r
 constexpr double kLeastScatter = 1e-4;  // a table without scatter is not without rounding
 constexpr double kNearBound = 1e-3;     // of the range
-constexpr double kLeastExcess = 1e-9;   // MPa above the threshold
 constexpr double kMostLeverage = 0.95;
 constexpr double kConverged = 1e-6;
 constexpr int kMostIterations = 200;
-constexpr int kHuberIterations = 10;  // Cauchy's loss has local minima: come near them convexly
+constexpr int kHuberIterations = 10;  // the loss has local minima: come near them convexly
+constexpr double kWinsor =
+    3.0;  // deviations, beyond which a residual counts no more in the scatter
 // The median may jump to and fro between two residuals for ever: from then on it stays.
 constexpr int kScatterIterations = 60;
 constexpr double kHuber = 1.345;
+
+/// psi(z) / z of Hampel's loss at z >= 0 scatters.
+double weight_of(double z) {
+    if (z <= kFull) return 1.0;
+    if (z <= kLevel) return kFull / z;
+    return z < kNone ? kFull * (kNone - z) / ((kNone - kLevel) * z) : 0.0;
+}
+
+/// d psi / dz.
+double curvature_of(double z) {
+    if (z <= kFull) return 1.0;
+    return z <= kLevel || z >= kNone ? 0.0 : -kFull / (kNone - kLevel);
+}
+
+/// The loss itself, whose derivative is psi.
+double loss_of(double z) {
+    if (z <= kFull) return 0.5 * z * z;
+    const double full = 0.5 * kFull * kFull;
+    if (z <= kLevel) return full + kFull * (z - kFull);
+    const double left = std::max(kNone - z, 0.0), part = kNone - kLevel;
+    return full + kFull * (kLevel - kFull) + 0.5 * kFull * (part - left * left / part);
+}
 
 /// A row under one of the areas that it can have.
 struct Candidate {
@@ -87,16 +112,24 @@ class Bounds {
 
 struct WeightedResiduals : Eigen::DenseFunctor<double> {
     WeightedResiduals(const MeasuredGrinds& measured, const GrindReferences& at,
-                      const Bounds& limits, const std::vector<Candidate>& rows)
-        : DenseFunctor<double>(limits.size(), static_cast<int>(rows.size())),
+                      const Bounds& limits, const std::vector<Candidate>& rows,
+                      const CalibrationSettings& before, double scatter)
+        : DenseFunctor<double>(limits.size(), static_cast<int>(rows.size()) + limits.size()),
           grinds(measured),
           references(at),
           bounds(limits),
-          candidates(rows) {}
+          candidates(rows),
+          settings(before),
+          deviation(scatter) {}
 
     int operator()(const Eigen::VectorXd& u, Eigen::VectorXd& r) const {
         const GrindVector x = bounds.outer(u);
-        for (Eigen::Index c = 0; c < r.size(); ++c) {
+        const auto rows = static_cast<Eigen::Index>(candidates.size());
+        for (int j = 0; j < bounds.size(); ++j) {
+            const int k = bounds.indices()[static_cast<std::size_t>(j)];
+            r[rows + j] = pull(k) * (x[k] - settings.prior_mean[k]);
+        }
+        for (Eigen::Index c = 0; c < rows; ++c) {
             const Candidate& one = candidates[static_cast<std::size_t>(c)];
             r[c] = std::sqrt(one.posterior * one.weight) *
                    (log_grind(x, references, grinds, one.row, one.area, nullptr) -
@@ -107,7 +140,13 @@ struct WeightedResiduals : Eigen::DenseFunctor<double> {
     int df(const Eigen::VectorXd& u, Eigen::MatrixXd& jacobian) const {
         const GrindVector x = bounds.outer(u);
         GrindVector gradient;
-        for (Eigen::Index c = 0; c < jacobian.rows(); ++c) {
+        const auto rows = static_cast<Eigen::Index>(candidates.size());
+        jacobian.bottomRows(bounds.size()).setZero();
+        for (int j = 0; j < bounds.size(); ++j) {
+            jacobian(rows + j, j) =
+                pull(bounds.indices()[static_cast<std::size_t>(j)]) * bounds.slope(u, j);
+        }
+        for (Eigen::Index c = 0; c < rows; ++c) {
             const Candidate& one = candidates[static_cast<std::size_t>(c)];
             log_grind(x, references, grinds, one.row, one.area, &gradient);
             const double root = std::sqrt(one.posterior * one.weight);
@@ -123,6 +162,12 @@ struct WeightedResiduals : Eigen::DenseFunctor<double> {
     const GrindReferences& references;
     const Bounds& bounds;
     const std::vector<Candidate>& candidates;
+    const CalibrationSettings& settings;
+    double deviation;
+
+  private:
+    /// Weight of what is known of a parameter before, relative to a row.
+    double pull(int k) const { return deviation / settings.prior_deviation[k]; }
 };
 
 /// Median of `values` under `weights`; sorts the pairs.
@@ -141,7 +186,7 @@ class Fit {
   public:
     Fit(const MeasuredGrinds& grinds, const GrindReferences& references,
         const CalibrationSettings& settings)
-        : grinds_(grinds), references_(references), bounds_(settings) {
+        : grinds_(grinds), references_(references), settings_(settings), bounds_(settings) {
         const Eigen::Index n = grinds.measured.size(), levels = grinds.areas.size();
         if (n <= bounds_.size()) {
             throw InputError(
@@ -200,7 +245,7 @@ class Fit {
 
     void solve(Eigen::VectorXd& u) {
         if (bounds_.size() == 0) return;
-        WeightedResiduals functor(grinds_, references_, bounds_, candidates_);
+        WeightedResiduals functor(grinds_, references_, bounds_, candidates_, settings_, scatter_);
         Eigen::LevenbergMarquardt<WeightedResiduals> solver(functor);
         solver.setMaxfev(100);
         solver.setFtol(1e-10);
@@ -223,12 +268,17 @@ class Fit {
         const double spare = std::max(n - bounds_.size(), 1.0);
         if (rescale) {
             scatter_ = kMad * weighted_median(sizes) * std::sqrt(n / spare);
-            scatter_ = std::max(scatter_, kLeastScatter);
+            const double limit = kWinsor * scatter_;
+            double squares = 0.0;
+            for (const auto& [size, share] : sizes) {
+                squares += share * std::pow(std::min(size, limit), 2);
+            }
+            scatter_ = std::max({scatter_, std::sqrt(squares / spare), kLeastScatter});
         }
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const double z = std::abs(residual_[c]) / scatter_;
-            candidates_[c].weight = convex ? std::min(1.0, kHuber / std::max(z, 1e-12))
-                                           : 1.0 / (1.0 + (z / kCauchy) * (z / kCauchy));
+            candidates_[c].weight =
+                convex ? std::min(1.0, kHuber / std::max(z, 1e-12)) : weight_of(z);
         }
         if (shares_.size() > 0) estimate_areas();
     }
@@ -243,10 +293,7 @@ class Fit {
             const std::size_t end = c + static_cast<std::size_t>(shares_.size());
             double sum = 0.0;
             for (std::size_t d = c; d < end; ++d) {
-                const double z = residual_[d] / (kCauchy * scatter_);
-                // The likelihood whose loss is Cauchy's.
-                candidates_[d].posterior =
-                    shares_[candidates_[d].level] * std::pow(1.0 + z * z, -0.5 * kCauchy * kCauchy);
+                candidates_[d].posterior = likelihood(d);
                 sum += candidates_[d].posterior;
             }
             for (std::size_t d = c; d < end; ++d) {
@@ -257,6 +304,13 @@ class Fit {
             c = end;
         }
         shares_ = counts / counts.sum();
+    }
+
+    /// Of a candidate, with the share of its area, without the factor 1 / (scatter sqrt(2 pi)).
+    double likelihood(std::size_t c) const {
+        const Candidate& one = candidates_[c];
+        const double share = one.level < 0 ? 1.0 : shares_[one.level];
+        return share * std::exp(-loss_of(std::abs(residual_[c]) / scatter_));
     }
 
     void finish(Calibration& result) const {
@@ -277,15 +331,16 @@ class Fit {
         GrindMatrix information = GrindMatrix::Zero();
         Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(p, p);
         Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(p, n), slopes = scores;
+        Eigen::ArrayXd likelihoods = Eigen::ArrayXd::Zero(n);
         GrindVector gradient;
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& one = candidates_[c];
             log_grind(x_, references_, grinds_, one.row, one.area, &gradient);
             const Eigen::VectorXd j = gradient(open);
-            const double z2 = std::pow(residual_[c] / (kCauchy * scatter_), 2);
-            const double curvature = (1.0 - z2) / ((1.0 + z2) * (1.0 + z2));
-            const double psi = residual_[c] / (1.0 + z2);
-            information += one.posterior / (1.0 + z2) * gradient * gradient.transpose();
+            const double z = std::abs(residual_[c]) / scatter_, weight = weight_of(z);
+            const double curvature = curvature_of(z), psi = residual_[c] * weight;
+            information += one.posterior * weight * gradient * gradient.transpose();
+            likelihoods[one.row] += likelihood(c);
             bread += one.posterior * curvature * j * j.transpose();
             if (one.level >= 0) {  // Louis: what is not known of the area is no information
                 bread -= one.posterior * std::pow(psi / scatter_, 2) * j * j.transpose();
@@ -293,7 +348,7 @@ class Fit {
             scores.col(one.row) += one.posterior * psi * j;
             slopes.col(one.row) += one.posterior * j;
             result.residual[one.row] += one.posterior * residual_[c];
-            result.weight[one.row] += one.posterior / (1.0 + z2);
+            result.weight[one.row] += one.posterior * weight;
             result.posterior(one.row, std::max<Eigen::Index>(one.level, 0)) = one.posterior;
         }
         for (Eigen::Index i = 0; i < n; ++i) {
@@ -302,6 +357,8 @@ class Fit {
                 bread += score * score.transpose();
             }
         }
+        result.log_likelihood =
+            likelihoods.log().sum() - static_cast<double>(n) * std::log(scatter_);
         result.information.setZero();
         result.information(free, free) = information(free, free);
         result.covariance.setZero();
@@ -309,8 +366,16 @@ class Fit {
         if (Eigen::LLT<Eigen::MatrixXd>(bread).info() != Eigen::Success) {
             bread = information(open, open);
         }
+        const double variance = scatter_ * scatter_;
+        Eigen::VectorXd prior(p);
+        for (Eigen::Index j = 0; j < p; ++j) {
+            const double ratio =
+                scatter_ / settings_.prior_deviation[open[static_cast<std::size_t>(j)]];
+            prior[j] = ratio * ratio;
+        }
+        bread += prior.asDiagonal();
         const Eigen::MatrixXd inverse = bread.completeOrthogonalDecomposition().pseudoInverse();
-        Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
+        Eigen::MatrixXd meat = variance * Eigen::MatrixXd(prior.asDiagonal());
         for (Eigen::Index i = 0; i < n; ++i) {
             const double leverage = slopes.col(i).dot(inverse * slopes.col(i));
             const double rest = 1.0 - std::clamp(leverage, 0.0, kMostLeverage);
@@ -321,6 +386,7 @@ class Fit {
 
     const MeasuredGrinds& grinds_;
     const GrindReferences& references_;
+    const CalibrationSettings& settings_;
     const Bounds bounds_;
     std::vector<Candidate> candidates_;
     std::vector<double> residual_;
@@ -330,70 +396,6 @@ class Fit {
 };
 
 }  // namespace
-
-void MeasuredGrinds::validate() const {
-    const Eigen::Index n = measured.size();
-    for (const auto* column : {&force, &area, &speed, &feed, &time, &wear, &spread}) {
-        if (column->size() != n)
-            throw InputError("calibration.lengths", "calibration: columns differ in length");
-    }
-    for (const auto* column : {&force, &speed, &time, &measured}) {
-        if (!column->allFinite() || !(*column > 0.0).all()) {
-            throw InputError("calibration.not_positive",
-                             "calibration: force, speed, time and removal must be positive");
-        }
-    }
-    if (!feed.allFinite() || (feed < 0.0).any() || !wear.allFinite() || (wear < 0.0).any()) {
-        throw InputError("calibration.negative",
-                         "calibration: feed and wear must be zero or positive");
-    }
-    if (!areas.allFinite() || !(areas > 0.0).all() || (area <= 0.0).any() || area.isInf().any() ||
-        (spread <= 0.0).any() || spread.isInf().any()) {
-        throw InputError("calibration.areas", "calibration: areas must be positive");
-    }
-    if (areas.size() == 0 && area.isNaN().any()) {
-        throw InputError("calibration.area_unknown",
-                         "calibration: an area is unknown, and what it can be as well");
-    }
-}
-
-double log_grind(const GrindVector& x, const GrindReferences& references,
-                 const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient) {
-    const bool moving = grinds.feed[i] > 0.0;
-    const double excess = std::max(grinds.force[i] / area - x[kPressureThreshold], kLeastExcess);
-    const double saturation = std::exp(x[kLnSaturation]);
-    const double ratio = std::isfinite(saturation) ? excess / saturation : 0.0;
-    const double effective = ratio > 0.0 ? saturation * -std::expm1(-ratio) : excess;
-    const double ln_pressure = std::log(effective / references.pressure);
-    const double ln_speed = std::log(grinds.speed[i] / references.speed);
-    const double ln_feed = moving ? std::log(grinds.feed[i] / references.feed) : 0.0;
-    const double ln_time = moving ? 0.0 : std::log(grinds.time[i] / references.time);
-    const double ln_area = std::log(area / references.area);
-    const double worn = grinds.wear[i] / std::exp(x[kLnWearScale]);  // 0 for an infinite scale
-    const double decay = std::exp(-worn), rest = x[kWearRest];
-    const double cut = rest + (1.0 - rest) * decay;
-    const double spread = std::isnan(grinds.spread[i]) ? area : grinds.spread[i];
-    if (gradient) {
-        // d ln(1 - exp(-ratio)) / d ln(ratio), which goes to 1.
-        const double steep = ratio > 0.0 ? ratio / std::expm1(ratio) : 1.0;
-        GrindVector& g = *gradient;
-        g[kLnCoefficient] = 1.0;
-        g[kPressureExponent] = ln_pressure;
-        g[kSpeedExponent] = ln_speed;
-        g[kFeedExponent] = ln_feed;
-        g[kTimeExponent] = ln_time;
-        g[kAreaExponent] = ln_area;
-        g[kLnWearScale] = (1.0 - rest) * decay * worn / cut;
-        g[kWearRest] = -std::expm1(-worn) / cut;
-        g[kPressureThreshold] = -x[kPressureExponent] * steep / excess;
-        g[kLnSaturation] = x[kPressureExponent] * (1.0 - steep);
-    }
-    return x[kLnCoefficient] + std::log(cut) + std::log(references.speed) +
-           x[kSpeedExponent] * ln_speed + std::log(references.pressure) +
-           x[kPressureExponent] * ln_pressure + x[kFeedExponent] * ln_feed +
-           std::log(grinds.time[i]) + (x[kTimeExponent] - 1.0) * ln_time + std::log(area) +
-           x[kAreaExponent] * ln_area - std::log(spread);
-}
 
 Calibration calibrate(const MeasuredGrinds& grinds, const GrindReferences& references,
                       const CalibrationSettings& settings) {

@@ -318,10 +318,9 @@ Registration register_scan(const ScanPoints& scan, const DatumSurface& datum,
 }
 
 std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vector<Vec3>& points,
-                                  const std::vector<Vec3f>& normals,
-                                  const std::vector<double>& start, double reach,
-                                  std::size_t neighbours, const RunContext& context) {
-    if (points.size() != normals.size() || points.size() != start.size())
+                                  const std::vector<Vec3f>& rays, const std::vector<double>& start,
+                                  double reach, std::size_t neighbours, const RunContext& context) {
+    if (points.size() != rays.size() || points.size() != start.size())
         throw InputError("scan.lengths", "scan: points, normals and starts differ in length");
     if (neighbours < 3 || !(reach > 0))
         throw InputError("scan.reach",
@@ -338,11 +337,11 @@ std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vec
         std::vector<double> squared(neighbours);
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3& foot = points[i];
-            const Vec3 normal = normals[i].cast<double>();
+            const Vec3 ray = rays[i].cast<double>();
             double h = start[i];
             bool found = false;
             for (int round = 0; round < kMeasureRounds; ++round) {
-                found = nearest(foot + h * normal, index, squared);
+                found = nearest(foot + h * ray, index, squared);
                 if (!found) break;
                 Vec3 mean = Vec3::Zero();
                 for (const auto n : index) mean += cloud[n] / k;
@@ -353,14 +352,14 @@ std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vec
                 }
                 const Vec3 plane =
                     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-                const double across = plane.dot(normal);
-                if (std::abs(across) < kSameSide) {
+                const double across = plane.dot(ray);
+                if (std::abs(across) < kSameSide * ray.norm()) {
                     found = false;
                     break;
                 }
                 const double met = plane.dot(mean - foot) / across;
                 // Beside the cloud all neighbours lie on one side, and their plane is a guess.
-                const Vec3 off = mean - foot - met * normal;
+                const Vec3 off = mean - foot - met * ray;
                 const double width = std::sqrt(spread.trace() / k);
                 found = std::isfinite(met) && std::abs(met - start[i]) <= reach &&
                         off.norm() <= kAside * width && width <= reach;

@@ -10,7 +10,9 @@ namespace {
 // Explicit integration in time: in one go the surface may recede by this share of the wheel's
 // indentation, so that the pressure follows the removal.
 constexpr double kRecession = 0.1;
-constexpr int kMaxParts = 200;   // of a step
+constexpr int kMaxParts = 200;  // of a step
+// Relative: well above what a contact is solved to, and small enough for a derivative.
+constexpr double kMoreForce = 0.05;
 constexpr double kJoule = 1e-3;  // of a N mm
 
 }  // namespace
@@ -26,15 +28,24 @@ Grinding::Grinding(HeightField& field, Pressing& pressing, const RemovalLaw& law
       belt_(options.process.belt),
       shifts_(
           Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(field.size()),
-                                static_cast<Eigen::Index>(options.outputs.shifted_laws.size()))) {}
+                                static_cast<Eigen::Index>(options.outputs.shifted_laws.size()))) {
+    if (outputs_.force_influence) force_influence_.emplace(field.size());
+}
 
 double Grinding::set_rate(const PathStep& step) {
     const Stopwatch watch(times_.removal);
     const ContactSolution& contact = pressing_.solution();
     state_ = {process_.belt_speed, process_.belt_wear * process_.wear.remaining(belt_), step.feed,
               contact.force, contact.area};
-    law_.rate(contact.pressure, state_, rate_);
+    set_rate(law_, rate_, beside_);
     return fastest_ = rate_.maxCoeff();
+}
+
+void Grinding::set_rate(const RemovalLaw& law, Eigen::ArrayXd& rate, Eigen::ArrayXd& beside) {
+    const DisplacedPressure& pressure = pressing_.displaced_pressure();
+    law.rate(pressure.pressure, state_, rate);
+    beside.resize(0);
+    if (pressure.longest() > 0.0) law.rate(pressure.beside, state_, beside);
 }
 
 double Grinding::removal(const PathStep& step) {
@@ -46,21 +57,56 @@ double Grinding::removal(const PathStep& step) {
 double Grinding::grind(const PathStep& step, double share, SegmentTree& tree,
                        std::vector<std::uint32_t>& changed) {
     deepest_ = pressing_.approach();
+    impulse_ = greatest_force_ = 0.0;
+    motion_ = step.pose;
     if (pressing_.rigid()) return cut_all(step, changed);
     double volume = 0.0;
     double left = step.duration;
     const double least = step.duration / (share * kMaxParts);
     while (left > 0.0) {
-        if (trace_ != nullptr) {
-            const Stopwatch watch(times_.trace);
-            trace_->press(pressing_.map(), pressing_.solution().pressure);
-        }
-        left -= grind_part(left, least, volume, changed);
+        follow_trace();
+        const double part = holds(left, least);
+        volume += remove(part, changed);
+        left -= part;
         if (left <= 1e-12 * step.duration) break;
         if (!press_again(step, tree, changed)) break;
         deepest_ = std::max(deepest_, pressing_.approach());
     }
     return volume;
+}
+
+double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel,
+                       const SegmentTree& tree, std::vector<std::uint32_t>& changed) {
+    deepest_ = pressing_.approach();
+    impulse_ = greatest_force_ = 0.0;
+    motion_ = step.pose;
+    double volume = 0.0;
+    double left = step.duration;
+    const double least = step.duration / (share * kMaxParts);
+    const auto pressed = [this] { return pressing_.solution().force > 0.0; };
+    if (pressed()) set_rate(step);
+    while (left > 1e-12 * step.duration) {
+        double part = std::clamp(wheel.longest(left, step.force), std::min(least, left), left);
+        if (pressed()) part = holds(part, std::min(least, part));
+        wheel.begin(part, step.force);
+        for (int stage = 0; stage < ForceActuator::kStages; ++stage) {
+            const double time = part * wheel.press_stage(field_, tree);
+            if (!pressed()) continue;
+            follow_trace();
+            set_rate(step);
+            volume += remove(time, changed);
+            deepest_ = std::max(deepest_, pressing_.approach());
+            greatest_force_ = std::max(greatest_force_, pressing_.solution().force);
+        }
+        left -= part;
+    }
+    return volume;
+}
+
+void Grinding::follow_trace() {
+    if (trace_ == nullptr) return;
+    const Stopwatch watch(times_.trace);
+    trace_->press(pressing_.map(), pressing_.displaced_pressure());
 }
 
 bool Grinding::press_again(const PathStep& step, SegmentTree& tree,
@@ -91,30 +137,68 @@ double Grinding::cut_all(const PathStep& step, std::vector<std::uint32_t>& chang
     return volume;
 }
 
-double Grinding::grind_part(double left, double least, double& volume,
-                            std::vector<std::uint32_t>& changed) {
+double Grinding::holds(double left, double least) const {
+    if (!(fastest_ > 0.0)) return left;
+    return std::clamp(kRecession * pressing_.indentation() / fastest_, std::min(least, left), left);
+}
+
+double Grinding::remove(double part, std::vector<std::uint32_t>& changed) {
     const Stopwatch watch(times_.removal);
     GapMap& map = pressing_.map();
     const ContactSolution& contact = pressing_.solution();
-    double part = left;
-    if (fastest_ > 0.0) {
-        part = std::clamp(kRecession * pressing_.indentation() / fastest_, std::min(least, left),
-                          left);
-    }
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.
     const Eigen::ArrayXd most = (contact.approach - map.gap()).max(0.0) / part;
     rate_ = rate_.min(most);
-    const double removed = map.remove(field_, rate_, part, contact.approach, changed);
-    for (std::size_t k = 0; k < outputs_.shifted_laws.size(); ++k) {
-        outputs_.shifted_laws[k]->rate(contact.pressure, state_, shifted_);
-        map.spread(shifted_.min(most) - rate_, part, shifts_.col(static_cast<Eigen::Index>(k)));
+    Eigen::ArrayXd most_beside(beside_.size());
+    if (beside_.size() > 0) {
+        const Eigen::Index columns = map.grid().nx;
+        most_beside << most.head(columns), most.tail(columns);
+        beside_ = beside_.min(most_beside);
     }
-    volume += removed;
+    const double removed = map.remove(field_, rate_, beside_, part, contact.approach, changed);
+    for (std::size_t k = 0; k < outputs_.shifted_laws.size(); ++k) {
+        set_rate(*outputs_.shifted_laws[k], shifted_, shifted_beside_);
+        map.spread(shifted_.min(most) - rate_, shifted_beside_.min(most_beside) - beside_, part,
+                   shifts_.col(static_cast<Eigen::Index>(k)));
+    }
+    if (force_influence_) note_force(part);
+    impulse_ += contact.force * part;
     belt_.work += kJoule * contact.force * process_.belt_speed * part;
     belt_.volume += removed;
     belt_.time += part;
-    integrated_rate_ += (rate_ * map.coverage()).sum() * map.grid().cell_area() * part;
-    return part;
+    integrated_rate_ += map.volume_rate(rate_, beside_) * part;
+    return removed;
+}
+
+void Grinding::note_force(double part) {
+    const ContactSolution& contact = pressing_.solution();
+    const auto more = pressing_.with_force((1.0 + kMoreForce) * contact.force);
+    if (!more) return;
+    const auto& [stronger, pressure] = *more;
+    ProcessState state = state_;
+    state.force = stronger.force;
+    state.contact_area = stronger.area;
+    law_.rate(pressure.pressure, state, pressed_);
+    pressed_beside_.resize(0);
+    if (pressure.longest() > 0.0) law_.rate(pressure.beside, state, pressed_beside_);
+    const GapMap& map = pressing_.map();
+    const Eigen::ArrayXd most = (stronger.approach - map.gap()).max(0.0) / part;
+    pressed_ = pressed_.min(most);
+    if (pressed_beside_.size() > 0) {
+        const Eigen::Index columns = map.grid().nx;
+        pressed_beside_.head(columns) = pressed_beside_.head(columns).min(most.head(columns));
+        pressed_beside_.tail(columns) = pressed_beside_.tail(columns).min(most.tail(columns));
+        if (beside_.size() > 0) pressed_beside_ -= beside_;
+        pressed_beside_ /= kMoreForce;
+    }
+    map.for_samples((pressed_ - rate_) / kMoreForce, pressed_beside_, part,
+                    [&](std::uint32_t sample, double amount) {
+                        force_influence_->add(sample, amount, motion_);
+                    });
+}
+
+Influence Grinding::take_force_influence(std::size_t motions) {
+    return force_influence_ ? force_influence_->take(motions) : Influence{};
 }
 
 }  // namespace beltgrinding

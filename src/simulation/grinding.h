@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "actuated_wheel.h"
 #include "beltgrinding/simulation.h"
+#include "influence_keeper.h"
 #include "pressing.h"
 #include "trace_keeper.h"
 
@@ -26,26 +29,43 @@ class Grinding {
     double grind(const PathStep& step, double share, SegmentTree& tree,
                  std::vector<std::uint32_t>& changed);
 
+    /// The same under a force control that takes time, with a wheel that moves: after its `look`.
+    double grind(const PathStep& step, double share, ActuatedWheel& wheel, const SegmentTree& tree,
+                 std::vector<std::uint32_t>& changed);
+
     /// mm, where the wheel stood deepest in the last step that was ground, from its programmed
     /// pose.
     double deepest() const { return deepest_; }
     const BeltState& belt() const { return belt_; }
     /// mm3, time integral of the law's rate so far.
     double integrated_rate() const { return integrated_rate_; }
+    /// N s, time integral of the force in the last step that was ground.
+    double impulse() const { return impulse_; }
+    /// N, the greatest force in the last step that was ground.
+    double greatest_force() const { return greatest_force_; }
     /// Refits the tree to the samples `changed`, which are in order then, each of them once.
     void refit(SegmentTree& tree, std::vector<std::uint32_t>& changed);
     /// Hands over `SimulationResult::shifts`.
     Eigen::ArrayXXd take_shifts() { return std::move(shifts_); }
+    /// Hands over `SimulationResult::force_influence`, of so many motions.
+    Influence take_force_influence(std::size_t motions);
     /// s of wall time for removal and trace so far.
     const PhaseTimes& times() const { return times_; }
 
   private:
     /// mm/s where the law takes most, under the wheel as it is pressed.
     double set_rate(const PathStep& step);
+    /// Notes what more force would have removed more in the `part` s that were just ground.
+    void note_force(double part);
+    /// The rates of a law at the current contact.
+    void set_rate(const RemovalLaw& law, Eigen::ArrayXd& rate, Eigen::ArrayXd& beside);
     double cut_all(const PathStep& step, std::vector<std::uint32_t>& changed);
-    /// Removes for as long as the pressure holds, at most `left` s. Returns how long, s.
-    double grind_part(double left, double least, double& volume,
-                      std::vector<std::uint32_t>& changed);
+    /// s for which the pressure holds while the surface recedes, at least `least`, at most `left`.
+    double holds(double left, double least) const;
+    /// Removes for `part` s what the law says of the wheel as it is pressed. Returns the volume,
+    /// mm3.
+    double remove(double part, std::vector<std::uint32_t>& changed);
+    void follow_trace();
     /// False if the wheel has lost the work.
     bool press_again(const PathStep& step, SegmentTree& tree, std::vector<std::uint32_t>& changed);
 
@@ -57,11 +77,17 @@ class Grinding {
     TraceKeeper* trace_;
     BeltState belt_;
     double integrated_rate_ = 0.0;
+    double impulse_ = 0.0;         // N s
+    double greatest_force_ = 0.0;  // N
     Eigen::ArrayXXd shifts_;
-    ProcessState state_;             // of the wheel as pressed
-    double fastest_ = 0.0;           // mm/s, the largest of `rate_`
-    double deepest_ = 0.0;           // mm
-    Eigen::ArrayXd rate_, shifted_;  // mm/s per cell
+    ProcessState state_;                      // of the wheel as pressed
+    double fastest_ = 0.0;                    // mm/s, the largest of `rate_`
+    double deepest_ = 0.0;                    // mm
+    Eigen::ArrayXd rate_, shifted_;           // mm/s per cell
+    Eigen::ArrayXd beside_, shifted_beside_;  // mm/s beyond the side faces, as DisplacedPressure's
+    std::optional<InfluenceKeeper> force_influence_;
+    std::uint32_t motion_ = 0;                 // of the running step
+    Eigen::ArrayXd pressed_, pressed_beside_;  // as `rate_` and `beside_`, with more force
     PhaseTimes times_;
 };
 

@@ -48,10 +48,7 @@ Influence Influence::grouped(std::span<const std::uint32_t> group, std::size_t c
 
 void InfluenceKeeper::remove(const std::vector<double>& heights,
                              std::span<const std::uint32_t> changed, std::uint32_t motion) {
-    if (motion != motion_) {
-        close(motion_);
-        motion_ = motion;
-    }
+    begin(motion);
     for (const std::uint32_t s : changed) {
         const double removed = height_[s] - heights[s];
         if (!(removed > 0.0)) continue;  // lost in rounding
@@ -61,12 +58,25 @@ void InfluenceKeeper::remove(const std::vector<double>& heights,
     }
 }
 
+void InfluenceKeeper::add(std::uint32_t sample, double amount, std::uint32_t motion) {
+    begin(motion);
+    if (removed_[sample] == 0.0) touched_.push_back(sample);
+    removed_[sample] += amount;
+}
+
+void InfluenceKeeper::begin(std::uint32_t motion) {
+    if (motion == motion_) return;
+    close(motion_);
+    motion_ = motion;
+}
+
 // Ends the running motion, and those up to `motion` that removed nothing.
 void InfluenceKeeper::close(std::size_t motion) {
     influence_.first.resize(std::max(influence_.first.size(), motion + 1),
                             influence_.sample.size());
     std::sort(touched_.begin(), touched_.end());
     for (const std::uint32_t s : touched_) {
+        if (removed_[s] == 0.0) continue;  // gone again
         influence_.sample.push_back(s);
         influence_.depth.push_back(static_cast<float>(removed_[s]));
         removed_[s] = 0.0;

@@ -14,14 +14,19 @@ class InfluenceKeeper {
     /// `heights`: mm (samples), before the first motion.
     explicit InfluenceKeeper(const std::vector<double>& heights)
         : height_(heights), removed_(heights.size(), 0.0) {}
+    /// For `add` alone, on a field of so many samples.
+    explicit InfluenceKeeper(std::size_t samples) : removed_(samples, 0.0) {}
 
     /// The motion number `motion` has lowered the samples `changed` (each named once) to `heights`.
     void remove(const std::vector<double>& heights, std::span<const std::uint32_t> changed,
                 std::uint32_t motion);
+    /// The motion number `motion` has `amount` mm at a sample.
+    void add(std::uint32_t sample, double amount, std::uint32_t motion);
     /// What has been collected, of `motions` in all. Call once.
     Influence take(std::size_t motions);
 
   private:
+    void begin(std::uint32_t motion);
     void close(std::size_t motion);
 
     Influence influence_;

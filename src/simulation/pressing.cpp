@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/stopwatch.h"
 
@@ -29,7 +30,10 @@ Pressing::Pressing(const ProcessSettings& process, double spacing, double tolera
     : process_(process),
       tolerance_(tolerance),
       model_(model),
-      map_(process.wheel, spacing),
+      map_(process.wheel, spacing, model.beside()),
+      growth_(process.force_control ? 0.0 : process.wheel_growth),
+      held_at_(growth_),
+      give_(process.robot_stiffness > 0.0 ? 1.0 / process.robot_stiffness : 0.0),
       largest_indentation_(std::min(model.thickness(), (1.0 - kAhead) * process.wheel.radius)) {}
 
 Frame Pressing::placed_frame() const {
@@ -44,7 +48,7 @@ void Pressing::localise(const HeightField& field, const SegmentTree& tree, doubl
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
     reach.radius = process_.wheel.radius + margin;
-    reach.half_width = 0.5 * (process_.wheel.width + field.spacing);
+    reach.half_width = 0.5 * (process_.wheel.width + field.spacing) + model_.beside();
     reach.min_along = kAhead * process_.wheel.radius;
     tree.query(field, reach, hits_);
 }
@@ -54,7 +58,21 @@ void Pressing::map_gap(const HeightField& field, double reach) {
     map_.update(field, hits_, placed_frame(), reach);
 }
 
-void Pressing::solve(bool force_control, double force) {
+void Pressing::solve_force(double force) {
+    ContactProblem problem;
+    problem.force = force;
+    solve(std::move(problem));
+}
+
+void Pressing::solve_held() {
+    ContactProblem problem;
+    problem.force_control = false;
+    problem.approach = held_at_ - placed_;
+    problem.robot_compliance = give_;
+    solve(std::move(problem));
+}
+
+void Pressing::solve(ContactProblem problem) {
     const Stopwatch watch(times_.contact);
     const ContactGrid& grid = map_.grid();
     Eigen::ArrayXd start;
@@ -63,21 +81,14 @@ void Pressing::solve(bool force_control, double force) {
         contact_.reset();  // its memory is taken again
         contact_ = model_.prepare(grid);
     }
-    ContactProblem problem;
     problem.gap = map_.gap();
+    problem.drop = profile_drop(process_.wheel, grid);
     problem.coverage = map_.coverage();
-    problem.force_control = force_control;
-    problem.force = force;
-    // The programmed pose, seen from where the wheel is placed; at an end stop that is the pose.
-    if (!process_.force_control) {
-        problem.approach = -placed_;
-        if (process_.robot_stiffness > 0.0) {
-            problem.robot_compliance = 1.0 / process_.robot_stiffness;
-        }
-    }
     problem.tolerance = tolerance_;
     solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
     warm_ = solution_.force > 0.0;
+    displaced_ = displaced(grid, solution_, problem.coverage, model_.beside());
+    map_.reach_beside(displaced_);
 }
 
 bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree) {
@@ -95,7 +106,7 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
     for (int i = 0; i < kMaxPlacements; ++i) {
         localise(field, tree, kMargin);
         map_gap(field, kMargin);
-        solve(false, 0.0);
+        solve_held();
         if (solution_.area <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
         if (std::abs(solution_.approach) <= kPlacement) break;
@@ -117,6 +128,7 @@ Pressing::State Pressing::press_force(const HeightField& field, const SegmentTre
         warm_ = false;
         placed_ = 0.0;
         solution_ = ContactSolution{};
+        displaced_ = DisplacedPressure{};
         return State::kNoContact;
     };
     if (force <= 0.0) return nothing();
@@ -128,7 +140,7 @@ Pressing::State Pressing::press_force(const HeightField& field, const SegmentTre
     for (int i = 0;; ++i) {
         localise(field, tree, kMargin);
         map_gap(field, kMargin);
-        if (!map_.empty()) solve(true, force);
+        if (!map_.empty()) solve_force(force);
         if (map_.empty() || solution_.force <= 0.0) {
             // The surface fell away from where it was at the last pose.
             if (searched || !find_touch(field, tree)) return nothing();
@@ -157,18 +169,69 @@ Pressing::State Pressing::press_force(const HeightField& field, const SegmentTre
                 localise(field, tree, kMargin);
                 map_gap(field, kMargin);
             }
-            if (!map_.empty()) solve(false, 0.0);
+            if (!map_.empty()) {
+                held_at_ = placed_;
+                give_ = 0.0;
+                solve_held();
+            }
             return !map_.empty() && solution_.force > 0.0 ? state : nothing();
         }
         placed_ = wanted;
     }
 }
 
+std::optional<Pressing::Pressed> Pressing::with_force(double force) {
+    if (!process_.force_control || state_ != State::kPressed || !contact_) return std::nullopt;
+    const Stopwatch watch(times_.contact);
+    ContactProblem problem;
+    problem.gap = map_.gap();
+    problem.drop = profile_drop(process_.wheel, map_.grid());
+    problem.coverage = map_.coverage();
+    problem.force_control = true;
+    problem.force = force;
+    problem.tolerance = tolerance_;
+    Pressed pressed{contact_->solve(problem, &solution_.pressure), {}};
+    pressed.pressure = displaced(map_.grid(), pressed.solution, problem.coverage, model_.beside());
+    return pressed;
+}
+
+Pressing::State Pressing::hold(const HeightField& field, const SegmentTree& tree, double place,
+                               double give) {
+    held_at_ = place;
+    give_ = give;
+    state_ = State::kNoContact;
+    for (int i = 0; i < kMaxPlacements; ++i) {
+        // Heights only fall, so that what was found before has all that is in reach now.
+        if (!localised_ || std::abs(placed_ - *localised_) > kDrift) {
+            localise(field, tree, kMargin + kDrift);
+            localised_ = placed_;
+        }
+        map_gap(field, kMargin);
+        if (map_.empty()) {
+            const bool there = placed_ == place;
+            placed_ = place;
+            if (!there) continue;
+            warm_ = false;
+            solution_ = ContactSolution{};
+            return state_;
+        }
+        solve_held();
+        if (std::abs(solution_.approach) <= kPlacement) break;
+        placed_ += solution_.approach;
+    }
+    if (solution_.force > 0.0) state_ = State::kPressed;
+    return state_;
+}
+
 Pressing::State Pressing::press_again(const HeightField& field, double force) {
     if (state_ == State::kOverCompressed) return State::kMoved;  // it follows what recedes
     map_gap(field, kMargin);
     const bool at_stop = state_ == State::kBeyondTravel;
-    solve(process_.force_control && !at_stop, force);
+    if (process_.force_control && !at_stop) {
+        solve_force(force);
+    } else {
+        solve_held();
+    }
     if (solution_.force <= 0.0) return State::kNoContact;
     if (at_stop) {
         const bool held = placed_ > 0.0 ? solution_.force <= force : solution_.force >= force;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,26 @@ class Pressing {
                 double force);
     /// Solves again at the same place after the surface was lowered (no new localisation).
     State press_again(const HeightField& field, double force);
+    struct Pressed {
+        ContactSolution solution;
+        DisplacedPressure pressure;
+    };
+    /// As it stands now, with another force, on the surface as it was mapped last; the wheel stays.
+    /// Empty where the force is not what was asked for.
+    std::optional<Pressed> with_force(double force);
+    /// From here on `hold` is about this programmed pose.
+    void stand(const Frame& work_from_contact) {
+        programmed_ = work_from_contact;
+        localised_.reset();
+    }
+    /// Holds the wheel by a spring: it stands at `place` mm along z from the pose, less `give` mm
+    /// for each N of the contact.
+    State hold(const HeightField& field, const SegmentTree& tree, double place, double give);
+    /// The wheel that is held is so by an end of the travel. Returns its state.
+    State at_stop() {
+        if (state_ != State::kNoContact) state_ = State::kBeyondTravel;
+        return state_;
+    }
     /// Presses anew where `press` did. `tree`: of the lowered field.
     State press_anew(const HeightField& field, const SegmentTree& tree, double force) {
         return press(field, tree, Frame(programmed_), force);
@@ -40,6 +61,8 @@ class Pressing {
     /// A rigid tool: `solution` has an area and no pressure.
     bool rigid() const { return model_.rigid(); }
     const ContactSolution& solution() const { return solution_; }
+    /// Its pressure, where it acts.
+    const DisplacedPressure& displaced_pressure() const { return displaced_; }
     /// mm by which the wheel reaches into the surface where that is highest.
     double indentation() const { return solution_.approach - map_.lowest(); }
     /// mm of `indentation` beyond which the model is asked for what it cannot know: the elastic
@@ -51,7 +74,7 @@ class Pressing {
         return state_ != State::kBeyondTravel || placed_ < 0.0;  // it comes off the far stop
     }
     /// mm along z from the programmed pose to the wheel as pressed.
-    double approach() const { return placed_ + solution_.approach; }
+    double approach() const { return placed_ + solution_.approach - growth_; }
     GapMap& map() { return map_; }
     const GapMap& map() const { return map_; }
     /// What the model says of itself as it was used last.
@@ -66,7 +89,10 @@ class Pressing {
     Frame placed_frame() const;
     void localise(const HeightField& field, const SegmentTree& tree, double margin);
     void map_gap(const HeightField& field, double reach);
-    void solve(bool force_control, double force);
+    void solve_force(double force);
+    /// The wheel is held at `held_at_`, by a spring that gives way by `give_`.
+    void solve_held();
+    void solve(ContactProblem problem);
     bool find_touch(const HeightField& field, const SegmentTree& tree);
 
     const ProcessSettings& process_;
@@ -75,9 +101,13 @@ class Pressing {
     GapMap map_;
     std::unique_ptr<PreparedContact> contact_;  // on the grid of the last solution
     ContactSolution solution_;
+    DisplacedPressure displaced_;
     std::vector<std::uint32_t> hits_;
     Frame programmed_ = Frame::Identity();
     double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap
+    double growth_;        // mm
+    double held_at_ = 0.0, give_ = 0.0;  // mm along z; mm/N
+    std::optional<double> localised_;    // mm along z: where `hold` last looked for segments
     bool warm_ = false;
     State state_ = State::kNoContact;  // of the last time that it was pressed
     double largest_indentation_;

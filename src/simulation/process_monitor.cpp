@@ -15,8 +15,8 @@ constexpr double kMetre = 1e-3;    // of a mm
 // last of a pressure that fades out before the edge.
 constexpr double kPressedEdge = 0.25;
 constexpr double kOuterShare = 0.1;  // of the width: what the edge's load is told for
-// Times the even share: where both edges are pressed and neither carries more, the whole width is
-// in use, as of a cylinder on a plane, and all is well.
+// Times the even share: what carries no more is in use like the rest of the width, as of a cylinder
+// on a plane, and all is well.
 constexpr double kEven = 1.5;
 constexpr int kHollowCells = 2;  // that are not touched between touched ones, at least
 // By how much more than the rim a hollow must turn: a share of the rim's turn; rad where the rim is
@@ -24,6 +24,7 @@ constexpr int kHollowCells = 2;  // that are not touched between touched ones, a
 constexpr double kHollow = 0.02;
 constexpr double kSlopeReach = 2.0;  // cells over whose samples a slope is averaged
 constexpr double kStill = 1e-9;      // mm, no way
+constexpr double kLostShare = 0.01;  // of what the law takes: less is not told
 
 }  // namespace
 
@@ -56,6 +57,15 @@ void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, doubl
 }
 
 void ProcessMonitor::begin(const PathStep& step, std::size_t planned) {
+    // A pass ends where the wheel leaves the work, and where it turns back.
+    if (const std::size_t n = steps_.size(); n > 0) {
+        const auto place = [](const PathStep& one) { return one.work_from_contact.translation(); };
+        const bool back =
+            n > 1 &&
+            (place(steps_[n - 1]) - place(steps_[n - 2])).dot(place(step) - place(steps_[n - 1])) <
+                -kStill;
+        if (touched_[n - 1] == 0 || back) ++pass_;
+    }
     steps_.push_back(step);
     planned_.push_back(planned);
     touched_.push_back(0);
@@ -259,9 +269,11 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     }
     const double even = static_cast<double>(columns) / grid.ny;
     const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
-    if (outer[more] <= (on[0] && on[1] ? kEven : 1.0) * even) return;
+    if (outer[more] <= kEven * even) return;
     const double share = 100.0 * outer[more];
-    Event* event = note("edge_contact", index, share, static_cast<int>(more));
+    // One for each pass.
+    Event* event = events_.note("edge_contact", pass_ * (kPause + 1), steps_[index], share,
+                                static_cast<int>(more));
     if (event == nullptr) return;
     event->limit = 100.0 * even;
     const Arguments arguments = {{"share", share}, {"even", event->limit}};
@@ -441,7 +453,59 @@ void ProcessMonitor::note_lost_contact() {
     }
 }
 
+void ProcessMonitor::moved(const Pressing& pressing, Pressing::State state, double force,
+                           double bounce) {
+    const std::size_t index = steps_.size() - 1;
+    const PathStep& step = steps_[index];
+    if (force > 0.0) touched_[index] = 1;
+    const double most = (1.0 + limits_.overshoot) * step.force;
+    const bool stopped = state == Pressing::State::kBeyondTravel;  // is told as such
+    if (limits_.overshoot > 0.0 && step.force > 0.0 && force > most && !stopped) {
+        if (Event* event = note("force_overshoot", index, force)) {
+            event->limit = most;
+            event->facts = {{"event.force_overshoot",
+                             "{force:.3g} N in place of {commanded:.3g} N: the force control does "
+                             "not follow the surface quickly enough",
+                             {{"force", force}, {"commanded", step.force}}}};
+            put(*event, pressing, 0.0, 0.0);
+        }
+    }
+    if (bounce > 0.0 && bounce <= limits_.bounce) {
+        if (Event* event = note("bounces", index, bounce)) {
+            event->limit = limits_.bounce;
+            event->facts = {{"event.bounces",
+                             "the wheel leaves the work and is back after {time:.3g} s",
+                             {{"time", bounce}}}};
+            put(*event, pressing, 0.0, 0.0);
+        }
+    }
+}
+
+void ProcessMonitor::lost(const Pressing& pressing, double asked, double removed) {
+    const double less = asked - removed;
+    lost_.asked += asked;
+    lost_.lost += less;
+    if (less <= lost_.most) return;
+    lost_.most = less;
+    lost_.step = steps_.size() - 1;
+    lost_.sample = pressing.map().sample_near(0.0, 0.0);
+}
+
+void ProcessMonitor::note_lost_volume() {
+    if (!(lost_.lost > kLostShare * lost_.asked)) return;
+    Event* event = note("volume_lost", lost_.step, lost_.lost);
+    event->limit = kLostShare * lost_.asked;
+    event->facts = {{"event.volume_lost",
+                     "{lost:.3g} mm3 of the {asked:.4g} mm3 that the law takes on the whole path "
+                     "({share:.1f} %) are taken from nowhere, most of it here",
+                     {{"lost", lost_.lost},
+                      {"asked", lost_.asked},
+                      {"share", 100.0 * lost_.lost / lost_.asked}}}};
+    if (lost_.sample) put(*event, *lost_.sample);
+}
+
 std::vector<Event> ProcessMonitor::take() {
+    note_lost_volume();
     note_orientation_jumps();
     note_lost_contact();
     return events_.take();

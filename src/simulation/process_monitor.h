@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,11 @@ class ProcessMonitor {
     void coarse(const Pressing& pressing, double removal, double most, int parts);
     /// The step has lowered the samples `changed`.
     void ground(std::span<const std::uint32_t> changed);
+    /// Under a force control that takes time the step's greatest force was `force` N, and the wheel
+    /// came back to the work after `bounce` s; 0: it did not.
+    void moved(const Pressing& pressing, Pressing::State state, double force, double bounce);
+    /// Of the `asked` mm3 that the law takes in the step, `removed` were taken from the field.
+    void lost(const Pressing& pressing, double asked, double removed);
     /// All events, in order of time.
     std::vector<Event> take();
 
@@ -44,6 +50,7 @@ class ProcessMonitor {
     void note_hollow(std::size_t index, const Pressing& pressing, bool across);
     void note_orientation_jumps();
     void note_lost_contact();
+    void note_lost_volume();
     double lower_limit(std::uint32_t sample) const;
     void put(Event& event, std::uint32_t sample) const;
     void put(Event& event, const Pressing& pressing, double s, double y) const;
@@ -56,6 +63,14 @@ class ProcessMonitor {
     const MonitorLimits& limits_;
     const RemovalLaw& law_;
     EventLog events_;
+    /// Volumes so far, mm3; and where most was lost.
+    struct LostVolume {
+        double asked = 0.0, lost = 0.0, most = 0.0;
+        std::size_t step = 0;
+        std::optional<std::uint32_t> sample;
+    };
+    LostVolume lost_;
+    std::size_t pass_ = 0;               // of the step, by number
     std::vector<std::uint8_t> touched_;  // by step
     std::vector<std::uint8_t> below_;    // by sample: under its lower limit
 };

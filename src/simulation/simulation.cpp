@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "actuated_wheel.h"
 #include "base/stopwatch.h"
 #include "beltgrinding/error.h"
 #include "grinding.h"
@@ -143,6 +144,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
     Grinding grinding(field, pressing, law, options, trace ? &*trace : nullptr);
+    std::optional<ActuatedWheel> wheel;  // of a force control that takes time
+    if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);
     std::vector<std::uint32_t> changed;
     bool touched = false;
 
@@ -152,7 +155,15 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             context.report(steps.progress());
         }
         const PathStep& step = steps.step();
-        const auto state = pressing.press(field, *tree, step.work_from_contact, step.force);
+        const auto state = wheel ? wheel->look(field, *tree, step)
+                                 : pressing.press(field, *tree, step.work_from_contact, step.force);
+        const bool moving = wheel && wheel->moves();
+        if (wheel && steps.divisible()) {
+            if (const double parts = wheel->parts(step); parts > 1.0) {
+                steps.cut(parts);
+                continue;
+            }
+        }
         double removal = 0.0, most = 0.0;  // mm
         if (state != Pressing::State::kNoContact) {
             removal = grinding.removal(step);
@@ -174,7 +185,6 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         if (state != Pressing::State::kNoContact) {
             touched = true;
             const ContactSolution& contact = pressing.solution();
-            record.force = static_cast<float>(contact.force);
             record.approach = static_cast<float>(pressing.approach());
             record.contact_area = static_cast<float>(contact.area);
             record.peak_pressure = static_cast<float>(contact.peak_pressure);
@@ -183,17 +193,28 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
                 monitor.pressed(pressing, state, grinding.belt());
                 if (removal > most) monitor.coarse(pressing, removal, most, steps.parts());
             }
+        }
+        if (state != Pressing::State::kNoContact || moving) {
             // A step that is told to be too coarse is not worth many parts, each of which maps
             // anew.
-            const double share = removal > most ? kCoarseShare : steps.share();
-            const double volume =
-                grinding.grind(step, std::min(share, steps.share()), *tree, changed);
+            const double share =
+                std::min(removal > most ? kCoarseShare : steps.share(), steps.share());
+            const double asked = grinding.integrated_rate();
+            const double volume = moving ? grinding.grind(step, share, *wheel, *tree, changed)
+                                  : wheel
+                                      ? grinding.grind(wheel->lagging(step), share, *tree, changed)
+                                      : grinding.grind(step, share, *tree, changed);
+            touched = touched || grinding.impulse() > 0.0;
+            record.force = static_cast<float>(grinding.impulse() / step.duration);
             record.deepest_approach = static_cast<float>(grinding.deepest());
             record.removal_rate = static_cast<float>(volume / step.duration);
             grinding.refit(*tree, changed);
             const Stopwatch watch(wall.events);
             monitor.ground(changed);
+            monitor.lost(pressing, grinding.integrated_rate() - asked, volume);
+            if (moving) monitor.moved(pressing, state, grinding.greatest_force(), wheel->bounce());
         }
+        if (wheel) wheel->end(step);
         if (trace && !changed.empty()) {
             const Stopwatch watch(wall.trace);
             trace->remove(field, changed, options.outputs.first_motion + step.pose);
@@ -221,6 +242,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     result.integrated_rate = grinding.integrated_rate();
     result.shifts = grinding.take_shifts();
     if (influence) result.influence = influence->take(path.poses().size());
+    if (options.outputs.force_influence)
+        result.force_influence = grinding.take_force_influence(path.poses().size());
     wall += pressing.times();
     wall += grinding.times();
     if (recording != nullptr) recording->end(field);

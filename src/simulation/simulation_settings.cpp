@@ -24,6 +24,16 @@ void ProcessSettings::validate() const {
         check_positive(force_travel, "simulation.force_travel",
                        "the travel of the force control must be positive and finite");
     }
+    if (!is_limit(dynamics.lag) || !is_limit(dynamics.mass) || !is_limit(dynamics.damping) ||
+        !is_limit(dynamics.speed_limit)) {
+        throw InputError("simulation.force_dynamics",
+                         "lag, moving mass, damping and limit of speed of the force control must "
+                         "be zero or positive, and finite");
+    }
+    if (!is_limit(wheel_growth) || wheel_growth >= wheel.radius) {
+        throw InputError("simulation.wheel_growth",
+                         "the wheel's growth must be zero or positive, and less than its radius");
+    }
     if (!is_limit(robot_stiffness)) {
         throw InputError("simulation.robot_stiffness",
                          "the robot's stiffness must be zero (rigid) or positive");
@@ -49,6 +59,10 @@ void MonitorLimits::validate(std::size_t samples) const {
     if (lower.size() > 1 && lower.size() != samples) {
         throw InputError("simulation.lower_limits",
                          "the lower limits are neither one for all nor one per sample");
+    }
+    if (!is_limit(overshoot) || !is_limit(bounce)) {
+        throw InputError("simulation.force_limits",
+                         "the limits of overshoot and of bounces must be zero (none) or positive");
     }
     if (!is_limit(pressure) || !is_limit(orientation_jump) || !is_limit(tilt)) {
         throw InputError(

@@ -29,6 +29,7 @@ class StepQueue {
     bool divisible(double parts) const {
         return 2 * now_.parts <= kMostParts && parts * now_.parts <= kMostParts;
     }
+    bool divisible() const { return 2 * now_.parts <= kMostParts; }
     /// Puts `parts` smaller steps, or as many as may be, in the step's place; `next` gives the
     /// first.
     void cut(double parts);

@@ -12,7 +12,7 @@ TraceKeeper::TraceKeeper(const HeightField& field)
     }
 }
 
-void TraceKeeper::press(const GapMap& map, const Eigen::ArrayXd& pressure) {
+void TraceKeeper::press(const GapMap& map, const DisplacedPressure& pressure) {
     map.raise(pressure, trace_.peak_pressure);
 }
 

@@ -20,7 +20,7 @@ class TraceKeeper {
     explicit TraceKeeper(const HeightField& field);
 
     /// The wheel presses with `pressure` (MPa per cell of the map).
-    void press(const GapMap& map, const Eigen::ArrayXd& pressure);
+    void press(const GapMap& map, const DisplacedPressure& pressure);
     /// The motion number `motion` has lowered the samples `changed` (each named once) to the
     /// heights that they have now. Motions come one after the other.
     void remove(const HeightField& field, std::span<const std::uint32_t> changed,

@@ -17,10 +17,12 @@ constexpr float kAdvance = 1e-4F;     // mm beyond a hit from which the ray goes
 constexpr float kDoubleSurface = 0.05F;
 
 /// Height of the stock over one sample, or NaN for a miss. See `apply_mesh` for the rule.
-float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& normal,
+float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& ray,
                    const StockOptions& options) {
-    const auto above = static_cast<float>(options.search_above);
-    const auto below = static_cast<float>(options.search_below);
+    const float longer = ray.norm();
+    const Vec3f normal = ray / longer;
+    const float above = static_cast<float>(options.search_above) * longer;
+    const float below = static_cast<float>(options.search_below) * longer;
     const auto least = static_cast<float>(options.least_cosine);
     // Outward: the first surface through which the ray leaves material; one entered before it means
     // that the design point itself lies outside of the stock, under a gap.
@@ -39,13 +41,15 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& norma
             entered = true;
         }
     }
-    if (!std::isnan(best) && !entered) return best;
+    if (!std::isnan(best) && !entered) return best / longer;
     // Inward: the surface from which the material begins, met from outside.
     near = 0.0F;
     for (int layer = 0; layer < kMaxLayers; ++layer) {
         const RayScene::Hit inward = scene.first(point, -normal, near, below);
         if (inward.distance < 0.0F) break;
-        if (inward.cosine >= least) return inward.leaving ? std::nanf("") : -inward.distance;
+        if (inward.cosine >= least) {
+            return inward.leaving ? std::nanf("") : -inward.distance / longer;
+        }
         near = inward.distance + kAdvance;
     }
     return std::nanf("");
@@ -146,7 +150,7 @@ StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const Stock
     parallel_blocks(field.size(), kBlock, context, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3f point = (field.point[i] - origin).cast<float>();
-            found[i] = stock_height(scene, point, field.normal[i], options);
+            found[i] = stock_height(scene, point, field.ray(i), options);
         }
         context.report(static_cast<double>(done += end - begin) /
                        static_cast<double>(field.size()));

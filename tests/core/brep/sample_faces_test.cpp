@@ -7,12 +7,18 @@
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <GeomAPI_PointsToBSpline.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Wire.hxx>
 #include <gp_Circ.hxx>
 #include <gp_Pln.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -252,6 +258,90 @@ TEST(SampleFaces, NamesWrongInput) {
     RunContext context;
     context.cancel();
     EXPECT_THROW(sample_faces(box(), {}, {}, context), Cancelled);
+}
+
+/// The largest bulge of the surface over an edge of the triangles, mm; (n2 - n1) . (p2 - p1) / 8.
+double largest_bulge(const HeightField& field) {
+    double largest = 0;
+    for (const Triangle& t : field.triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+            const Vec3 turn = (field.normal[b] - field.normal[a]).cast<double>();
+            largest = std::max(largest, std::abs(turn.dot(field.point[b] - field.point[a])) / 8);
+        }
+    return largest;
+}
+
+TEST(SampleFaces, PrecisionBoundsTheChordsOnEveryRadius) {
+    for (const double radius : {0.1, 0.3, 1.0, 5.0}) {
+        const Shape shape = make_shape(BRepPrimAPI_MakeCylinder(radius, 20).Shape(), "rod");
+        for (const double precision : {0.01, 0.002}) {
+            SamplingOptions options;
+            options.spacing = 0.5;
+            options.precision = precision;
+            const HeightField field = sample_faces(shape, {0}, options);
+            const double area = 2 * pi * radius * 20;
+            EXPECT_NEAR(total_area(field), area, 1e-5 * area);
+            EXPECT_LE(largest_bulge(field), 1.1 * precision) << radius;
+            const double wanted = std::clamp(std::sqrt(8 * precision * radius), 0.0125, 0.5);
+            const double expected = area / (wanted * 0.5);
+            EXPECT_NEAR(static_cast<double>(field.size()), expected, 0.2 * expected) << radius;
+            const test::MeshCheck mesh = check_mesh(field);
+            EXPECT_EQ(mesh.open_inside + mesh.turned + mesh.inverted + mesh.without_triangle, 0u);
+        }
+    }
+}
+
+/// A leading edge of radius 0.2 mm in one surface with its two flanks, 30 mm long.
+Shape leading_edge() {
+    const double turn = pi / 3;
+    TColgp_Array1OfPnt outline(1, 61);
+    for (int i = 0; i <= 60; ++i) {
+        const double along = (i - 30) * 0.1, arc = 0.2 * turn;
+        const double angle = std::clamp(along / 0.2, -turn, turn);
+        const double rest = along - std::clamp(along, -arc, arc);
+        outline(i + 1) = gp_Pnt(0.2 * std::sin(angle) + rest * std::cos(turn), 0,
+                                0.2 * std::cos(angle) - std::abs(rest) * std::sin(turn));
+    }
+    const Handle(Geom_BSplineCurve) curve = GeomAPI_PointsToBSpline(outline).Curve();
+    const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(curve);
+    return make_shape(BRepPrimAPI_MakePrism(edge, gp_Vec(0, 30, 0)).Shape(), "edge");
+}
+
+TEST(SampleFaces, LiesDenselyAtALeadingEdgeOnly) {
+    SamplingOptions options;
+    options.spacing = 0.5;
+    const Shape shape = leading_edge();
+    const HeightField coarse = sample_faces(shape, {}, options);
+    options.edge_spacing = 0.05;
+    const HeightField fine = sample_faces(shape, {}, options);
+    const HeightField again = sample_faces(shape, {}, options);
+    EXPECT_GT(largest_bulge(coarse), 0.04);
+    EXPECT_LT(largest_bulge(fine), 0.004);
+    EXPECT_NEAR(total_area(fine), total_area(coarse), 1e-4 * total_area(coarse));
+    EXPECT_LT(fine.size(), 6 * coarse.size());
+    EXPECT_EQ(fine.spacing, 0.5);
+    ASSERT_EQ(again.size(), fine.size());
+    EXPECT_EQ(std::memcmp(again.point.data(), fine.point.data(), fine.size() * sizeof(Vec3)), 0);
+    const test::MeshCheck mesh = check_mesh(fine);
+    EXPECT_EQ(mesh.open_inside + mesh.turned + mesh.inverted + mesh.without_triangle, 0u);
+    for (std::size_t i = 0; i < fine.size(); ++i) ASSERT_GT(fine.area[i], 0.0f);
+}
+
+TEST(SampleFaces, RefusesAPrecisionThatMemoryDoesNotAllow) {
+    SamplingOptions options;
+    options.spacing = 0.5;
+    options.precision = 1e-4;
+    options.max_bytes = 4'000'000;
+    const Shape shape = make_shape(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "rod");
+    try {
+        sample_faces(shape, {0}, options);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("precision"), std::string::npos) << error.what();
+    }
+    options.precision = -1;
+    EXPECT_THROW(sample_faces(shape, {0}, options), InputError);
 }
 
 TEST(SampleFaces, TellsParametersOnRequest) {

@@ -89,7 +89,7 @@ TEST(GapMap, SeesOnlyTheNearestLayer) {
     EXPECT_NEAR(map.lowest(), 0.0, 2e-3);
     std::vector<std::uint32_t> changed;
     Eigen::ArrayXd rate = (map.gap() < 0.2).select(Eigen::ArrayXd::Ones(map.gap().size()), 0.0);
-    map.remove(field, rate, 0.01, 1.0, changed);
+    map.remove(field, rate, {}, 0.01, 1.0, changed);
     for (const std::uint32_t s : changed) EXPECT_LT(s, n);
     EXPECT_FALSE(changed.empty());
 }
@@ -102,7 +102,7 @@ TEST(GapMap, RemovesTheVolumeOfTheCells) {
         map.update(field, all_of(field), above(0.0, 20.0, 0.2, 0.4), 1.0);
         const Eigen::ArrayXd rate = (-map.gap()).max(0.0);
         std::vector<std::uint32_t> changed;
-        const double volume = map.remove(field, rate, 0.5, 1.0, changed);
+        const double volume = map.remove(field, rate, {}, 0.5, 1.0, changed);
         EXPECT_NEAR(volume, (rate * map.coverage()).sum() * map.grid().cell_area() * 0.5, 1e-12);
         double removed = 0.0;
         for (std::size_t i = 0; i < field.size(); ++i) {
@@ -134,7 +134,7 @@ TEST(GapMap, NoSampleFallsBelowTheEnvelope) {
             // The middle gets more than there is, the border about as much.
             const Eigen::ArrayXd rate = 2.0 * (approach + 0.5 - map.gap()).max(0.0);
             std::vector<std::uint32_t> changed;
-            const double volume = map.remove(field, rate, 1.0, approach, changed);
+            const double volume = map.remove(field, rate, {}, 1.0, approach, changed);
             EXPECT_FALSE(changed.empty());
             double removed = 0.0;
             for (std::size_t i = 0; i < field.size(); ++i) {

@@ -31,7 +31,7 @@ MeasuredGrinds some(Eigen::Index n) {
 GrindVector linear() {
     GrindVector x = GrindVector::Zero();
     x[kPressureExponent] = x[kSpeedExponent] = x[kTimeExponent] = 1.0;
-    x[kLnWearScale] = x[kLnSaturation] = kInf;
+    x[kLnWearScale] = x[kLnSaturation] = x[kWearExponent] = kInf;
     return x;
 }
 
@@ -50,8 +50,10 @@ TEST(Calibration, GradientIsThatOfDifferences) {
     MeasuredGrinds g = some(6);
     g.feed[4] = 30.0;
     g.spread[5] = kNan;
+    g.relative = Eigen::ArrayXXd(6, 3);
+    g.relative.rowwise() = Eigen::Array3d(1.6, 1.0, 0.4).transpose();
     GrindVector x = linear();
-    x << -11.0, 1.4, 1.2, 0.1, 1.3, 0.2, std::log(3e5), 0.3, 0.01, std::log(0.4);
+    x << -11.0, 1.4, 1.2, 0.1, 1.3, 0.2, std::log(3e5), 0.3, 0.01, std::log(0.4), kInf;
     constexpr double kStep = 1e-6;
     for (Eigen::Index i = 0; i < 6; ++i) {
         GrindVector gradient;
@@ -65,7 +67,63 @@ TEST(Calibration, GradientIsThatOfDifferences) {
                                  (2.0 * kStep);
             EXPECT_NEAR(gradient[k], slope, 1e-5 * (1.0 + std::abs(slope))) << k;
         }
+        x[kWearExponent] = 0.4;  // and of a power of the wear
+        log_grind(x, {}, g, i, g.area[i], &gradient);
+        for (const int k : {kLnWearScale, kWearRest, kWearExponent}) {
+            GrindVector up = x, down = x;
+            up[k] += kStep;
+            down[k] -= kStep;
+            const double slope = (log_grind(up, {}, g, i, g.area[i], nullptr) -
+                                  log_grind(down, {}, g, i, g.area[i], nullptr)) /
+                                 (2.0 * kStep);
+            EXPECT_NEAR(gradient[k], slope, 1e-5 * (1.0 + std::abs(slope))) << k;
+        }
+        x[kWearExponent] = kInf;
     }
+}
+
+// Of a linear model with normal scatter the likeliest parameter is known in closed form.
+TEST(Calibration, APriorCountsAsAMeasurement) {
+    MeasuredGrinds g = some(30);
+    GrindVector truth = linear();
+    truth[kPressureExponent] = 2.0;
+    Eigen::ArrayXd slope(30), left(30);
+    for (Eigen::Index i = 0; i < 30; ++i) {
+        const double noise = 0.1 * std::sin(7.0 * static_cast<double>(i));
+        g.measured[i] = std::exp(log_grind(truth, {}, g, i, g.area[i], nullptr) + noise);
+        slope[i] = std::log(g.force[i] / g.area[i] / GrindReferences{}.pressure);
+        left[i] = std::log(g.measured[i]) - log_grind(linear(), {}, g, i, g.area[i], nullptr);
+    }
+    CalibrationSettings settings;
+    settings.start = linear();
+    settings.lower = settings.upper = GrindVector::Zero();
+    settings.free[kPressureExponent] = true;
+    settings.lower[kPressureExponent] = -5.0;
+    settings.upper[kPressureExponent] = 5.0;
+    settings.prior_mean[kPressureExponent] = 1.0;
+    settings.prior_deviation[kPressureExponent] = 0.02;
+    const Calibration found = calibrate(g, {}, settings);
+    const double known = std::pow(found.scatter / 0.02, 2);
+    const double expected = 1.0 + (slope * left).sum() / (slope.square().sum() + known);
+    EXPECT_NEAR(found.parameters[kPressureExponent], expected, 1e-4);
+    EXPECT_LT(std::sqrt(found.covariance(kPressureExponent, kPressureExponent)), 0.02);
+    EXPECT_LT(found.parameters[kPressureExponent], 1.95);
+}
+
+TEST(Calibration, AnUnevenPressureRemovesMoreThanItsMean) {
+    MeasuredGrinds g = some(1);
+    GrindVector x = linear();
+    x[kPressureExponent] = 2.0;
+    const double even = log_grind(x, {}, g, 0, g.area[0], nullptr);
+    g.relative = Eigen::ArrayXXd(1, 2);
+    g.relative << 1.5, 0.5;
+    EXPECT_NEAR(log_grind(x, {}, g, 0, g.area[0], nullptr) - even, std::log(1.25), 1e-12);
+    x[kPressureExponent] = 1.0;
+    const double uneven = log_grind(x, {}, g, 0, g.area[0], nullptr);
+    g.relative.resize(0, 0);
+    EXPECT_NEAR(uneven, log_grind(x, {}, g, 0, g.area[0], nullptr), 1e-12);
+    g.relative = Eigen::ArrayXXd::Constant(2, 2, 1.0);
+    EXPECT_THROW(g.validate(), InputError);
 }
 
 TEST(Calibration, UnknownAreasAreFoundByTheRemoval) {

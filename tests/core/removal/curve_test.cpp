@@ -76,6 +76,11 @@ TEST(BeltWear, FallsByWorkOrVolume) {
     EXPECT_EQ(two.remaining({}), 1.0);
     EXPECT_NEAR(two.remaining({0, 100.0, 0}), 0.25 + 0.5 * std::exp(-10.0) + 0.25 * std::exp(-0.1),
                 1e-12);
+    p.model = BeltWear::Model::kPower;
+    p.scale = 50.0;
+    p.exponent = 0.3;
+    EXPECT_NEAR(BeltWear(p).remaining({0, 100.0, 0}), std::pow(3.0, -0.3), 1e-12);
+    EXPECT_EQ(BeltWear(p).remaining({}), 1.0);
     p.model = BeltWear::Model::kCurve;
     p.curve = Curve({{0, 1}, {2000, 0.4}}, "wear");
     EXPECT_NEAR(BeltWear(p).remaining({0, 1000, 0}), 0.7, 1e-12);
@@ -94,6 +99,11 @@ TEST(BeltWear, RefusesNonsense) {
     p.model = BeltWear::Model::kExponential;
     p.scale = 0.0;
     EXPECT_THROW(BeltWear{p}, InputError);
+    p.model = BeltWear::Model::kPower;
+    EXPECT_THROW(BeltWear{p}, InputError);
+    p.scale = 1.0;
+    p.exponent = -0.1;
+    EXPECT_THROW(BeltWear{p}, InputError);
     EXPECT_THROW((BeltState{-1.0, 0, 0}.validate()), InputError);
 }
 
@@ -101,6 +111,7 @@ TEST(BeltWear, ModelsAndVariablesHaveNames) {
     EXPECT_EQ(BeltWear::model_named("none"), BeltWear::Model::kNone);
     EXPECT_EQ(BeltWear::model_named("exponential"), BeltWear::Model::kExponential);
     EXPECT_EQ(BeltWear::model_named("two_stage"), BeltWear::Model::kTwoStage);
+    EXPECT_EQ(BeltWear::model_named("power"), BeltWear::Model::kPower);
     EXPECT_EQ(BeltWear::model_named("curve"), BeltWear::Model::kCurve);
     EXPECT_EQ(BeltWear::variable_named("work"), BeltWear::Variable::kWork);
     EXPECT_EQ(BeltWear::variable_named("volume"), BeltWear::Variable::kVolume);

@@ -9,19 +9,15 @@
 #include "beltgrinding/simulation.h"
 #include "contact/regression.h"
 #include "contact/wheel_rim.h"
+#include "support/poses.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
 namespace {
 
-constexpr std::uint32_t kNever = RemovalTrace::kNever;
+using testing::pressing_down;
 
-PathPose pressing_down(double x, double y, double z, double feed) {
-    PathPose pose;
-    pose.base_from_tcp = Eigen::Translation3d(x, y, z) * Eigen::AngleAxisd(M_PI, Vec3::UnitX());
-    pose.feed = feed;
-    return pose;
-}
+constexpr std::uint32_t kNever = RemovalTrace::kNever;
 
 SimulationOptions options() {
     SimulationOptions o;

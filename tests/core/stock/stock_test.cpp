@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "beltgrinding/error.h"
+#include "heightfield/edge_rays.h"
+#include "support/sheets.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -172,6 +174,44 @@ TEST(Stock, RefusesBrokenMeshes) {
     mesh = box({0, 0, 0}, {30, 20, 10});
     mesh.triangles[2][1] = 99;
     EXPECT_NE(error_of(field, mesh).find("triangle 2"), std::string::npos);
+}
+
+/// Three faces of a cube that meet in the origin, the cube where all coordinates are negative.
+HeightField corner_with_rays() {
+    HeightField field = testing::cube_corner(10.0, 40);
+    lean_at_edges(field);
+    return field;
+}
+
+TEST(Allowance, IsALayerOfOneThicknessRoundSharpEdgesToo) {
+    HeightField field = corner_with_rays();
+    for (const double thickness : {0.05, 0.3}) {
+        apply_allowance(field, thickness);
+        std::size_t round = 0;
+        for (std::size_t i = 0; i < field.size(); ++i) {
+            const Vec3 top = field.top(i), beyond = top.cwiseMax(0.0);
+            const int sides =
+                int(beyond.x() > 1e-9) + int(beyond.y() > 1e-9) + int(beyond.z() > 1e-9);
+            round += sides > 1 ? 1 : 0;
+            // Where three faces meet the layer is known to 15 %.
+            const double close = field.point[i].maxCoeff() - field.point[i].minCoeff() < 2.0;
+            EXPECT_NEAR(beyond.norm(), thickness, close ? 0.15 * thickness : 1e-5) << i;
+        }
+        EXPECT_GT(round, 100U);
+    }
+    apply_allowance(field, -0.1);
+    for (std::size_t i = 0; i < field.size(); ++i) EXPECT_DOUBLE_EQ(field.height[i], -0.1);
+}
+
+TEST(MeshStock, IsMetAlongRaysThatLean) {
+    HeightField field = corner_with_rays();
+    const double layer = 0.4;
+    apply_mesh(field, box(Vec3f(-12, -12, -12), Vec3f(0.4F, 0.4F, 0.4F)), {});
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        EXPECT_EQ(field.flags[i] & kMissed, 0);
+        EXPECT_NEAR(field.top(i).maxCoeff(), layer, 1e-4) << i;  // on the box
+        EXPECT_NEAR(field.height[i], layer, 1e-4) << i;  // square to its face, wherever it leans
+    }
 }
 
 }  // namespace

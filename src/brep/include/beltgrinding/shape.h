@@ -86,6 +86,8 @@ void set_cad_reader(const std::string& program);
 /// How faces are sampled.
 struct SamplingOptions {
     double spacing = 0.5;       ///< mm, distance between neighbouring samples, both directions
+    double precision = 0;       ///< mm, by which chords may bulge on curved places; 0: any
+    double edge_spacing = 0;    ///< mm, least spacing on curved places; 0: a fortieth of `spacing`
     double depth = 1.0;         ///< mm, HeightField::depth
     std::size_t max_bytes = 0;  ///< refuse what would need more; 0: half of what may be used
     bool parameters = false;    ///< fill SamplingReport::parameters

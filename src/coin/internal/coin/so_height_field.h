@@ -33,7 +33,8 @@ class SoHeightField : public SoShape {
 
     SoHeightField();
 
-    /// What stays: design points (n x 3), outward unit normals (n x 3), triangles between samples.
+    /// What stays: design points (n x 3), outward normals or, where samples lean, rays (n x 3),
+    /// triangles between samples.
     /// Heights are 0 and colours grey afterwards. Throws InputError if the lengths do not fit or a
     /// triangle names a sample that is not there.
     void setSamples(std::span<const double> points, std::span<const float> normals,

@@ -35,8 +35,12 @@ struct ContactGrid {
 /// prepared for: find p >= 0 with g + u(p) - delta >= 0 and p (g + u - delta) = 0, u the
 /// displacement of the wheel's surface under p.
 struct ContactProblem {
-    Eigen::ArrayXd gap;         ///< mm, undeformed wheel to surface, per cell; +inf: nothing there
-    Eigen::ArrayXd coverage;    ///< share of the cell that the workpiece covers, [0, 1]
+    Eigen::ArrayXd gap;       ///< mm, undeformed wheel to surface, per cell; +inf: nothing there
+    Eigen::ArrayXd coverage;  ///< share of the cell that the workpiece covers; 0 or more
+    /// mm that the wheel's own profile stands back, one per row of the grid; empty: it is a
+    /// cylinder. It is part of the gap, and moves along where the wheel's surface moves along its
+    /// axis.
+    Eigen::ArrayXd drop;
     bool force_control = true;  ///< else position control
     double force = 0.0;         ///< N, commanded (force control)
     double approach = 0.0;      ///< mm, commanded (position control)
@@ -55,9 +59,12 @@ struct ContactSolution {
     double force = 0.0;          ///< N, sum of pressure x coverage x cell area
     double approach = 0.0;       ///< mm, delta; what the robot gave way is not in it
     double area = 0.0;           ///< mm2 of cells with pressure, coverage counted
-    double peak_pressure = 0.0;  ///< MPa
+    double peak_pressure = 0.0;  ///< MPa, greatest mean over 1 mm2 (a cell, where that is larger)
     int iterations = 0;          ///< done
     bool converged = false;      ///< to the tolerance asked for
+    /// mm that the wheel's surface moves along y, at the borders of the rows: (nx, ny + 1), from
+    /// the outermost one at -y to that at +y. Empty: it does not, or the model does not know.
+    Eigen::ArrayXXd axial;
 };
 
 /// A contact model on one grid, with the work space to solve there: one thread at a time. It needs
@@ -106,6 +113,8 @@ class ContactModel {
     /// mm of what is elastic between the work and a rigid core: no contact can be deeper. Infinite:
     /// the model knows of no core.
     virtual double thickness() const { return std::numeric_limits<double>::infinity(); }
+    /// mm beyond the tool's side faces where it may bear pressure under load.
+    virtual double beside() const { return 0.0; }
     /// Name and parameters, for the report.
     virtual std::string describe() const = 0;
 

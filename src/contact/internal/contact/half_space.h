@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,18 +27,19 @@ class ConvolutionModel : public ElasticModel {
   public:
     /// Of the influence function, on a padded grid.
     struct Spectrum {
-        std::vector<float> values;  ///< real, as the function is even
-        double centre = 1.0;        ///< mm/MPa, of a cell on itself
+        std::vector<float> values;     ///< real, as the function is even
+        std::vector<float> influence;  ///< mm/MPa, by distance: row by row, from 0 to half of each
     };
 
   private:
     std::unique_ptr<ComplianceOperator> make_operator(const ContactGrid& grid) const final;
-    Spectrum build(const ContactGrid& grid, int length, int rows) const;
+    /// `influence`: mm/MPa at a distance of some cells along and across.
+    static Spectrum build(int length, int rows, const std::function<float(int, int)>& influence);
     /// Displacement (mm/MPa) at the distance (x, y) from the middle of a cell of `grid` under unit
     /// pressure.
     virtual double influence(const ContactGrid& grid, double x, double y) const = 0;
 
-    mutable SpectrumCache<Spectrum> spectra_;
+    std::shared_ptr<SpectrumCache<Spectrum>> spectra_ = std::make_shared<SpectrumCache<Spectrum>>();
 };
 
 /// Elastic half-space (Boussinesq): u(q) = 2 p(q) / (E* q); uniform pressure on a rectangle by

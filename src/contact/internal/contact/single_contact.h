@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/contact_wheel.h"
@@ -10,17 +11,25 @@ namespace beltgrinding {
 /// An analytic rigid workpiece that the wheel meets at the origin of the contact frame (x along the
 /// feed, y along the wheel's axis, z into the workpiece).
 struct Workpiece {
-    enum class Shape { kPlane, kCylinder, kSphere, kStrip };
-    /// By its name: plane, cylinder, sphere or strip. Throws InputError for another.
+    enum class Shape { kPlane, kCylinder, kSphere, kTorus, kStrip, kEdge };
+    /// By its name: plane, cylinder, sphere, torus, strip or edge. Throws InputError for another.
     static Shape shape_named(const std::string& name);
 
     Shape shape = Shape::kPlane;
-    double radius = 50.0;     ///< mm, of cylinder or sphere; negative: concave
-    double width = 10.0;      ///< mm, of the strip
-    double axis_angle = 0.0;  ///< rad, of cylinder and strip about z; 0: along x
+    double radius = 50.0;       ///< mm, of cylinder, sphere or the torus's tube; negative: concave
+    double width = 10.0;        ///< mm, of the strip
+    double axis_angle = 0.0;    ///< rad, of cylinder, tube, strip and edge about z; 0: along x
+    double ring_radius = 50.0;  ///< mm, of the torus's tube about its middle; negative: inside it
+    double edge = 0.0;          ///< mm across its axis, where the plane of an edge ends
+    double tilt = 0.0;          ///< rad, of plane, strip or edge about x; positive: up towards +y
 
-    /// Depth of the surface, mm (z), at (x, y); +inf where there is none.
+    /// Depth of the surface, mm (z), at (x, y); +inf where there is none. Strips and edges end
+    /// where `ends` says, not here.
     double depth(double x, double y) const;
+    /// Across its axis, mm: where the surface begins and ends; infinite where it does not.
+    std::pair<double, double> ends() const;
+    /// mm across its axis, of (x, y).
+    double across(double x, double y) const;
     /// Throws InputError for dimensions that are none.
     void validate() const;
 };

@@ -24,6 +24,10 @@ struct BeltPlate {
 /// the wheel's whole circumference into an influence function along it, with the means over
 /// loaded and displaced cells; the operator convolves without periodic images (zero padding) by
 /// Fourier transforms, with one dense product a wavenumber for each symmetry.
+///
+/// Beside the side faces the rubber also moves along the axis (`SideMode`), and meets what the
+/// surface is there: on a slope of the gap that is nearer or further, and the pressure, normal to
+/// the surface, has an axial share. Both together leave the operator symmetric.
 class WheelRim final : public ElasticModel {
   public:
     /// `cache`: where the section's compliance is read from and kept; none: nowhere, it is computed
@@ -34,6 +38,7 @@ class WheelRim final : public ElasticModel {
     /// What the operator of a grid says also names the cache's entry.
     std::string describe() const override;
     double thickness() const override;
+    double beside() const override;
 
     /// The section's compliance for some cells.
     struct Samples {
@@ -49,19 +54,21 @@ class WheelRim final : public ElasticModel {
 
   private:
     std::unique_ptr<ComplianceOperator> make_operator(const ContactGrid& grid) const override;
+    bool has_belt() const { return belt_.tension > 0.0 || belt_.bending > 0.0; }
     std::string describe_design(int digits) const;
     /// The samples for a grid's cells: from the cache, or computed and put there.
     Samples sample(const ContactGrid& grid) const;
     RimSamples compute(const ContactGrid& grid, const std::vector<double>& waves) const;
     bool holds(const ContactGrid& grid, const std::vector<double>& waves,
                const RimSamples& kept) const;
-    Spectrum build(const ContactGrid& grid, const Samples& samples, int length) const;
+    static Spectrum build(const WheelRimDesign& design, const ContactGrid& grid,
+                          const Samples& samples, int length);
 
     WheelRimDesign design_;
     BeltPlate belt_;
     std::shared_ptr<RimCache> cache_;
     mutable SpectrumCache<Samples> samples_;  // for any length
-    mutable SpectrumCache<Spectrum> spectra_;
+    std::shared_ptr<SpectrumCache<Spectrum>> spectra_ = std::make_shared<SpectrumCache<Spectrum>>();
 };
 
 }  // namespace beltgrinding

@@ -46,8 +46,13 @@ struct RemovalTrace {
 /// ray that is still material, as a structure of arrays. Frame: work (the part's own). Lengths in
 /// mm.
 ///
-/// `height` is signed along `normal` from `point`: + is excess stock, - is a gouge. It only ever
+/// `height` is signed along `ray` from `point`: + is excess stock, - is a gouge. It only ever
 /// decreases during a simulation. The segment of sample i reaches from `-depth` to `height[i]`.
+///
+/// Rays are the normals, but for samples beside sharp convex edges between faces of the field:
+/// there they lean towards the edge's bisector, which is their direction on the edge itself, and
+/// are longer than 1, so that heights are still measured square to the design surface
+/// (`lean_at_edges`).
 ///
 /// Ren, Kuhlenkoetter, Mueller: Simulation and verification of belt grinding with industrial robots
 /// (Int. J. Machine Tools & Manufacture 46, 2006), section 3.
@@ -59,6 +64,7 @@ struct HeightField {
     std::vector<double> height;       ///< current height, mm (double: it sums many tiny removals)
     std::vector<std::uint32_t> face;  ///< index of the sample's face in the shape, from 0
     std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
+    std::vector<Vec3f> rays;          ///< as `ray`; empty: all are the normals
     std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
     std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
@@ -68,8 +74,14 @@ struct HeightField {
 
     /// Number of samples.
     std::size_t size() const { return point.size(); }
+    /// Direction of segment i, outwards, of length 1 / cosine of its angle to the normal.
+    const Vec3f& ray(std::size_t i) const { return rays.empty() ? normal[i] : rays[i]; }
+    /// Whether the ray of sample i is not its normal.
+    bool leans(std::size_t i) const { return !rays.empty() && rays[i] != normal[i]; }
     /// Current top of segment i, mm, work frame.
-    Vec3 top(std::size_t i) const { return point[i] + height[i] * normal[i].cast<double>(); }
+    Vec3 top(std::size_t i) const { return point[i] + height[i] * ray(i).cast<double>(); }
+    /// Where segment i begins, mm, work frame.
+    Vec3 bottom(std::size_t i) const { return point[i] - depth * ray(i).cast<double>(); }
     /// Makes room for n samples: heights, flags and areas 0.
     void resize(std::size_t n);
     /// Bytes held by all arrays.

@@ -15,6 +15,7 @@ struct SectionPiece {
     std::vector<double> arc_length;    ///< mm along the whole section, gaps between pieces included
     std::vector<Vec3> point;           ///< on the triangulated design surface, mm, work frame
     std::vector<Vec3> normal;          ///< unit, of the design surface
+    std::vector<Vec3> ray;             ///< as `HeightField::ray`: heights are measured along it
     std::vector<double> stock_height;  ///< before grinding, mm; NaN where a sample missed the stock
     std::vector<double> height;        ///< deviation, mm; NaN where a sample missed the stock
     std::vector<double> height_sd;     ///< its standard deviation, mm; empty: not known

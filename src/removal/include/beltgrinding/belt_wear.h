@@ -21,21 +21,23 @@ struct BeltState {
 class BeltWear {
   public:
     /// How the cut falls.
-    enum class Model { kNone, kExponential, kTwoStage, kCurve };
+    enum class Model { kNone, kExponential, kTwoStage, kPower, kCurve };
     /// With what it falls.
     enum class Variable { kWork, kVolume };
     /// What makes up a belt's wear; which are used depends on the model.
     struct Parameters {
         Model model = Model::kNone;           ///< how the cut falls
         Variable variable = Variable::kWork;  ///< with what
-        double scale = 1e6;                   ///< J or mm3 in which the wearing share falls to 1/e
-        double rest = 0.0;                    ///< share of the cut that stays
-        double first_share = 0.0;             ///< two-stage: share that goes at first
-        double first_scale = 1e5;             ///< J or mm3, of it
-        Curve curve;                          ///< share over J or mm3
+        double scale = 1e6;  ///< J or mm3 in which the wearing share falls to 1/e; of a power, W
+                             ///< from which it falls
+        double rest = 0.0;   ///< share of the cut that stays
+        double first_share = 0.0;  ///< two-stage: share that goes at first
+        double first_scale = 1e5;  ///< J or mm3, of it
+        double exponent = 0.2;     ///< power: m
+        Curve curve;               ///< share over J or mm3
     };
 
-    /// By its name: none, exponential, two_stage or curve. Throws InputError for another.
+    /// By its name: none, exponential, two_stage, power or curve. Throws InputError for another.
     static Model model_named(const std::string& name);
     /// By its name: work or volume. Throws InputError for another.
     static Variable variable_named(const std::string& name);
@@ -45,7 +47,8 @@ class BeltWear {
     explicit BeltWear(Parameters parameters);
 
     /// k_t of a belt in the state. Exponential: rest + (1 - rest) exp(-W/scale); two-stage: rest +
-    /// first_share exp(-W/first_scale) + (1 - rest - first_share) exp(-W/scale).
+    /// first_share exp(-W/first_scale) + (1 - rest - first_share) exp(-W/scale); power: (1 +
+    /// W/scale)^-exponent, the form of Arps's decline curves (Trans. AIME 160, 1945).
     double remaining(const BeltState& state) const;
     /// False where the belt has done more than a curve's measurements.
     bool measured(const BeltState& state) const;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 
 namespace beltgrinding {
 
@@ -17,6 +18,7 @@ enum GrindParameter : int {
     kWearRest,           ///< share of the cut that remains in the end
     kPressureThreshold,  ///< MPa
     kLnSaturation,       ///< ln of the saturation pressure in MPa; inf: none
+    kWearExponent,       ///< m of a cut that falls as (1 + W / scale)^-m; inf: exponentially
     kGrindParameters,
 };
 using GrindVector = Eigen::Matrix<double, kGrindParameters, 1>;
@@ -42,21 +44,27 @@ struct MeasuredGrinds {
     Eigen::ArrayXd spread;    ///< mm2 over which the volume is spread to a depth; 1: the measured
                               ///< figure is a volume; NaN: a depth over the contact area
     Eigen::ArrayXd measured;  ///< mm3 or mm
-    Eigen::ArrayXd areas;     ///< (k,) mm2, what an unknown area can be; empty if all are known
+    /// (n, m) pressure over the mean F/A on m equal shares of the contact; empty: 1 everywhere.
+    Eigen::ArrayXXd relative;
+    Eigen::ArrayXd areas;  ///< (k,) mm2, what an unknown area can be; empty if all are known
 
     /// Throws InputError if sizes differ, or a figure is not finite or out of range.
     void validate() const;
 };
 
 /// ln of the measured figure that the model says, volume = A t dh/dt with
-///   dh/dt = K k_t(W) g_b(V_b) g_w(V_w) g_p(F/A), and t, A raised to tau, 1 + delta
-/// about their references, for row `i` with contact area `area`; its gradient by the parameters.
+///   dh/dt = K k_t(W) g_b(V_b) g_w(V_w) <g_p(p)>, <> the mean over the contact, and t, A raised to
+/// tau, 1 + delta about their references, for row `i` with contact area `area`; its gradient by the
+/// parameters.
 double log_grind(const GrindVector& parameters, const GrindReferences& references,
                  const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient);
 
 struct CalibrationSettings {
     GrindVector start, lower, upper;  ///< bounds of free parameters; the start lies between
     std::array<bool, kGrindParameters> free{};
+    GrindVector prior_mean = GrindVector::Zero();
+    /// Standard deviation of what is known of a free parameter before; inf: nothing.
+    GrindVector prior_deviation = GrindVector::Constant(std::numeric_limits<double>::infinity());
 };
 
 struct Calibration {
@@ -64,7 +72,9 @@ struct Calibration {
     GrindMatrix covariance;   ///< zero for parameters fixed or at a bound
     GrindMatrix information;  ///< sum of w J J^T over the rows; of the free parameters
     std::array<bool, kGrindParameters> at_bound{};
-    double scatter = 0.0;  ///< 1.4826 median |ln(measured/predicted)|, n/(n - p) corrected
+    double scatter = 0.0;  ///< of ln(measured/predicted): the greater of 1.4826 times its median
+                           ///< and its rms winsorised at three of these, n/(n - p) corrected
+    double log_likelihood = 0.0;      ///< of the rows, without ln sqrt(2 pi) each
     Eigen::ArrayXd residual, weight;  ///< per row, of its likeliest areas on average
     Eigen::ArrayXd shares;            ///< of the areas that an unknown one can take
     Eigen::ArrayXXd posterior;        ///< (n, k) probability of each area; 1 in column 0 if known
@@ -72,13 +82,16 @@ struct Calibration {
     bool converged = false;
 };
 
-/// Robust least squares of ln(measured) against ln(predicted): Cauchy weights (c = 2.385, 95 %
-/// efficient under normal scatter) by iteratively reweighted least squares, each solved by
-/// Levenberg-Marquardt (Eigen) with bounds by James and Roos's sine transform (Comp. Phys. Comm.
-/// 10, 1975). An unknown area is one of `areas`, by Ibrahim's EM by the method of weights (JASA 85,
-/// 1990). The covariance is the sandwich of M-estimation (Huber and Ronchetti, Robust Statistics,
-/// 2009) with Louis's information where areas are unknown (JRSS B 44, 1982) and MacKinnon and
-/// White's leverage correction HC3 (J. Econometrics 29, 1985). Throws InputError.
+/// Robust least squares of ln(measured) against ln(predicted) with normal priors, so that the
+/// parameters are the likeliest after the data: Hampel's three-part weights (Hampel, Ronchetti,
+/// Rousseeuw and Stahel, Robust Statistics, 1986), which leave the normal scatter of grinds alone
+/// and drop blunders, by iteratively reweighted least squares, each solved by Levenberg-Marquardt
+/// (Eigen) with bounds by James and Roos's sine transform (Comp. Phys. Comm. 10, 1975). An unknown
+/// area is one of `areas`, by Ibrahim's EM by the method of weights (JASA 85, 1990). The covariance
+/// is the sandwich of M-estimation (Huber and Ronchetti, Robust Statistics, 2009) with Louis's
+/// information where areas are unknown (JRSS B 44, 1982) and MacKinnon and White's leverage
+/// correction HC3 (J. Econometrics 29, 1985); a prior counts as a further measurement. Throws
+/// InputError.
 Calibration calibrate(const MeasuredGrinds& grinds, const GrindReferences& references,
                       const CalibrationSettings& settings);
 

@@ -59,13 +59,13 @@ struct Registration {
 Registration register_scan(const ScanPoints& scan, const DatumSurface& datum,
                            const RegistrationOptions& options, const RunContext& context = {});
 
-/// Height of a point cloud over design points: along each normal to the plane of the `neighbours`
-/// nearest scan points, found again from where the plane was met. NaN where these lie farther than
-/// `reach` mm, or to one side. `start` (mm): heights at which the search begins; the cloud is in
-/// the work frame.
+/// Height of a point cloud over design points: along each of `rays` (of any length, which is that
+/// of a height of 1 mm) to the plane of the `neighbours` nearest scan points, found again from
+/// where the plane was met. NaN where these lie farther than `reach` mm, or to one side. `start`
+/// (mm): heights at which the search begins; the cloud is in the work frame.
 std::vector<double> measure_cloud(const std::vector<Vec3>& cloud, const std::vector<Vec3>& points,
-                                  const std::vector<Vec3f>& normals,
-                                  const std::vector<double>& start, double reach,
-                                  std::size_t neighbours = 12, const RunContext& context = {});
+                                  const std::vector<Vec3f>& rays, const std::vector<double>& start,
+                                  double reach, std::size_t neighbours = 12,
+                                  const RunContext& context = {});
 
 }  // namespace beltgrinding

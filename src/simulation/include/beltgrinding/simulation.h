@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -27,7 +28,7 @@ struct StepRecord {
     std::uint32_t pose = 0;  ///< programmed pose that the step leads to, from 0
     float duration = 0.0f;   ///< s
     float feed = 0.0f;       ///< mm/s, infeed speed of the contact point over the work
-    float force = 0.0f;      ///< N
+    float force = 0.0f;      ///< N, mean over the step
     float approach = 0.0f;   ///< mm, the wheel's way from the programmed pose along z, at first
     float deepest_approach = 0.0f;  ///< mm, where it stood deepest within the step
     float contact_area = 0.0f;      ///< mm2
@@ -36,17 +37,36 @@ struct StepRecord {
     std::uint32_t segments = 0;     ///< found by localisation
 };
 
+/// How a force control meets its force F_c: by a regulator whose force F_r lags, T F_r' + F_r =
+/// F_c, and a mass that it moves with the wheel against the contact's force F, m z'' + d z' =
+/// F_r - F, z along the contact frame's z. All 0: at every moment, as ideal force control does.
+struct ForceDynamics {
+    double lag = 0.0;          ///< T, s
+    double mass = 0.0;         ///< m, N s2/mm (t)
+    double damping = 0.0;      ///< d, N s/mm
+    double speed_limit = 0.0;  ///< mm/s, of z'; 0: none
+
+    /// The force is met at every moment.
+    bool ideal() const { return !(lag > 0.0) && !moves(); }
+    /// The wheel takes time to move.
+    bool moves() const { return mass > 0.0 || damping > 0.0; }
+};
+
 /// How the wheel is pressed and the belt runs: what decides what is ground.
 struct ProcessSettings {
     ContactWheel wheel;            ///< its shape
     bool force_control = true;     ///< else the wheel keeps to the programmed poses
     double force = 50.0;           ///< N, where the path has none
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways
+    ForceDynamics dynamics;        ///< of the force control
     double robot_stiffness = 0.0;  ///< N/mm along z under position control; 0: rigid
-    double belt_speed = 20000.0;   ///< mm/s
-    double belt_wear = 1.0;        ///< k_t of the belt as it comes, a factor on `wear`
-    BeltWear wear;                 ///< how k_t falls with use
-    BeltState belt;                ///< what the belt has done before
+    /// mm by which the rim stands out of the wheel's shape under position control, grown by its
+    /// rotation
+    double wheel_growth = 0.0;
+    double belt_speed = 20000.0;  ///< mm/s
+    double belt_wear = 1.0;       ///< k_t of the belt as it comes, a factor on `wear`
+    BeltWear wear;                ///< how k_t falls with use
+    BeltState belt;               ///< what the belt has done before
 
     /// Throws InputError naming the setting that is none.
     void validate() const;
@@ -69,6 +89,9 @@ struct MonitorLimits {
     double pressure = 0.0;          ///< MPa; 0: none
     double orientation_jump = 0.0;  ///< rad between neighbouring poses at feed; 0: none
     double tilt = 0.0;              ///< rad of the contact's centre round the rim; 0: none
+    /// Share of the commanded force above which a force control that takes time exceeds it; 0: none
+    double overshoot = 0.0;
+    double bounce = 0.0;  ///< s, within which the wheel is off the work and on it again; 0: none
     /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
     std::vector<float> lower = {};
 
@@ -86,6 +109,9 @@ struct OutputRequest {
     /// `SimulationResult::shifts`.
     std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws = {};
     bool influence = false;  ///< keep what every motion removed where
+    /// Keep what every motion would remove more where by more force, as far as its force is
+    /// controlled.
+    bool force_influence = false;
 };
 
 /// How a simulation is done.
@@ -116,7 +142,7 @@ struct PhaseTimes {
 struct Influence {
     std::vector<std::size_t> first = {0};  ///< (motions + 1), where a motion's entries begin
     std::vector<std::uint32_t> sample;     ///< rising within a motion
-    std::vector<float> depth;              ///< mm, above 0
+    std::vector<float> depth;              ///< mm, not 0
 
     /// How many there are, those that removed nothing among them.
     std::size_t motions() const { return first.size() - 1; }
@@ -139,8 +165,13 @@ struct SimulationResult {
     Eigen::ArrayXXd shifts;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     Influence influence;  ///< of the path's motions, from that to its first pose; if asked for
-    std::string model;    ///< what the contact model says of itself as it was used
-    PhaseTimes wall;      ///< of this call
+    /// The same per relative change of the motion's force, the surface as it is: mm.
+    Influence force_influence;
+    std::string model;  ///< what the contact model says of itself as it was used
+    PhaseTimes wall;    ///< of this call
+
+    /// mm3 of the law's, that was taken from no sample.
+    double lost_volume() const { return std::max(integrated_rate - removed_volume, 0.0); }
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only

@@ -1,0 +1,339 @@
+// What of the wheel's cells the surface covers, at its edges and steps.
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "contact/gap_map.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kTouch = 1e-6;  // of a cell: less of a patch is rounding
+constexpr double kFull = 0.999;
+constexpr double kGraded = 0.001;   // of the samples away from borders: fewer small ones are chance
+constexpr double kDenser = 0.6;     // of the field's spacing: where curvature asks for more samples
+constexpr double kStraight = 1e-6;  // less: a spike, which has no way along
+
+}  // namespace
+
+void GapMap::find_borders(const HeightField& field) {
+    if (borders_of_ == &field && borders_size_ == field.size()) return;
+    borders_of_ = &field;
+    borders_size_ = field.size();
+    borders_.clear();
+    find_forms(field);
+    for (std::uint32_t k = 0; k < field.size(); ++k)
+        if ((field.flags[k] & kOnBoundary) != 0) borders_.push_back({k, Vec3f::Zero(), 0.0f});
+    if (borders_.empty()) return;
+    std::vector<double> areas(borders_.size(), 0.0);
+    const auto number = [&](std::uint32_t sample) {
+        const auto by_sample = [](const BorderPatch& a, std::uint32_t k) { return a.sample < k; };
+        return static_cast<std::size_t>(
+            std::lower_bound(borders_.begin(), borders_.end(), sample, by_sample) -
+            borders_.begin());
+    };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ways;  // between samples on a border
+    for (const Triangle& triangle : field.triangles) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t a = triangle[corner];
+            if ((field.flags[a] & kOnBoundary) == 0) continue;
+            // Of a triangle, what is nearest to a corner has its middle 7/36 of both sides away.
+            const Vec3 one = field.point[triangle[(corner + 1) % 3]] - field.point[a];
+            const Vec3 other = field.point[triangle[(corner + 2) % 3]] - field.point[a];
+            const double area = one.cross(other).norm();
+            const std::size_t k = number(a);
+            borders_[k].middle += (7.0 / 36.0 * area * (one + other)).cast<float>();
+            areas[k] += area;
+            const std::uint32_t next = triangle[(corner + 1) % 3];
+            if ((field.flags[next] & kOnBoundary) != 0) ways.emplace_back(a, next);
+        }
+    }
+    // Along the border the middle has no business: there it is as the triangles happen to lie.
+    std::sort(ways.begin(), ways.end());
+    std::vector<Vec3> along(borders_.size(), Vec3::Zero());
+    std::vector<int> neighbours(borders_.size(), 0);
+    for (const auto& [from, to] : ways) {
+        if (std::binary_search(ways.begin(), ways.end(), std::pair(to, from))) continue;
+        const Vec3 way = field.point[to] - field.point[from];
+        const double length = way.norm();
+        if (!(length > 0.0)) continue;
+        for (const std::uint32_t one : {from, to}) {
+            const std::size_t k = number(one);
+            along[k] += way / length;
+            borders_[k].along += static_cast<float>(length);
+            ++neighbours[k];
+        }
+    }
+    for (std::size_t k = 0; k < borders_.size(); ++k) {
+        const double apart = neighbours[k] > 0 ? borders_[k].along / neighbours[k] : 0.0;
+        borders_[k].along = apart < kDenser * field.spacing ? static_cast<float>(apart) : 0.0f;
+        if (areas[k] <= 0.0) continue;
+        Vec3 middle = borders_[k].middle.cast<double>() / areas[k];
+        const double square = along[k].squaredNorm();
+        if (square > kStraight) middle -= along[k].dot(middle) / square * along[k];
+        borders_[k].middle = middle.cast<float>();
+    }
+}
+
+void GapMap::find_forms(const HeightField& field) {
+    longer_.clear();
+    std::vector<char> beside(field.size(), 0);
+    for (const Triangle& t : field.triangles)
+        if (((field.flags[t[0]] | field.flags[t[1]] | field.flags[t[2]]) & kOnBoundary) != 0)
+            for (const std::uint32_t k : t) beside[k] = 1;
+    const double small = kDenser * field.spacing * field.spacing;
+    std::size_t denser = 0;
+    for (std::size_t k = 0; k < field.size(); ++k)
+        if (beside[k] == 0 && field.area[k] < small) ++denser;
+    if (static_cast<double>(denser) < kGraded * static_cast<double>(field.size())) return;
+    std::vector<Eigen::Matrix3f> ways(field.size(), Eigen::Matrix3f::Zero());
+    for (const Triangle& t : field.triangles) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t a = t[corner], b = t[(corner + 1) % 3];
+            const Vec3f way = (field.point[b] - field.point[a]).cast<float>();
+            const Eigen::Matrix3f square = way * way.transpose();
+            ways[a] += square;
+            ways[b] += square;
+        }
+    }
+    longer_.resize(field.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+    for (std::size_t k = 0; k < field.size(); ++k) {
+        solver.computeDirect(ways[k]);
+        const float most = solver.eigenvalues()[2], less = solver.eigenvalues()[1];
+        longer_[k] = less > 0.0f ? Vec3f(std::sqrt(most / less) * solver.eigenvectors().col(2))
+                                 : Vec3f::Zero();
+    }
+}
+
+const GapMap::BorderPatch* GapMap::border_patch(std::uint32_t sample) const {
+    const auto found =
+        std::lower_bound(borders_.begin(), borders_.end(), sample,
+                         [](const BorderPatch& a, std::uint32_t k) { return a.sample < k; });
+    return found != borders_.end() && found->sample == sample ? &*found : nullptr;
+}
+
+GapMap::Patch GapMap::patch_of(const Footprint& f, const HeightField& field) const {
+    const double y = std::clamp<double>(f.y, -0.5 * wheel_.width, 0.5 * wheel_.width);
+    // Lengths round the wheel are told at its radius.
+    const double round = wheel_.radius / (f.own_gap + wheel_.radius - wheel_.drop(y));
+    const double slope_s = f.slope_s * round, slope_y = f.slope_y - wheel_.drop_slope(y);
+    const double side = std::sqrt(static_cast<double>(f.area));
+    Patch patch{f.s, f.y, 0.5 * side, 0.5 * side};
+    const bool on_border = (field.flags[f.sample] & kOnBoundary) != 0;
+    if (const BorderPatch* border = on_border ? border_patch(f.sample) : nullptr) {
+        const Vec3 middle = contact_from_work_.linear() * border->middle.cast<double>();
+        const double angle = f.s / wheel_.radius;
+        const double to_s = middle.x() * std::cos(angle) - middle.z() * std::sin(angle);
+        const double to_y = middle.y(), square = to_s * to_s + to_y * to_y;
+        if (square > 0.0) {
+            // As long as the samples are apart along the border, narrower across it.
+            const double narrow =
+                border->along > 0.0f ? side / border->along : std::min(side / field.spacing, 1.0);
+            const double aspect = std::pow(narrow, (to_y * to_y - to_s * to_s) / square);
+            patch.half_s /= aspect;
+            patch.half_y *= aspect;
+        }
+        patch.s += round * to_s;
+        patch.y += to_y;
+    } else if (!longer_.empty() && !longer_[f.sample].isZero()) {
+        const Vec3 longer = contact_from_work_.linear() * longer_[f.sample].cast<double>();
+        const double angle = f.s / wheel_.radius;
+        const double to_s = longer.x() * std::cos(angle) - longer.z() * std::sin(angle);
+        const double to_y = longer.y(), square = to_s * to_s + to_y * to_y;
+        if (square > 0.0) {
+            const double aspect =
+                std::pow(longer.norm(), 0.5 * (to_y * to_y - to_s * to_s) / square);
+            patch.half_s /= aspect;
+            patch.half_y *= aspect;
+        }
+    }
+    patch.half_s *= round / std::sqrt(1.0 + slope_s * slope_s);
+    patch.half_y /= std::sqrt(1.0 + slope_y * slope_y);
+    return patch;
+}
+
+int GapMap::own_cell(const Footprint& f) const {
+    const int right = f.u >= 0.5f ? 1 : 0, up = f.v >= 0.5f ? grid_.nx : 0;
+    return f.cell + right + up;
+}
+
+template <class Visit>
+void GapMap::for_cells(const Footprint& f, Visit visit) const {
+    const int above = f.cell + (grid_.ny > 1 ? grid_.nx : 0);
+    visit(f.cell, (1.0f - f.u) * (1.0f - f.v), f.gap);
+    visit(f.cell + 1, f.u * (1.0f - f.v), f.gap + f.slope_s);
+    visit(above, (1.0f - f.u) * f.v, f.gap + f.slope_y);
+    visit(above + 1, f.u * f.v, f.gap + f.slope_s + f.slope_y);
+}
+
+template <class Visit>
+void GapMap::for_patch(const EdgePatch& patch, Visit visit) const {
+    const Footprint& f = footprints_[patch.footprint];
+    const float left = patch.s - patch.half_s, right = patch.s + patch.half_s;
+    const float low = patch.y - patch.half_y, high = patch.y + patch.half_y;
+    const int i0 = f.cell % grid_.nx, j0 = f.cell / grid_.nx;
+    const int first = std::max(0, static_cast<int>(std::floor(left + 0.5f)));
+    const int last = std::min(grid_.nx - 1, static_cast<int>(std::floor(right + 0.5f)));
+    const int bottom = std::max(0, static_cast<int>(std::floor(low + 0.5f)));
+    const int top = std::min(grid_.ny - 1, static_cast<int>(std::floor(high + 0.5f)));
+    for (int j = bottom; j <= top; ++j) {
+        const float y0 = std::max(low - j, -0.5f), y1 = std::min(high - j, 0.5f);
+        for (int i = first; i <= last; ++i) {
+            const float s0 = std::max(left - i, -0.5f), s1 = std::min(right - i, 0.5f);
+            const double share = static_cast<double>(s1 - s0) * (y1 - y0);
+            if (share < kTouch) continue;
+            visit(j * grid_.nx + i, share, 0.5 * (s0 + s1), 0.5 * (y0 + y1),
+                  f.gap + f.slope_s * (i - i0) + f.slope_y * (j - j0));
+        }
+    }
+}
+
+void GapMap::mark_edges() {
+    const int nx = grid_.nx, ny = grid_.ny;
+    kind_.assign(nearest_.size(), kWhole);
+    // Marks the cells round those that `is` tells, up to `steps` away.
+    const auto spread = [&](auto is, std::uint8_t kind, int steps) {
+        for (int j = 0; j < ny; ++j) {
+            for (int i = 0; i < nx; ++i) {
+                if (!is(j * nx + i)) continue;
+                for (int b = std::max(0, j - steps); b <= std::min(ny - 1, j + steps); ++b) {
+                    for (int a = std::max(0, i - steps); a <= std::min(nx - 1, i + steps); ++a) {
+                        auto& one = wider_[static_cast<std::size_t>(b * nx + a)];
+                        one = std::max(one, kind);
+                    }
+                }
+            }
+        }
+        kind_ = wider_;
+    };
+    wider_ = kind_;
+    spread(
+        [&](int cell) {
+            const auto k = static_cast<std::size_t>(cell);
+            const double nearest = nearest_[k];
+            if (nearest == kNone || farthest_[k] - nearest > layer_) return true;
+            // A step between this cell's layer and the next one's.
+            const auto steps = [&](std::size_t next) {
+                return nearest_[next] != kNone && std::abs(nearest_[next] - nearest) > layer_;
+            };
+            return (cell % nx + 1 < nx && steps(k + 1)) ||
+                   (cell + nx < nx * ny && steps(k + static_cast<std::size_t>(nx)));
+        },
+        kEdge, 1);
+    spread([&](int cell) { return kind_[static_cast<std::size_t>(cell)] == kEdge; }, kNearEdge, 2);
+}
+
+void GapMap::cover(const HeightField& field) {
+    patches_.clear();
+    for (std::size_t cell = 0; cell < kind_.size(); ++cell) {
+        if (kind_[cell] == kEdge)
+            nearest_[cell] = kNone;
+        else
+            coverage_.share[static_cast<Eigen::Index>(cell)] = 1.0;
+    }
+    for (std::size_t k = 0; k < footprints_.size(); ++k) {
+        const Footprint& f = footprints_[k];
+        if (kind_[static_cast<std::size_t>(own_cell(f))] == kWhole) continue;
+        Footprint physical = f;
+        physical.slope_s /= static_cast<float>(grid_.ds);
+        physical.slope_y /= static_cast<float>(grid_.dy);
+        const Patch patch = patch_of(physical, field);
+        patches_.push_back({k, static_cast<float>(patch.s / grid_.ds + 0.5 * (grid_.nx - 1)),
+                            static_cast<float>(patch.y / grid_.dy + 0.5 * (grid_.ny - 1)),
+                            static_cast<float>(patch.half_s / grid_.ds),
+                            static_cast<float>(patch.half_y / grid_.dy)});
+        for_patch(patches_.back(), [&](int cell, double, double, double, double carried) {
+            const auto c = static_cast<std::size_t>(cell);
+            if (kind_[c] == kEdge) nearest_[c] = std::min(nearest_[c], carried);
+        });
+    }
+    for (const EdgePatch& patch : patches_) {
+        double of_layer = 0.0, of_others = 0.0;
+        for_patch(patch, [&](int cell, double share, double along, double across, double carried) {
+            const auto c = static_cast<std::size_t>(cell);
+            const bool same = carried - nearest_[c] <= layer_;
+            (same ? of_layer : of_others) += share;
+            if (!same || kind_[c] != kEdge) return;
+            coverage_.share[cell] += share;
+            coverage_.along[cell] += share * along;
+            coverage_.across[cell] += share * across;
+        });
+        footprints_[patch.footprint].nearest = of_layer >= of_others;
+    }
+}
+
+void GapMap::average_gap() {
+    for (const Footprint& f : footprints_) {
+        for_cells(f, [&](int cell, float share, double carried) {
+            if (carried - nearest_[static_cast<std::size_t>(cell)] > layer_) return;
+            const double weight = static_cast<double>(share) * f.inside * f.area * f.cosine;
+            gap_[cell] += weight * carried;
+            weight_[cell] += weight;
+        });
+    }
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        double& share = coverage_.share[cell];
+        if (kind_[static_cast<std::size_t>(cell)] == kEdge && share > 0.0) {
+            coverage_.along[cell] /= share;
+            coverage_.across[cell] /= share;
+            if (share > kFull) share = 1.0;
+        }
+        if (!(weight_[cell] > 0.0)) share = 0.0;
+        gap_[cell] = share > 0.0 ? gap_[cell] / weight_[cell] : kNone;
+    }
+}
+
+void GapMap::share_cells() {
+    for (Footprint& f : footprints_) {
+        const float w[4] = {(1.0f - f.u) * (1.0f - f.v), f.u * (1.0f - f.v), (1.0f - f.u) * f.v,
+                            f.u * f.v};
+        std::copy_n(w, 4, f.shares);
+    }
+    for (const EdgePatch& patch : patches_) {
+        Footprint& f = footprints_[patch.footprint];
+        float sum = 0.0f;
+        float* share = f.shares;
+        for_cells(f, [&](int cell, float weight, double carried) {
+            const bool same = f.nearest && std::abs(carried - gap_[cell]) <= layer_;
+            *share = same ? weight * static_cast<float>(coverage_.share[cell]) : 0.0f;
+            sum += *share++;
+        });
+        for (float& one : f.shares) one = sum > 0.0f ? one / sum : 0.0f;
+    }
+}
+
+void GapMap::carry_to_middles() {
+    // Of the cells near edges, those that are covered in part, or with a sliver.
+    const auto parted = [&](int cell) {
+        return kind_[static_cast<std::size_t>(cell)] != kWhole && coverage_.share[cell] > 0.0 &&
+               (coverage_.along[cell] != 0.0 || coverage_.across[cell] != 0.0);
+    };
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        if (coverage_.share[cell] <= 0.0) gap_[cell] = kNone;
+        if (!parted(cell)) continue;
+        nearest_[static_cast<std::size_t>(cell)] = gap_[cell];
+        gap_[cell] = weight_[cell] = 0.0;
+    }
+    for (const EdgePatch& patch : patches_) {
+        const Footprint& f = footprints_[patch.footprint];
+        for_cells(f, [&](int cell, float share, double carried) {
+            if (!parted(cell)) return;
+            if (std::abs(carried - nearest_[static_cast<std::size_t>(cell)]) > layer_) return;
+            const double weight = static_cast<double>(share) * f.inside * f.area * f.cosine;
+            gap_[cell] += weight * (carried + f.slope_s * coverage_.along[cell] +
+                                    f.slope_y * coverage_.across[cell]);
+            weight_[cell] += weight;
+        });
+    }
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        if (!parted(cell)) continue;
+        gap_[cell] = weight_[cell] > 0.0 ? gap_[cell] / weight_[cell]
+                                         : nearest_[static_cast<std::size_t>(cell)];
+    }
+}
+
+}  // namespace beltgrinding

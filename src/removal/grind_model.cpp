@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "beltgrinding/error.h"
+#include "removal/calibration.h"
+
+namespace beltgrinding {
+
+void MeasuredGrinds::validate() const {
+    const Eigen::Index n = measured.size();
+    for (const auto* column : {&force, &area, &speed, &feed, &time, &wear, &spread}) {
+        if (column->size() != n)
+            throw InputError("calibration.lengths", "calibration: columns differ in length");
+    }
+    for (const auto* column : {&force, &speed, &time, &measured}) {
+        if (!column->allFinite() || !(*column > 0.0).all()) {
+            throw InputError("calibration.not_positive",
+                             "calibration: force, speed, time and removal must be positive");
+        }
+    }
+    if (!feed.allFinite() || (feed < 0.0).any() || !wear.allFinite() || (wear < 0.0).any()) {
+        throw InputError("calibration.negative",
+                         "calibration: feed and wear must be zero or positive");
+    }
+    if (relative.size() > 0 &&
+        (relative.rows() != n || !relative.allFinite() || (relative < 0.0).any() ||
+         !(relative.rowwise().sum() > 0.0).all())) {
+        throw InputError(
+            "calibration.relative",
+            "calibration: pressures over the mean must be zero or positive, a row each");
+    }
+    if (!areas.allFinite() || !(areas > 0.0).all() || (area <= 0.0).any() || area.isInf().any() ||
+        (spread <= 0.0).any() || spread.isInf().any()) {
+        throw InputError("calibration.areas", "calibration: areas must be positive");
+    }
+    if (areas.size() == 0 && area.isNaN().any()) {
+        throw InputError("calibration.area_unknown",
+                         "calibration: an area is unknown, and what it can be as well");
+    }
+}
+
+namespace {
+
+constexpr double kLeastExcess = 1e-9;  // MPa above the threshold
+
+/// ln of the mean of (q / p_ref)^alpha over the contact, q the pressure that cuts, and its
+/// derivatives by alpha, the threshold and ln of the saturation.
+struct MeanCut {
+    double ln_mean = 0.0, by_exponent = 0.0, by_threshold = 0.0, by_saturation = 0.0;
+};
+
+MeanCut mean_cut(const GrindVector& x, double reference, const MeasuredGrinds& grinds,
+                 Eigen::Index i, double mean) {
+    const double alpha = x[kPressureExponent], saturation = std::exp(x[kLnSaturation]);
+    const Eigen::Index shares = std::max<Eigen::Index>(1, grinds.relative.cols());
+    MeanCut cut;
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < shares; ++j) {
+        const double pressure = grinds.relative.size() > 0 ? grinds.relative(i, j) * mean : mean;
+        const double excess = std::max(pressure - x[kPressureThreshold], kLeastExcess);
+        const double ratio = std::isfinite(saturation) ? excess / saturation : 0.0;
+        const double effective = ratio > 0.0 ? saturation * -std::expm1(-ratio) : excess;
+        // d ln(1 - exp(-ratio)) / d ln(ratio), which goes to 1.
+        const double steep = ratio > 0.0 ? ratio / std::expm1(ratio) : 1.0;
+        const double ln_pressure = std::log(effective / reference);
+        const double term = std::exp(alpha * ln_pressure);
+        sum += term;
+        cut.by_exponent += term * ln_pressure;
+        if (excess > kLeastExcess) cut.by_threshold -= term * alpha * steep / excess;
+        cut.by_saturation += term * alpha * (1.0 - steep);
+    }
+    cut.ln_mean = std::log(sum / static_cast<double>(shares));
+    cut.by_exponent /= sum;
+    cut.by_threshold /= sum;
+    cut.by_saturation /= sum;
+    return cut;
+}
+
+}  // namespace
+
+double log_grind(const GrindVector& x, const GrindReferences& references,
+                 const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient) {
+    const bool moving = grinds.feed[i] > 0.0;
+    const MeanCut mean = mean_cut(x, references.pressure, grinds, i, grinds.force[i] / area);
+    const double ln_speed = std::log(grinds.speed[i] / references.speed);
+    const double ln_feed = moving ? std::log(grinds.feed[i] / references.feed) : 0.0;
+    const double ln_time = moving ? 0.0 : std::log(grinds.time[i] / references.time);
+    const double ln_area = std::log(area / references.area);
+    const double worn = grinds.wear[i] / std::exp(x[kLnWearScale]);  // 0 for an infinite scale
+    const double exponent = x[kWearExponent];
+    const bool power = std::isfinite(exponent);
+    const double decay = std::exp(-worn), rest = x[kWearRest];
+    const double ln_cut =
+        power ? -exponent * std::log1p(worn) : std::log(rest + (1.0 - rest) * decay);
+    const double spread = std::isnan(grinds.spread[i]) ? area : grinds.spread[i];
+    if (gradient) {
+        GrindVector& g = *gradient;
+        g[kLnCoefficient] = 1.0;
+        g[kPressureExponent] = mean.by_exponent;
+        g[kSpeedExponent] = ln_speed;
+        g[kFeedExponent] = ln_feed;
+        g[kTimeExponent] = ln_time;
+        g[kAreaExponent] = ln_area;
+        const double cut = std::exp(ln_cut);
+        g[kLnWearScale] =
+            power ? exponent * worn / (1.0 + worn) : (1.0 - rest) * decay * worn / cut;
+        g[kWearRest] = power ? 0.0 : -std::expm1(-worn) / cut;
+        g[kWearExponent] = power ? -std::log1p(worn) : 0.0;
+        g[kPressureThreshold] = mean.by_threshold;
+        g[kLnSaturation] = mean.by_saturation;
+    }
+    return x[kLnCoefficient] + ln_cut + std::log(references.speed) + x[kSpeedExponent] * ln_speed +
+           std::log(references.pressure) + mean.ln_mean + x[kFeedExponent] * ln_feed +
+           std::log(grinds.time[i]) + (x[kTimeExponent] - 1.0) * ln_time + std::log(area) +
+           x[kAreaExponent] * ln_area - std::log(spread);
+}
+
+}  // namespace beltgrinding

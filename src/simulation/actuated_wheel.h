@@ -1,0 +1,60 @@
+#pragma once
+
+#include "beltgrinding/simulation.h"
+#include "force_actuator.h"
+#include "pressing.h"
+
+namespace beltgrinding {
+
+/// The wheel pressed by a force control that takes time: goes on with its place, its speed and the
+/// regulator's force from step to step.
+class ActuatedWheel {
+  public:
+    /// Both must outlive it.
+    ActuatedWheel(const ProcessSettings& process, Pressing& pressing);
+
+    /// It has a mass or a damping; else the force lags, and the wheel is where that is met.
+    bool moves() const { return process_.dynamics.moves(); }
+
+    /// Presses the wheel at the step's pose as it stands. At the path's begin and after a rapid
+    /// motion it rests where the force is met, else at its travel's end towards the work (away from
+    /// it where no force is commanded), and the regulator has come to the step's force. Changes
+    /// nothing that a second call would not find.
+    Pressing::State look(const HeightField& field, const SegmentTree& tree, const PathStep& step);
+    /// The step with the force that is met in it, if that only lags.
+    PathStep lagging(const PathStep& step) const;
+    /// Parts that the step that was looked at should be cut into, for the wheel to be followed: 1
+    /// where it stands about still.
+    double parts(const PathStep& step) const;
+
+    /// s, after which the wheel must be looked at anew: at most `left`.
+    double longest(double left, double commanded) const;
+    void begin(double seconds, double commanded);
+    /// Solves the contact of the next stage. Returns the share of the time step in which its force
+    /// acts.
+    double press_stage(const HeightField& field, const SegmentTree& tree);
+    /// The step is done, what it begins and ends with included.
+    void end(const PathStep& step);
+
+    /// s for which the wheel was off the work when it came back to it in this step; 0: it did not,
+    /// or sooner than it can answer.
+    double bounce() const { return bounce_; }
+
+  private:
+    /// Times the force that is tolerated, what the wheel is out of balance by.
+    double unrest(double commanded) const;
+    void learn_stiffness(double commanded);
+
+    const ProcessSettings& process_;
+    Pressing& pressing_;
+    ForceActuator actuator_;
+    bool begun_ = false;
+    double end_ = 0.0;      // s, of the last step
+    double stiffness_;      // N/mm, about that of the contact under the commanded force
+    double seconds_ = 0.0;  // of the time step
+    bool pressed_ = false;  // there was a contact in the last stage
+    double off_ = -1.0;     // s since it was lost; negative: it was not
+    double bounce_ = 0.0;
+};
+
+}  // namespace beltgrinding

@@ -82,6 +82,10 @@ function resultOf(about, arrays) {
   const middle = low.map((value, k) => 0.5 * (value + high[k]));
   const design = inBox(arrays.points, about.box, middle);
   const normals = unitVectors(arrays.normals);
+  // Beside sharp edges heights go along rays that lean, and are square to the face all the same.
+  if (arrays.cosines) {
+    for (let i = 0; i < normals.length; i++) normals[i] *= 255 / arrays.cosines[Math.floor(i / 3)];
+  }
   const deviation = about.modes[0];
   const codes = arrays[deviation.values];
   const ground = new Float32Array(design);

@@ -100,10 +100,6 @@
         <translation>Wie sicher das Gesetz ist, wie es `beltgrind calibrate` schreibt; leer: nicht bekannt.</translation>
     </message>
     <message>
-        <source>J or mm3 in which the wearing share falls to 1/e</source>
-        <translation>J oder mm³, in denen der verschleißende Anteil auf 1/e fällt</translation>
-    </message>
-    <message>
         <source>K = C_A K_A, mm2/N</source>
         <translation>K = C_A K_A, mm²/N</translation>
     </message>
@@ -216,6 +212,10 @@
         <translation>curve: [J oder mm³, Anteil des Abtrags eines frischen Bandes]; Punkte aufsteigend im ersten; leer: keine</translation>
     </message>
     <message>
+        <source>density of the rim&apos;s rubber, kg/m3, about 1100 to 1200: under position control the rim grows by its rotation (docs/methods.md); 0: it does not</source>
+        <translation>Dichte des Gummis, kg/m3, etwa 1100 bis 1200: unter Lageregelung weitet die Drehung den Belag auf (docs/methods.md); 0: nicht</translation>
+    </message>
+    <message>
         <source>depth removed, by length</source>
         <translation>abgetragene Tiefe, nach Länge</translation>
     </message>
@@ -246,10 +246,6 @@
     <message>
         <source>elasticity of the wheel. wheel_rim: rubber rim of finite width on a rigid core; bonded_layer: the same without side faces; half_space: for contacts far smaller than the rim; elastic_foundation: independent springs (Winkler); surrogate: predicted by a regression trained on solved contacts (beltgrind surrogate); geometric: a rigid tool that cuts all it meets (control position)</source>
         <translation>Elastizität der Scheibe. wheel_rim: Gummibelag endlicher Breite auf starrem Kern; bonded_layer: dasselbe ohne Seitenflächen; half_space: für Kontakte viel kleiner als der Belag; elastic_foundation: unabhängige Federn (Winkler); surrogate: vorhergesagt durch eine Regression über gelöste Kontakte (beltgrind surrogate); geometric: ein starres Werkzeug, das alles abträgt, was es trifft (Regelung position)</translation>
-    </message>
-    <message>
-        <source>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); curve: measured</source>
-        <translation>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); curve: gemessen</translation>
     </message>
     <message>
         <source>feed of approach and retract, mm/s</source>
@@ -696,6 +692,14 @@
         <translation>Zeit bei den programmierten Vorschüben ohne Beschleunigung, s; die des Auftrags: Simulation.ProcessTime</translation>
     </message>
     <message>
+        <source>time constant with which the regulator&apos;s force follows the commanded one, s; 0: at once</source>
+        <translation>Zeitkonstante, mit der die Kraft des Reglers der befohlenen folgt, s; 0: sofort</translation>
+    </message>
+    <message>
+        <source>times which the rubber is stiffer under the quick contact than the modulus says, which is measured slowly (docs/methods.md)</source>
+        <translation>um welchen Faktor der Gummi unter dem schnellen Kontakt steifer ist, als der langsam gemessene Modul sagt (docs/methods.md)</translation>
+    </message>
+    <message>
         <source>tool centre points in the program&apos;s base frame, mm</source>
         <translation>TCPs im Basissystem des Programms, mm</translation>
     </message>
@@ -1036,6 +1040,14 @@
         <translation>ein Ereignis, wo benachbarte Posen einer Vorschubbewegung weiter gegeneinander gedreht sind, Grad; 0: keines</translation>
     </message>
     <message>
+        <source>an event where the contact is lost and found again within this time, s; 0: none</source>
+        <translation>ein Ereignis, wo der Kontakt verloren und innerhalb dieser Zeit wiedergefunden wird, s; 0: keines</translation>
+    </message>
+    <message>
+        <source>an event where the force exceeds the commanded one by more than this share of it; 0: none</source>
+        <translation>ein Ereignis, wo die Kraft die befohlene um mehr als diesen Anteil übertrifft; 0: keines</translation>
+    </message>
+    <message>
         <source>an event where the wheel touches further round its rim from the programmed contact point, degrees; 0: none</source>
         <translation>ein Ereignis, wo die Scheibe am Umfang weiter weg vom programmierten Kontaktpunkt berührt, Grad; 0: keines</translation>
     </message>
@@ -1074,6 +1086,10 @@
     <message>
         <source>how thick foot, column, upper arm, elbow, forearm, wrist and flange are, as seven radii for collisions of the arm, mm; 0: that link has no body; empty: estimated from the arm&apos;s length</source>
         <translation>wie dick Fuß, Säule, Oberarm, Ellbogen, Unterarm, Handgelenk und Flansch sind: sieben Radien für Kollisionen des Arms, mm; 0: dieses Glied hat keinen Körper; leer: aus der Länge des Arms geschätzt</translation>
+    </message>
+    <message>
+        <source>ideal: the force is met at every moment; lag: it follows the commanded one with lag_s; actuator: the same, and a moving mass with damping between it and the contact</source>
+        <translation>ideal: die Kraft wird in jedem Augenblick erreicht; lag: sie folgt der befohlenen mit lag_s; actuator: ebenso, und eine bewegte Masse mit Dämpfung liegt zwischen ihr und dem Kontakt</translation>
     </message>
     <message>
         <source>laid as a first proposal, and nobody has looked at it since</source>
@@ -1214,6 +1230,18 @@
     <message>
         <source>a round has a motion remove more, or less, by no more than this factor</source>
         <translation>eine Runde lässt eine Bewegung höchstens um diesen Faktor mehr oder weniger abtragen</translation>
+    </message>
+    <message>
+        <source>actuator: force against the speed of the movement, N s/mm; of a robot under admittance control its virtual damping</source>
+        <translation>actuator: Kraft gegen die Geschwindigkeit der Bewegung, N s/mm; bei einem Roboter mit Admittanzregelung deren virtuelle Dämpfung</translation>
+    </message>
+    <message>
+        <source>actuator: largest speed of the movement, mm/s; 0: none</source>
+        <translation>actuator: größte Geschwindigkeit der Bewegung, mm/s; 0: beliebig</translation>
+    </message>
+    <message>
+        <source>actuator: what moves with the wheel along the pressing direction, kg; of a robot under admittance control its virtual mass</source>
+        <translation>actuator: was sich mit der Scheibe in Andruckrichtung bewegt, kg; bei einem Roboter mit Admittanzregelung deren virtuelle Masse</translation>
     </message>
     <message>
         <source>an input, the tolerance or a setting has changed since</source>
@@ -1407,6 +1435,30 @@
         <source>with which the part shall be in tolerance, the law being as unsure as its calibration says; 0: as simulated</source>
         <translation>mit der das Teil in Toleranz sein soll, so unsicher, wie die Kalibrierung das Gesetz nennt; 0: wie simuliert</translation>
     </message>
+    <message>
+        <source>J or mm3 in which the wearing share falls to 1/e; power: W from which the cut falls</source>
+        <translation>J oder mm³, in denen der verschleißende Anteil auf 1/e fällt; power: W, von dem an der Abtrag fällt</translation>
+    </message>
+    <message>
+        <source>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); power: (1 + W / scale)^-exponent; curve: measured</source>
+        <translation>exponential: rest + (1 - rest) exp(-W / scale); two_stage: rest + first_share exp(-W / first_scale) + (1 - rest - first_share) exp(-W / scale); power: (1 + W / scale)^-exponent; curve: gemessen</translation>
+    </message>
+    <message>
+        <source>power: exponent of the fall</source>
+        <translation>power: Exponent des Abfalls</translation>
+    </message>
+    <message>
+        <source>by how much the surface may bulge over the chords between samples where it is curved, mm: there they lie closer together; 0: as far apart as elsewhere</source>
+        <translation>um wie viel die Fläche, wo sie gekrümmt ist, über die Sehnen zwischen den Abtastpunkten hinausstehen darf, mm: Dort liegen sie dichter; 0: so weit auseinander wie sonst</translation>
+    </message>
+    <message>
+        <source>least distance between samples where the surface is tightly curved, as at a leading edge, mm; without a precision, normals turn by a quarter of a radian at most from sample to sample; 0: a fortieth of the spacing, if there is a precision</source>
+        <translation>kleinster Abstand der Abtastpunkte, wo die Fläche eng gekrümmt ist, wie an einer Vorderkante, mm; ohne Genauigkeit drehen sich die Normalen von Punkt zu Punkt um höchstens ein viertel Radiant; 0: ein Vierzigstel des Abstands, wenn eine Genauigkeit gegeben ist</translation>
+    </message>
+    <message>
+        <source>radius left and chord loss at each edge that it meets</source>
+        <translation>verbliebener Radius und Sehnenverlust an jeder Kante, die er trifft</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -1595,6 +1647,10 @@
         <translation>An einer Pose des Programms</translation>
     </message>
     <message>
+        <source>At every moment</source>
+        <translation>Jederzeit</translation>
+    </message>
+    <message>
         <source>At the part, as they are drawn</source>
         <translation>Am Werkstück, wie gezeichnet</translation>
     </message>
@@ -1751,8 +1807,16 @@
         <translation>Schnittvermögen (neu: 1)</translation>
     </message>
     <message>
+        <source>Damping</source>
+        <translation>Dämpfung</translation>
+    </message>
+    <message>
         <source>Default zone</source>
         <translation>Standardzone</translation>
+    </message>
+    <message>
+        <source>Density (0: no growth)</source>
+        <translation>Dichte (0: starr)</translation>
     </message>
     <message>
         <source>Deviation</source>
@@ -1773,6 +1837,10 @@
     <message>
         <source>Drive wheel&apos;s diameter, mm</source>
         <translation>Ø der Antriebsscheibe, mm</translation>
+    </message>
+    <message>
+        <source>Dynamic modulus</source>
+        <translation>Dynamischer Modul</translation>
     </message>
     <message>
         <source>Edit</source>
@@ -1881,6 +1949,10 @@
     <message>
         <source>Force (0: machine&apos;s)</source>
         <translation>Kraft (0: der Maschine)</translation>
+    </message>
+    <message>
+        <source>Force control</source>
+        <translation>Kraftregelung</translation>
     </message>
     <message>
         <source>Force: {:.1f} N (commanded: {:.1f} N)
@@ -2485,6 +2557,10 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
         <translation>Breite</translation>
     </message>
     <message>
+        <source>With a lag</source>
+        <translation>Mit Verzug</translation>
+    </message>
+    <message>
         <source>With acceleration and zones</source>
         <translation>Mit Beschleunigung und Überschleifzonen</translation>
     </message>
@@ -2719,6 +2795,10 @@ Verfehlte Strahlen: {:,}, fehlendes Aufmaß: {:,} Punkte</translation>
     <message>
         <source>Move cross-section</source>
         <translation>Querschnitt verschieben</translation>
+    </message>
+    <message>
+        <source>Moving mass</source>
+        <translation>Bewegte Masse</translation>
     </message>
     <message>
         <source>No section</source>
@@ -3081,6 +3161,10 @@ im Mittel {} abgetragen</translation>
         <translation>Außerhalb des Bereichs des Gesetzes</translation>
     </message>
     <message>
+        <source>Overshoot told from</source>
+        <translation>Überschwingen ab</translation>
+    </message>
+    <message>
         <source>Report</source>
         <translation>Bericht</translation>
     </message>
@@ -3103,6 +3187,10 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Spacing of the samples</source>
         <translation>Abstand der Stützpunkte</translation>
+    </message>
+    <message>
+        <source>Speed limit (0: none)</source>
+        <translation>Tempogrenze (0: keine)</translation>
     </message>
     <message>
         <source>Standard deviation, mean; 0: not known</source>
@@ -3597,6 +3685,10 @@ im Mittel {} abgetragen</translation>
         <translation>Das Netz des geschliffenen Teils wird gemacht</translation>
     </message>
     <message>
+        <source>Mass and damping</source>
+        <translation>Masse, Dämpfung</translation>
+    </message>
+    <message>
         <source>Raster</source>
         <translation>Raster</translation>
     </message>
@@ -3667,6 +3759,10 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Force grows over (0: by contact)</source>
         <translation>Kraftanstieg (0: nach Kontakt)</translation>
+    </message>
+    <message>
+        <source>Force is met</source>
+        <translation>Kraft erreicht</translation>
     </message>
     <message>
         <source>From outside, force grows</source>
@@ -3781,6 +3877,10 @@ im Mittel {} abgetragen</translation>
         <translation>Gebiet</translation>
     </message>
     <message>
+        <source>Regulator&apos;s lag</source>
+        <translation>Verzug des Reglers</translation>
+    </message>
+    <message>
         <source>Round the faces</source>
         <translation>Rund um die Flächen</translation>
     </message>
@@ -3851,6 +3951,10 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Both simulated at half the spacing and step.</source>
         <translation>Beides mit halbem Abstand und Schritt simuliert.</translation>
+    </message>
+    <message>
+        <source>Bounces told within</source>
+        <translation>Abprallen binnen</translation>
     </message>
     <message>
         <source>Check at half the spacing</source>
@@ -4275,6 +4379,30 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>At {} places feed or force change faster than they may: the program&apos;s own steps, or motions that stay.</source>
         <translation>An {} Stellen ändern sich Vorschub oder Kraft schneller, als sie dürfen: eigene Stufen des Programms, oder Bewegungen, die bleiben.</translation>
+    </message>
+    <message>
+        <source>beside what no motion reaches</source>
+        <translation>neben dem, was keine Bewegung erreicht</translation>
+    </message>
+    <message>
+        <source>Exponent of the fall</source>
+        <translation>Exponent des Abfalls</translation>
+    </message>
+    <message>
+        <source>Power of the wear</source>
+        <translation>Potenz des Verschleißes</translation>
+    </message>
+    <message>
+        <source>Ground on the job&apos;s wheel</source>
+        <translation>Mit Scheibe des Auftrags</translation>
+    </message>
+    <message>
+        <source>The contacts are solved with the job&apos;s wheel, and the law is fitted to their pressures; columns of the wheel in the table come first</source>
+        <translation>Die Kontakte werden mit der Scheibe des Auftrags gelöst, und das Gesetz wird an ihre Drücke angepasst; Spalten der Scheibe in der Tabelle gehen vor</translation>
+    </message>
+    <message>
+        <source>RMS</source>
+        <translation>RMS</translation>
     </message>
 </context>
 <context>

@@ -103,6 +103,13 @@ def tidy():
         end(path)
 
 
+def remove_tree(path):
+    """Removes a folder as far as that goes. Ctrl-C waits: in the midst of ``shutil.rmtree`` (3.11) it has a
+    descriptor closed twice, and the error of that takes its place."""
+    with uninterrupted():
+        shutil.rmtree(path, ignore_errors=True)
+
+
 def _in_main_thread():
     return threading.current_thread() is threading.main_thread()
 

@@ -24,7 +24,7 @@ from pathlib import Path
 
 from ..engine import InputError
 from .files import PART as STAGE
-from .files import begin, end, interruptible, uninterrupted, write_new, written
+from .files import begin, end, interruptible, remove_tree, uninterrupted, write_new, written
 
 JOURNAL = ".beltgrind-ready-"  # whole, and decided: to be ended
 MANIFEST = ".manifest.json"
@@ -139,7 +139,7 @@ def _replace_by_exchange(folder, contents, gone):
                 _exchange(stage, folder)
                 written(folder)
                 _keep_later(stage, folder, taken)  # the stage is now what the folder was
-                shutil.rmtree(stage, ignore_errors=True)
+                remove_tree(stage)
                 _sync_folder(parent)
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG):
@@ -204,7 +204,8 @@ def _end_journals(folder):
         for name in manifest["gone"]:
             (folder / name).unlink(missing_ok=True)
         _sync_folder(folder)
-        shutil.rmtree(journal)
+        with uninterrupted():
+            shutil.rmtree(journal)  # to be told of: else it would be ended a second time
 
 
 @contextlib.contextmanager
@@ -222,7 +223,7 @@ def _stage(parent):
         finally:
             os.close(held)
     finally:
-        shutil.rmtree(path, ignore_errors=True)
+        remove_tree(path)
         end(path)
 
 
@@ -234,7 +235,7 @@ def _remove_stages(parent):
             try:
                 fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 if time.time() - os.fstat(held).st_mtime > LEFT_OVER:
-                    shutil.rmtree(stage, ignore_errors=True)
+                    remove_tree(stage)
             finally:
                 os.close(held)
 

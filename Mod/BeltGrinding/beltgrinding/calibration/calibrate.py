@@ -12,60 +12,54 @@ import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
-from . import report as calibration_report
-from .law import law_of, predict, worn
-from .model import DEFAULTS, INDEX, Model, correlations
+from . import contacts, report as calibration_report
+from .cautions import (
+    LEAST_GRINDS,
+    LEAST_SPREAD,
+    MOST_CORRELATION,
+    cautions,
+    effect_of,
+    is_told,
+    name_inputs,
+    name_pairs,
+    name_unsure,
+    spread_of,
+)
+from .law import law_of, predict
+from .model import DEFAULTS, INDEX, PRIORS, Model
 from .part_scan import calibrate_from_scan
 from .table import Table, from_columns, read
 
 __all__ = ["fit", "fit_law", "predict", "calibrate_from_scan", "read", "write"]
 
-# What each parameter is the effect of, for messages.
-EFFECT = {  # of the parameters: code and English form
-    "ln_coefficient": ("calibration.the_coefficient", "the coefficient"),
-    "pressure_exponent": ("calibration.force", "force"),
-    "speed_exponent": ("calibration.belt_speed", "belt speed"),
-    "feed_exponent": ("calibration.feed", "feed"),
-    "time_exponent": ("calibration.grind_time", "grind time"),
-    "area_exponent": ("calibration.contact_area", "contact area"),
-    "ln_wear_scale": ("calibration.belt_wear", "belt wear"),
-    "wear_rest": ("calibration.the_rest", "the rest of the cut of a worn belt"),
-    "pressure_threshold": ("calibration.the_threshold", "the pressure threshold"),
-    "ln_saturation": ("calibration.the_saturation", "the saturation pressure"),
-}
-PRESSURE = ("pressure_exponent", "area_exponent")  # force and area
-LEAST_SPREAD = 0.03  # standard deviation of ln(x) from which x varies at all
-LEAST_GRINDS = 4
 MOST_ERROR = 1.0  # standard error from which an exponent (or ln of a scale) is not determined
-MOST_CORRELATION = 0.95
 SINGULAR = 1e-7  # of the scaled information's eigenvalues: the parameters are one
-GRINDS_PER_PARAMETER = 6  # from which a further parameter is tried
-LEAST_ERRORS = 1.64  # standard errors by which it must differ from its default
-FOLDS, ROUNDS = 5, 2
-LEAST_GAIN = 0.5  # standard errors of the gain by which a further parameter must predict better
+# Of the evidence for a further parameter, very strong after Kass and Raftery, JASA 90, 1995.
+STRONG = math.log(150.0)
+# How the cut may fall: by a power; exponentially, to nothing or to a rest.
+WEAR = (("wear_exponent",), ("ln_wear_scale",), ("ln_wear_scale", "wear_rest"))
 
 
-def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0):
+def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
     """Calibrates the law. ``data``: path of a CSV, Table, or dict of columns; ``wear_unit_J``: the
-    work of one unit of a wear number. Returns dict(law: a job's 'law', report: see
+    work of one unit of a wear number; ``machine``: a job's validated belt_machine, whose wheel the
+    grinds were done on where the table does not say it. Returns dict(law: a job's 'law', report: see
     calibration_report.report). Raises InputError.
     """
     _check_unit(wear_unit_J)
-    model, found, free, warnings = _fitted(data, wheel_diameter_mm)
-    warnings += _cautions(model, found, wear_unit_J)
-    law = law_of(model, found, free, wear_unit_J)
+    contact = None if machine is None else contacts.of_machine(machine)
+    model, found, free, warnings = _fitted(data, wheel_diameter_mm, contact)
+    warnings += cautions(model, found, wear_unit_J)
+    law = law_of(model, found, free, wear_unit_J, contact)
     return {"law": law, "report": calibration_report.report(model, found, free, warnings)}
 
 
-def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0):
+def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
     """The law of ``fit`` without its report, which takes longer."""
     _check_unit(wear_unit_J)
-    model, found, free, _ = _fitted(data, wheel_diameter_mm)
-    return law_of(model, found, free, wear_unit_J)
-
-
-def _effect(name):
-    return core.Fact(*EFFECT[name])
+    contact = None if machine is None else contacts.of_machine(machine)
+    model, found, free, _ = _fitted(data, wheel_diameter_mm, contact)
+    return law_of(model, found, free, wear_unit_J, contact)
 
 
 def _check_unit(wear_unit_J):
@@ -76,13 +70,13 @@ def _check_unit(wear_unit_J):
         )
 
 
-def _fitted(data, wheel_diameter_mm):
+def _fitted(data, wheel_diameter_mm, contact=None):
     """(model, fit, free parameters, warnings)."""
     table = data
     if isinstance(data, dict):
-        table = from_columns(data, wheel_diameter_mm)
+        table = from_columns(data, wheel_diameter_mm, contact=contact)
     elif not isinstance(data, Table):
-        table = read(data, wheel_diameter_mm)
+        table = read(data, wheel_diameter_mm, contact=contact)
     if len(table.measured) < LEAST_GRINDS:
         raise InputError(
             "calibration.too_few_rows",
@@ -93,19 +87,23 @@ def _fitted(data, wheel_diameter_mm):
         )
     model, warnings = Model(table), []
     free = ["ln_coefficient", *_varied(table, warnings)]
+    if _worn(table):
+        free = _with_wear(model, free)
     while len(free) >= len(table.measured) - 1:
         warnings.append(
             core.Fact(
                 "calibration.too_few_for",
                 "too few grinds to tell the effect of {effect}; it is fixed",
-                effect=_effect(free[-1]),
+                effect=effect_of(free[-1]),
             )
         )
         free.pop()
-    _name_inputs(table, warnings)
+    name_inputs(table, warnings)
     free, found = _determined(model, free, warnings)
     free, found = _extended(model, free, found)
-    _name_pairs(found, free, warnings)
+    found["between"] = _between(model, found, free)
+    name_unsure(model, found, free, warnings)
+    name_pairs(found, free, warnings)
     if not found["converged"]:
         warnings.append(
             core.Fact(
@@ -115,75 +113,86 @@ def _fitted(data, wheel_diameter_mm):
     return model, found, free, warnings
 
 
-def _spread(values):
-    values = values[np.isfinite(values)]
-    return float(np.std(np.log(values))) if len(values) > 1 else 0.0
-
-
-def _name_inputs(table, warnings):
-    """Warns of inputs that move together in the data."""
-    moving = table.feed > 0
-    inputs = {
-        "pressure_exponent": table.force,
-        "speed_exponent": table.speed,
-        "feed_exponent": np.where(moving, table.feed, math.nan),
-        "time_exponent": np.where(moving, math.nan, table.time),
-        "area_exponent": table.area,
-        "ln_wear_scale": np.where(table.wear > 0, table.wear, math.nan),
-    }
-    names = [name for name, values in inputs.items() if _spread(values) > LEAST_SPREAD]
-    for j, two in enumerate(names):
-        for one in names[:j]:
-            both = np.isfinite(inputs[one]) & np.isfinite(inputs[two])
-            a, b = np.log(inputs[one][both]), np.log(inputs[two][both])
-            if both.sum() < LEAST_GRINDS or np.ptp(a) == 0 or np.ptp(b) == 0:
-                continue
-            correlation = float(np.corrcoef(a, b)[0, 1])
-            if abs(correlation) > MOST_CORRELATION and (one, two) == PRESSURE:
-                warnings.append(  # as they do under any wheel
-                    core.Fact(
-                        "calibration.force_and_area",
-                        "force and contact area move together in the data: that the mean pressure says "
-                        "all of the area is an assumption",
-                    )
-                )
-            elif abs(correlation) > MOST_CORRELATION:
-                warnings.append(
-                    core.Fact(
-                        "calibration.together",
-                        "{one} and {other} move together in the data (correlation {correlation:+.2f}), "
-                        "which hardly separate their effects; vary them separately",
-                        one=_effect(one),
-                        other=_effect(two),
-                        correlation=correlation,
-                    )
-                )
-
-
 def _varied(table, warnings):
     """Parameters whose inputs the data vary."""
     names = []
-    if max(_spread(table.force), _spread(table.force / table.area)) > LEAST_SPREAD:
+    if max(spread_of(table.force), spread_of(table.force / table.area)) > LEAST_SPREAD:
         names.append("pressure_exponent")
-    if _spread(table.speed) > LEAST_SPREAD:
+    if spread_of(table.speed) > LEAST_SPREAD:
         names.append("speed_exponent")
     moving = table.feed > 0
-    if moving.any() and _spread(table.feed[moving]) > LEAST_SPREAD:
+    if moving.any() and spread_of(table.feed[moving]) > LEAST_SPREAD:
         names.append("feed_exponent")
-    if table.wear_kind and np.ptp(table.wear) > LEAST_SPREAD * max(table.wear.max(), 1e-300):
-        names.append("ln_wear_scale")
+    still = ~moving
+    if still.sum() > 2 and spread_of(table.time[still]) > 2 * LEAST_SPREAD:
+        names.append("time_exponent")
+    if "pressure_exponent" in names and _area_apart(table):
+        names.append("area_exponent")
     for name in ("pressure_exponent", "speed_exponent"):
         if name not in names:
             warnings.append(
                 core.Fact(
                     "calibration.not_varied",
                     "the data do not vary {effect}: the {parameter} stays {value:g}, an assumption",
-                    effect=_effect(name),
+                    effect=effect_of(name),
                     parameter=name.replace("_", " "),
                     value=DEFAULTS[name],
                 )
             )
     return names
+
+
+def _area_apart(table):
+    """Whether areas were varied apart from forces; solved contacts say all of theirs by the pressure."""
+    known = np.isfinite(table.area)
+    if np.isfinite(table.relative).any() or spread_of(table.area) <= 2 * LEAST_SPREAD:
+        return False
+    force, area = np.log(table.force[known]), np.log(table.area[known])
+    return np.ptp(force) == 0 or abs(np.corrcoef(force, area)[0, 1]) < MOST_CORRELATION
+
+
+def _worn(table):
+    """Whether the belts were worn differently."""
+    return bool(
+        table.wear_kind and np.ptp(table.wear) > LEAST_SPREAD * max(table.wear.max(), 1e-300)
+    )
+
+
+def _with_wear(model, free):
+    """The parameters with those of the wear: a power's, which the belt's last grinds bend least, unless
+    the data speak very strongly for another form."""
+    forms = [[*free, *wear] for wear in WEAR]
+    forms = [form for form in forms if len(form) < len(model.table.measured) - 1]
+    if not forms:
+        return free
+    found = [model.evidence(model.fit(form), form) for form in forms]
+    best = int(np.argmax(found))
+    return forms[best if found[best] > found[0] + STRONG else 0]
+
+
+def _between(model, found, free):
+    """Covariance by which ln K and the exponents differ among the forms of the wear, each as likely as the
+    data make it (Hoeting, Madigan, Raftery and Volinsky, Statistical Science 14, 1999); (k, k) of all
+    parameters."""
+    between = np.zeros((len(INDEX), len(INDEX)))
+    common = [name for name in free if all(name not in form for form in WEAR)]
+    if len(common) == len(free):
+        return between
+    away, evidence = [], []
+    at = [INDEX[name] for name in common]
+    for wear in WEAR:
+        form = [*common, *wear]
+        if len(form) >= len(model.table.measured) - 1:
+            continue
+        same = set(form) == set(free)
+        other = found if same else model.fit(form)
+        away.append(other["parameters"][at] - found["parameters"][at])
+        evidence.append(model.evidence(other, form))
+    if evidence:
+        weights = np.exp(np.array(evidence) - max(evidence))
+        for weight, one in zip(weights / weights.sum(), away):
+            between[np.ix_(at, at)] += weight * np.outer(one, one)
+    return between
 
 
 def _determined(model, free, warnings):
@@ -195,6 +204,8 @@ def _determined(model, free, warnings):
         if name is None:
             return free, found
         free.remove(name)
+        if name == "ln_wear_scale" and "wear_rest" in free:
+            free.remove("wear_rest")
 
 
 def _undetermined(model, found, free, warnings):
@@ -214,14 +225,14 @@ def _undetermined(model, found, free, warnings):
     for name in reversed(free[1:]):
         j = free.index(name)
         at_bound = found["at_bound"][INDEX[name]]
-        if not at_bound and errors[j] < MOST_ERROR:
+        if not at_bound and (errors[j] < MOST_ERROR or name in PRIORS):
             continue
         others = np.abs(correlation[j]).copy()
         others[[0, j]] = 0.0
         other = int(others.argmax())
         if others[other] > MOST_CORRELATION and not at_bound:
             return _inseparable(free[min(j, other)], free[max(j, other)], warnings)
-        if name == "ln_wear_scale":
+        if name in ("ln_wear_scale", "wear_exponent"):
             warnings.append(
                 core.Fact(
                     "calibration.no_wear",
@@ -240,7 +251,7 @@ def _undetermined(model, found, free, warnings):
                     "calibration.undetermined",
                     "the data leave the effect of {effect} undetermined (it {reason}): the "
                     "{parameter} is fixed at {value:g}",
-                    effect=_effect(name),
+                    effect=effect_of(name),
                     reason=reason,
                     parameter=name.replace("_", " "),
                     value=default,
@@ -264,81 +275,42 @@ def _inseparable(one, two, warnings):
             "{one} and {other} move together in the data, which cannot separate their "
             "effects: {fixed} keeps its default and the other carries both; vary them "
             "separately",
-            one=_effect(one),
-            other=_effect(two),
-            fixed=_effect(fixed),
+            one=effect_of(one),
+            other=effect_of(two),
+            fixed=effect_of(fixed),
         )
     )
     return fixed
 
 
-def _name_pairs(found, free, warnings):
-    """Warns of parameters that the data hardly separate."""
-    correlation = correlations(found, free)
-    for j in range(1, len(free)):
-        for i in range(1, j):
-            if abs(correlation[i, j]) > MOST_CORRELATION:
-                warnings.append(
-                    core.Fact(
-                        "calibration.hardly_separate",
-                        "the data hardly separate the effects of {one} and {other} (correlation "
-                        "{correlation:+.2f})",
-                        one=_effect(free[i]),
-                        other=_effect(free[j]),
-                        correlation=correlation[i, j],
-                    )
-                )
-
-
-def _candidates(table, free):
-    """Further parameters that the data could tell, the simplest first."""
-    still = table.feed <= 0
-    if still.sum() > 2 and _spread(table.time[still]) > 2 * LEAST_SPREAD:
-        yield "time_exponent"
-    if _spread(table.area) > 2 * LEAST_SPREAD and "pressure_exponent" in free:
-        yield "area_exponent"
-    if "ln_wear_scale" in free:
-        yield "wear_rest"
+def _candidates(free):
+    """Further parameters that the data could tell."""
     if "pressure_exponent" in free:
         yield from ("ln_saturation", "pressure_threshold")
 
 
 def _extended(model, free, found):
-    """Adds a parameter while cross-validation predicts better with it, by more than half the
-    standard error of the gain (after Hastie, Tibshirani and Friedman, The Elements of Statistical
-    Learning, 7.10), and differs from its default.
-    """
-    untried = list(_candidates(model.table, free))
-    errors = None
-    while untried and len(model.table.measured) >= GRINDS_PER_PARAMETER * (len(free) + 1):
-        if errors is None:
-            errors = _held_out(model, free, found)
+    """Adds a parameter while the data speak for it very strongly, and it differs from its default."""
+    untried = list(_candidates(free))
+    evidence = model.evidence(found, free)
+    while untried:
         best = None
         for name in untried:
             longer = [*free, name]
-            tried = model.fit(longer, _beginning(model, found, name))
-            if not _told(tried, name) or _undetermined(model, tried, longer, []) is not None:
+            if len(longer) >= len(model.table.measured) - 1:
                 continue
-            theirs = _held_out(model, longer, tried)
-            gain = errors - theirs
-            mean = float(gain.mean())
-            if mean > LEAST_GAIN * gain.std() / math.sqrt(len(gain)) and (
-                best is None or mean > best[0]
-            ):
-                best = (mean, name, tried, theirs)
+            tried = model.fit(longer, _beginning(model, found, name))
+            if not is_told(tried, name) or _undetermined(model, tried, longer, []) is not None:
+                continue
+            theirs = model.evidence(tried, longer)
+            if theirs > evidence + STRONG and (best is None or theirs > best[0]):
+                best = (theirs, name, tried)
         if best is None:
             break
-        _, name, found, errors = best
+        evidence, name, found = best
         free = [*free, name]
         untried.remove(name)
     return free, found
-
-
-def _told(found, name):
-    """Whether a parameter differs from its default by more than two standard errors."""
-    k = INDEX[name]
-    away = abs(found["parameters"][k] - DEFAULTS[name])
-    return away > LEAST_ERRORS * math.sqrt(found["covariance"][k, k])
 
 
 def _beginning(model, found, name):
@@ -348,67 +320,6 @@ def _beginning(model, found, name):
     default = DEFAULTS[name]
     start[INDEX[name]] = default if low < default < high else low + 0.4 * (high - low)
     return start
-
-
-def _held_out(model, free, found):
-    """|ln(measured/predicted)| of every grind, (n,), by repeated cross-validation."""
-    random = np.random.default_rng(1)
-    count = len(model.table.measured)
-    truth = np.log(model.table.measured)
-    total = np.zeros(count)
-    for _ in range(ROUNDS):
-        order = random.permutation(count)
-        for fold in np.array_split(order, FOLDS):
-            kept = np.setdiff1d(order, fold)
-            part = model.fit(free, found["parameters"], kept)
-            said, _, _ = model.predict(part["parameters"], part["shares"], fold)
-            total[fold] += np.abs(truth[fold] - said)
-    return total / ROUNDS
-
-
-def _cautions(model, found, wear_unit):
-    """What the reader of the result has to know."""
-    table, notes = model.table, list(model.table.notes)
-    exponent = found["parameters"][INDEX["time_exponent"]]
-    if exponent != 1.0:
-        given = {"exponent": exponent, "seconds": model.references["time"]}
-        if exponent > 1:
-            note = core.Fact(
-                "calibration.faster_with_time",
-                "removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds of "
-                "about {seconds:g} s; short ones remove less, long ones more",
-                **given,
-            )
-        else:
-            note = core.Fact(
-                "calibration.slower_with_time",
-                "removal grows as time^{exponent:.2f}: the law, linear in time, holds for grinds of "
-                "about {seconds:g} s",
-                **given,
-            )
-        notes.append(note)
-    delta = found["parameters"][INDEX["area_exponent"]]
-    if delta != 0.0:
-        notes.append(
-            core.Fact(
-                "calibration.area_exponent",
-                "the mean pressure does not say all of the contact area: removal has a further "
-                "factor area^{exponent:+.2f}, which the law cannot carry; it holds at about "
-                "{area:g} mm²",
-                exponent=delta,
-                area=model.references["area"],
-            )
-        )
-    if table.wear_kind == "number" and wear_unit == 1.0 and worn(found):
-        notes.append(
-            core.Fact(
-                "calibration.wear_number",
-                "the wear number has no unit of its own: the law's wear scale is in that number, "
-                "where a job counts work in J; give the joules of one unit (--wear-unit) before "
-                "use in a job",
-            )
-        )
-    return notes
 
 
 def write(data, path):

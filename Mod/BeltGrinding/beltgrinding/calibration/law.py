@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 
@@ -19,22 +20,49 @@ LAW_NAMES = {
 }
 
 CURVES = ("pressure_curve", "speed_curve", "feed_curve")
-WINSOR = 2.5  # scatters from the median, beyond which a residual counts no more
+NORMAL = NormalDist()
+LEAST_LEFT = 0.05  # of a grind's variance, once it has pulled the fit to itself
 
 
 def worn(found):
     return math.isfinite(found["parameters"][INDEX["ln_wear_scale"]])
 
 
-def scatter_of(found, count):
-    """Rms of ln(measured/predicted) of a fit with ``count`` parameters, winsorised."""
-    limit = WINSOR * found["scatter"]
-    residual = np.clip(found["residual"], -limit, limit)
-    return math.sqrt(float(np.square(residual).sum()) / max(len(residual) - count, 1))
+def student(freedom, share=0.95):
+    """Student's t within which ``share`` lies (Abramowitz and Stegun, 26.7.5: expansion in 1/n)."""
+    z, n = NORMAL.inv_cdf(0.5 + 0.5 * share), max(float(freedom), 1.0)
+    terms = (
+        (z**3 + z) / 4,
+        (5 * z**5 + 16 * z**3 + 3 * z) / 96,
+        (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384,
+        (79 * z**9 + 776 * z**7 + 1482 * z**5 - 1920 * z**3 - 945 * z) / 92160,
+    )
+    return z + sum(term / n ** (k + 1) for k, term in enumerate(terms))
 
 
-def law_of(model, found, free, wear_unit):
-    """The 'law' of a job."""
+def widening(model, found, free):
+    """Factor on a prediction's deviation after which 1.96 of them hold 95 % of new grinds: Student's
+    t, and as much more as the grinds, each predicted without itself, scatter beyond it (the quantile
+    of conformal prediction, Barber, Candes, Ramdas and Tibshirani, Annals of Statistics 49, 2021; the
+    leverages stand for leaving out).
+    """
+    said, gradient, area_variance = model.predict(found["parameters"], found["shares"])
+    slopes = np.nan_to_num(gradient[:, [INDEX[name] for name in free]])
+    own = np.einsum("ni,ij,nj->n", slopes, model.posterior(found, free), slopes)
+    variance = found["scatter"] ** 2
+    left = np.maximum(variance - own, LEAST_LEFT * variance) + area_variance
+    sizes = np.abs(np.log(model.table.measured) - said) / np.sqrt(left)
+    sizes = np.sort(sizes[found["weight"] > 0])  # blunders are none of it
+    count, freedom = len(sizes), len(model.table.measured) - len(free)
+    if not count:
+        return 1.0
+    rank = min(round(0.95 * (count + 1)), count)
+    beyond = sizes[rank - 1] / student(freedom, rank / (count + 1))
+    return max(1.0, float(beyond)) * student(freedom) / student(math.inf)
+
+
+def law_of(model, found, free, wear_unit, contact=None):
+    """The 'law' of a job; ``contact``: of the grinds, as far as the table does not say it."""
     x = {name: float(found["parameters"][k]) for name, k in INDEX.items()}
     wear, kind = {"model": "none"}, model.table.wear_kind
     unit = wear_unit if kind == "number" else 1.0
@@ -45,6 +73,8 @@ def law_of(model, found, free, wear_unit):
             "scale": math.exp(x["ln_wear_scale"]) * unit,
             "rest": x["wear_rest"],
         }
+        if math.isfinite(x["wear_exponent"]):
+            wear.update(model="power", rest=0.0, exponent=x["wear_exponent"])
     own = [name for name in free if name in LAW_NAMES]
     at = [INDEX[name] for name in own]
     everything = [INDEX[name] for name in free]
@@ -64,17 +94,21 @@ def law_of(model, found, free, wear_unit):
         "wear": wear,
         "calibration": {
             "parameters": [LAW_NAMES[name] for name in own],
-            "covariance": found["covariance"][np.ix_(at, at)].tolist(),
-            "scatter": scatter_of(found, len(free)),
+            "covariance": (found["covariance"] + found["between"])[np.ix_(at, at)].tolist(),
+            "scatter": found["scatter"],
             "fit": {
                 "parameters": list(free),
                 "covariance": found["covariance"][np.ix_(everything, everything)].tolist(),
                 "grinds": len(model.table.measured),
+                "contacts_known": int(np.isfinite(model.table.relative).all(axis=1).sum()),
+                **({"contact": contact} if contact else {}),
+                "widening": widening(model, found, free),
                 "time_exponent": x["time_exponent"],
                 "reference_time_s": model.references["time"],
                 "area_exponent": x["area_exponent"],
                 "reference_area_mm2": model.references["area"],
                 "areas_mm2": model.areas.tolist(),
+                "pressure_profile": [float(one) for one in model.profile],
                 "area_shares": [float(share) for share in found["shares"]],
                 "wear_kind": model.table.wear_kind,
                 "wear_unit_J": unit,
@@ -88,23 +122,27 @@ def predict(law, rows, wheel_diameter_mm=None):
     """What a law says of grinds. ``rows``: Table, path, dict of columns or list of dicts, with the
     columns of a calibration (the removal is not needed; without wear, the calibration's mean;
     without areas, those of the calibration). Returns dict(predicted (n,) mm3, or mm
-    where the table gives depths; deviation (n,): standard deviation of a new measurement in the
-    same unit; ln_deviation (n,): of its logarithm). Raises InputError.
+    where the table gives depths; deviation (n,): of a new measurement in the same unit;
+    ln_deviation (n,): of its logarithm, 1.96 of which hold 95 %). Raises InputError.
     """
+    contact = law.get("calibration", {}).get("fit", {}).get("contact")
     if isinstance(rows, list):
         keys = {key: None for row in rows for key in row}
         rows = {key: [row.get(key, "") for row in rows] for key in keys}
     if isinstance(rows, dict):
-        rows = from_columns(rows, wheel_diameter_mm, False)
+        rows = from_columns(rows, wheel_diameter_mm, False, contact=contact)
     elif not isinstance(rows, Table):
-        rows = read(rows, wheel_diameter_mm, False)
+        rows = read(rows, wheel_diameter_mm, False, contact)
     rows = rows._replace(measured=np.ones(len(rows.force)))
     fitted = law.get("calibration", {}).get("fit", {})
     parameters, references, unit = _of_law(law, fitted)
     rows = _with_wear(rows, law, fitted, unit)
     if not fitted:
         rows = with_areas(rows)
-    model = Model(rows, references, fitted.get("areas_mm2"))
+    profile = fitted.get("pressure_profile")
+    if profile is not None and len(profile) == 1:  # fitted to mean pressures
+        rows = rows._replace(relative=np.full((len(rows.force), 1), math.nan))
+    model = Model(rows, references, fitted.get("areas_mm2"), profile)
     shares = fitted.get("area_shares") or [1.0 / len(model.areas)] * len(model.areas)
     mean, gradient, variance = model.predict(parameters, shares)
     if fitted:
@@ -114,6 +152,7 @@ def predict(law, rows, wheel_diameter_mm=None):
             "ni,ij,nj->n", slopes, np.asarray(fitted["covariance"]), slopes
         )
     deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
+    deviation = deviation * fitted.get("widening", 1.0)
     value = np.exp(mean)
     return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
 
@@ -123,7 +162,8 @@ def compare(law, path, wheel_diameter_mm=None):
     dict(lines, predicted, deviation, measured: (n,), nan where not known; figures: dict; notes).
     Raises InputError.
     """
-    table = read(path, wheel_diameter_mm, False)
+    contact = law.get("calibration", {}).get("fit", {}).get("contact")
+    table = read(path, wheel_diameter_mm, False, contact)
     told = predict(law, table)
     try:
         measured = read(path, wheel_diameter_mm).measured
@@ -185,10 +225,10 @@ def _of_law(law, fitted):
     local = law.get("model", "local") == "local"
     curves = [key for key in CURVES if law.get(key)]
     wear = law.get("wear", {})
-    if (local and curves) or wear.get("model", "none") not in ("none", "exponential"):
+    if (local and curves) or wear.get("model", "none") not in ("none", "exponential", "power"):
         raise InputError(
             "calibration.not_predicted",
-            "law: curves and other wear than 'exponential' are not predicted here",
+            "law: curves and other wear than 'exponential' and 'power' are not predicted here",
         )
     x = dict(DEFAULTS)
     x["ln_coefficient"] = math.log(law["coefficient_mm2_per_N"])
@@ -200,6 +240,8 @@ def _of_law(law, fitted):
             x["ln_saturation"] = math.log(law["saturation_pressure_MPa"])
     if wear.get("model") == "exponential":
         x["ln_wear_scale"], x["wear_rest"] = math.log(wear["scale"]), wear.get("rest", 0.0)
+    if wear.get("model") == "power":
+        x["ln_wear_scale"], x["wear_exponent"] = math.log(wear["scale"]), wear["exponent"]
     x["time_exponent"] = fitted.get("time_exponent", 1.0)
     x["area_exponent"] = fitted.get("area_exponent", 0.0)
     references = {

@@ -188,7 +188,7 @@ def _prior(law, drift):
     kept = [k for k, name in enumerate(given) if name in learnt]
     names = [given[k] for k in kept]
     sizes = {}
-    if WEAR not in names and law["wear"]["model"] in ("exponential", "two_stage"):
+    if WEAR not in names and law["wear"]["model"] in ("exponential", "two_stage", "power"):
         fit = calibration.get("fit", {})
         if WEAR in fit.get("parameters", ()):
             k = fit["parameters"].index(WEAR)

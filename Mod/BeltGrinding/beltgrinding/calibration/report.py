@@ -5,24 +5,10 @@ import math
 import numpy as np
 
 from . import model as c
-from .law import LAW_NAMES, scatter_of
+from .law import LAW_NAMES, student, widening
 
-# Student's t, 97.5 %, by degrees of freedom (Abramowitz and Stegun, 26.7.5: expansion in 1/n).
-NORMAL = 1.959964
 OUTLIER = 3.5  # scatters
 MOST_LEFT_OUT = 150  # larger tables leave out several grinds at once
-
-
-def student(freedom):
-    """97.5 % quantile of Student's t."""
-    z, n = NORMAL, max(float(freedom), 1.0)
-    terms = (
-        (z**3 + z) / 4,
-        (5 * z**5 + 16 * z**3 + 3 * z) / 96,
-        (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384,
-        (79 * z**9 + 776 * z**7 + 1482 * z**5 - 1920 * z**3 - 945 * z) / 92160,
-    )
-    return z + sum(term / n ** (k + 1) for k, term in enumerate(terms))
 
 
 def report(model, found, free, warnings):
@@ -42,10 +28,8 @@ def report(model, found, free, warnings):
     slopes = np.nan_to_num(gradient[:, at])
     covariance = found["covariance"][np.ix_(at, at)]
     deviation = np.sqrt(
-        np.einsum("ni,ij,nj->n", slopes, covariance, slopes)
-        + area_variance
-        + scatter_of(found, len(free)) ** 2
-    )
+        np.einsum("ni,ij,nj->n", slopes, covariance, slopes) + area_variance + found["scatter"] ** 2
+    ) * widening(model, found, free)
     left = left_out(model, free, found)
     relative = np.abs(np.expm1(left - truth))
     total = float(np.square(truth - truth.mean()).sum())
@@ -63,7 +47,7 @@ def report(model, found, free, warnings):
         "condition": float(math.sqrt(singular[0] / max(singular[-1], 1e-300))),
         "r2": 1.0 - float(np.square(residual).sum()) / total if total > 0 else 0.0,
         "rms_log": float(np.sqrt(np.square(residual).mean())),
-        "scatter": scatter_of(found, len(free)),
+        "scatter": found["scatter"],
         "references": _references(model),
         "leave_one_out": {
             "median": float(np.median(relative)),
@@ -137,6 +121,7 @@ SHOWN = {  # name in the report, unit
     "area_exponent": ("area_exponent", ""),
     "ln_wear_scale": ("wear_scale", "wear"),
     "wear_rest": ("wear_rest", ""),
+    "wear_exponent": ("wear_exponent", ""),
     "pressure_threshold": ("pressure_threshold", "MPa"),
     "ln_saturation": ("saturation_pressure", "MPa"),
 }
@@ -150,7 +135,7 @@ def _parameters(model, found, free):
         shown, unit = SHOWN[name]
         if unit == "wear":
             unit = {"work": "J", "volume": "mm3"}.get(model.table.wear_kind, "wear")
-        half = quantile * math.sqrt(found["covariance"][k, k])
+        half = quantile * math.sqrt(found["covariance"][k, k] + found["between"][k, k])
         low, high = value - half, value + half
         if name.startswith("ln_"):
             value, low, high = (_exp(x) for x in (value, low, high))

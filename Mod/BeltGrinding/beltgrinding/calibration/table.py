@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact import single_contact as contacts
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
+from . import contacts
 
 NOMINAL_DIAMETER = 200.0  # mm, of a drive wheel whose diameter is not known
 NOMINAL_PRESSURE = 0.1  # MPa, mean of the grinds whose contact area nobody knows
@@ -66,11 +66,10 @@ MAY_BE_UNKNOWN = (
     "part_radius_mm",
 )
 WEAR = {"work_J": "work", "removed_so_far_mm3": "volume", "wear": "number"}
-WHEEL = ("wheel_radius_mm", "wheel_width_mm", "rim_thickness_mm", "youngs_modulus_MPa")
 
 
 class Table(NamedTuple):
-    """Measured grinds, all (n,) float. Unknown areas are nan; what is not in the file is None."""
+    """Measured grinds, (n,) float unless said. Unknown areas are nan; what is not in the file is None."""
 
     path: str
     lines: np.ndarray  # of the file, from 1
@@ -79,6 +78,7 @@ class Table(NamedTuple):
     time: np.ndarray  # s of contact: of the grind, or ground length over feed
     feed: np.ndarray  # mm/s, 0 where the grind is stationary
     area: np.ndarray  # mm2
+    relative: np.ndarray  # (n, m) pressure over F/A on equal shares of the contact; nan: not known
     wear: np.ndarray  # zeros if not in the file
     wear_kind: str  # "", "work", "volume" or "number"
     spread: np.ndarray  # mm2: 1 for volumes, nan for depths over the contact area
@@ -93,9 +93,9 @@ class Table(NamedTuple):
         return self._replace(**arrays)
 
 
-def read(path, wheel_diameter_mm=None, measured=True):
-    """Table of a CSV file. ``measured``: whether the measured removal must be there. Raises
-    InputError with file, line, column and what to do.
+def read(path, wheel_diameter_mm=None, measured=True, contact=None):
+    """Table of a CSV file. ``measured``: whether the measured removal must be there;
+    ``contact``: what the table does not say of it (contacts.of_machine). Raises InputError with file, line, column and what to do.
     """
     header, rows, lines = _split(Path(path))
     return from_columns(
@@ -104,6 +104,7 @@ def read(path, wheel_diameter_mm=None, measured=True):
         measured,
         str(path),
         lines,
+        contact,
     )
 
 
@@ -184,7 +185,9 @@ def _canonical(name):
     return CONVERTED.get(small)
 
 
-def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", lines=None):
+def from_columns(
+    columns, wheel_diameter_mm=None, measured=True, path="grinds", lines=None, contact=None
+):
     """Table of columns by name (lists of numbers or texts). Raises InputError."""
     notes, raw, given, factor = [], {}, {}, {}
     for name, values in columns.items():
@@ -240,7 +243,7 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
     _require(c, path, ("force_N",), core.Fact("calibration.the_force", "the normal force"))
     speed = _speed(c, path, wheel_diameter_mm, notes)
     time, feed, spread, figure = _exposure(c, path, lines, measured)
-    area = _area(c, notes)
+    area, relative = _area(c, contact, notes)
     kinds = [name for name in WEAR if name in c]
     if len(kinds) > 1:
         notes.append(
@@ -266,6 +269,7 @@ def from_columns(columns, wheel_diameter_mm=None, measured=True, path="grinds", 
         time=time,
         feed=feed,
         area=area,
+        relative=relative,
         wear=c[kinds[0]] if kinds else np.zeros(count),
         wear_kind=WEAR[kinds[0]] if kinds else "",
         spread=spread,
@@ -428,37 +432,22 @@ def _complete(values, where, path, lines, what):
         )
 
 
-def _area(c, notes):
-    """Contact area in mm2, nan where it is not known."""
-    force = c["force_N"]
-    area = c["area_mm2"].copy() if "area_mm2" in c else np.full(len(force), math.nan)
-    if all(name in c for name in WHEEL):
-        solved = {}
-        for i in np.flatnonzero(np.isnan(area)):
-            radius = c["part_radius_mm"][i] if "part_radius_mm" in c else math.nan
-            key = (float(force[i]), float(radius), *(float(c[name][i]) for name in WHEEL))
-            if not np.isnan(key[2:]).any():
-                if key not in solved:
-                    solved[key] = _solve(key)
-                area[i] = solved[key]
-        if solved:
-            notes.append(
-                core.Fact(
-                    "calibration.areas_computed",
-                    "{count} contact areas are computed from the wheel and the part",
-                    count=len(solved),
-                )
-            )
-    elif any(name in c for name in WHEEL):
-        missing = [name for name in WHEEL if name not in c]
+def _area(c, contact, notes):
+    """(contact area in mm2, nan where it is not known; relative pressures, see contacts.of_table)."""
+    area, relative = contacts.of_table(c, contact, notes)
+    given = c.get("area_mm2", np.full(len(area), math.nan))
+    both = np.isfinite(area) & np.isfinite(given)
+    if both.any():
         notes.append(
             core.Fact(
-                "calibration.wheel_lacks",
-                "the wheel gives no contact area without {columns}",
-                columns=", ".join(missing),
+                "calibration.areas_not_taken",
+                "{count} contact areas are taken from wheel and part, not from the table, whose areas "
+                "are {ratio:.2f} times as great on average",
+                count=int(both.sum()),
+                ratio=float(np.exp(np.log(given[both] / area[both]).mean())),
             )
         )
-    return area
+    return np.where(np.isnan(area), given, area), relative
 
 
 def with_areas(table):
@@ -487,17 +476,3 @@ def with_areas(table):
             )
         )
     return table
-
-
-def _solve(key):
-    """Contact area of a wheel on a cylinder across its travel (nan: a plane), mm2."""
-    force, part, radius, width, rim, modulus = key
-    workpiece = {"shape": "plane"} if math.isnan(part) else {"shape": "cylinder", "radius_mm": part}
-    wheel = {
-        "outer_radius_mm": radius,
-        "width_mm": width,
-        "rim_thickness_mm": rim,
-        "youngs_modulus_MPa": modulus,
-    }
-    given = {"wheel": wheel, "workpiece": workpiece, "force_N": force}
-    return float(contacts.run(contacts.validate(given))["contact_area"])

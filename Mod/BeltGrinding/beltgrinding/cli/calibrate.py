@@ -18,6 +18,7 @@ def add(commands):
         "--wheel-diameter", type=float, help="of the drive wheel whose rpm are given, mm"
     )
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
+    fit.add_argument("--job", help="job (.json) on whose wheel the grinds were done")
     outputs.add(fit)
     fit.set_defaults(do=_calibrate)
     scan = commands.add_parser(
@@ -49,10 +50,14 @@ def _calibrate(arguments):
         plot as calibration_plot,
         report as calibration_report,
     )
+    from ..job import load as jobs
 
     written = [arguments.output, arguments.report, arguments.plot]
-    outputs.check(arguments, written, [arguments.table])
-    result = calibration.fit(arguments.table, arguments.wheel_diameter, arguments.wear_unit)
+    outputs.check(arguments, written, [arguments.table, arguments.job])
+    machine = jobs.load(arguments.job)["belt_machine"] if arguments.job else None
+    result = calibration.fit(
+        arguments.table, arguments.wheel_diameter, arguments.wear_unit, machine
+    )
     report = result["report"]
     if arguments.plot:
         calibration_plot.draw(report, arguments.plot)

@@ -6,7 +6,9 @@ import json
 def add(commands):
     """Adds the commands to the parser's ``commands``."""
     preset = commands.add_parser("presets", help="list the presets, with their sources")
-    preset.add_argument("kind", nargs="?", choices=("wheels", "belts", "materials", "robots"))
+    preset.add_argument(
+        "kind", nargs="?", choices=("wheels", "belts", "materials", "robots", "actuators")
+    )
     preset.add_argument("--json", action="store_true", help="as JSON")
     preset.set_defaults(do=_presets)
     printed = commands.add_parser("schema", help="print the JSON Schema of job.json")

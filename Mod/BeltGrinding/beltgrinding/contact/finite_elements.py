@@ -29,6 +29,8 @@ def solve(contact, rim, keep=None):
     Returns dict(force N, pressure (ny, nx) MPa, corner_pressure (ny + 1, nx + 1), nodes, time s).
     Raises InputError if CalculiX is not installed or does not converge.
     """
+    beside = contact.get("rows_beside", 0)
+    contact = _undeformed(contact)
     program = shutil.which("ccx")
     if program is None:
         raise InputError(
@@ -68,7 +70,7 @@ def solve(contact, rim, keep=None):
     corners = forces / mesh.areas
     return {
         "force": float(forces.sum()),
-        "pressure": _cells(corners),
+        "pressure": np.pad(_cells(corners), ((beside, beside), (0, 0))),
         "corner_pressure": corners,
         "nodes": int(mesh.points.shape[0]),
         "time": seconds,
@@ -77,8 +79,9 @@ def solve(contact, rim, keep=None):
 
 def compare(contact, reference):
     """Figures of the difference: force at the same approach; pressure at the same force (L1), on the
-    corners of the cells, where the finite elements have their nodes.
+    corners of the cells, where the finite elements have their nodes. Both on the undeformed wheel.
     """
+    contact = _undeformed(contact)
     ours = _cells(np.pad(contact["coverage"] * contact["pressure"], 1))
     theirs = reference["corner_pressure"] * _cells(np.pad(np.ones_like(contact["pressure"]), 1))
     scaled = theirs * ours.sum() / max(theirs.sum(), 1e-300)
@@ -89,6 +92,11 @@ def compare(contact, reference):
         "reference_nodes": reference["nodes"],
         "reference_time_s": reference["time"],
     }
+
+
+def _undeformed(contact):
+    """The contact on the cells of the undeformed wheel."""
+    return {**contact, **contact.get("undeformed", {})}
 
 
 def _graded(first, length):

@@ -14,6 +14,7 @@ from ..job.workpiece import apply_stock, make_field, read_design
 from ..presets import rubber
 
 DEFAULT_MODULUS = 5.0  # MPa
+LAYERED = ("wheel_rim", "elastic_foundation")  # models that a rim of several rubbers is known to
 
 
 def load(path):
@@ -44,13 +45,25 @@ def validate(contact, folder="."):
             "{key}: give 'youngs_modulus_MPa' or 'shore_a', not both",
             key="wheel",
         )
+    if wheel["layers"] and contact["model"] not in LAYERED:
+        raise InputError(
+            "contact.layers_of_rims_only",
+            "{key}: the model '{model}' knows no 'layers'; use one of {choices}",
+            key="wheel",
+            model=contact["model"],
+            choices=either(*LAYERED),
+        )
     modulus(wheel)  # refuses a hardness for which there is no formula
-    if workpiece["shape"] in ("cylinder", "sphere") and not workpiece.get("radius_mm"):
+    if workpiece["shape"] in ("cylinder", "sphere", "torus") and not workpiece.get("radius_mm"):
         raise InputError(
             "contact.no_radius",
             "{key}: a {shape} needs a 'radius_mm' other than 0",
             key="workpiece",
             shape=workpiece["shape"],
+        )
+    if workpiece["shape"] == "torus" and "ring_radius_mm" not in workpiece:
+        raise InputError(
+            "contact.no_ring_radius", "{key}: a torus needs a 'ring_radius_mm'", key="workpiece"
         )
     if workpiece["shape"] == "strip" and "width_mm" not in workpiece:
         raise InputError(
@@ -69,21 +82,23 @@ def validate(contact, folder="."):
 
 def run(contact):
     """Solves a validated contact. Returns dict(x (nx,) mm along the circumference, y (ny,) mm along
-    the axis, pressure (ny, nx) MPa, force N, approach mm, contact_area mm2, peak_pressure MPa,
-    iterations, converged, time s, model, cell_area mm2).
+    the axis, pressure (ny, nx) MPa, coverage (ny, nx), force N, approach mm, contact_area mm2,
+    peak_pressure MPa, iterations, converged, time s, model, cell_area mm2, rows_beside). The pressure
+    is where the rubber has moved to; ``rows_beside`` rows at either end lie beyond the wheel's side
+    faces: there it is the mean over the cell.
     """
     wheel, workpiece = contact["wheel"], contact["workpiece"]
-    given = {"shape": workpiece["shape"], "axis_angle_deg": float(workpiece["axis_angle_deg"])}
-    for key, name in (("radius_mm", "radius"), ("width_mm", "width")):
-        if key in workpiece:
-            given[name] = float(workpiece[key])
+    given = {
+        (key if key.endswith("_deg") else key.removesuffix("_mm")): value
+        for key, value in workpiece.items()
+    }
     shape = {
         "radius": float(wheel["outer_radius_mm"]),
         "width": float(wheel["width_mm"]),
         "crown_radius": float(wheel["crown_radius_mm"]),
         "profile": wheel["profile_mm"],
     }
-    return core.single_contact(
+    result = core.single_contact(
         shape,
         given,
         engine_input.compliance_arguments(
@@ -96,7 +111,7 @@ def run(contact):
                 "belt_bending_N_mm": wheel["belt_bending_N_mm"],
                 "stiffness_MPa_per_mm": wheel["stiffness_MPa_per_mm"],
                 "surrogate_file": contact["surrogate_file"],
-                "layers": [],
+                "layers": wheel["layers"],
             },
             shape,
         ),
@@ -105,6 +120,35 @@ def run(contact):
         float(contact["spacing_mm"]),
         float(contact["tolerance"]),
     )
+    return _displaced(result)
+
+
+def _displaced(result):
+    """The contact as the core gives it, with the pressure where it acts, in rows beyond the wheel's
+    side faces as well. What it was is in ``undeformed``.
+    """
+    y, reach = result["y"], result["reach"]
+    dy = result["cell_area"] / (result["x"][1] - result["x"][0])
+    beyond = int(np.ceil(reach.max() / dy - 1e-9))
+    own = {key: result[key] for key in ("y", "pressure", "coverage", "gap")}
+    away = np.arange(1, beyond + 1)  # rows
+    share = np.clip(reach[:, None, :] / dy - away[:, None] + 1, 0, 1)
+    low, high = result["beside"][:, None, :] * share
+    gap = result["gap"]
+    with np.errstate(invalid="ignore"):
+        rise = gap[[0, -1]] - gap[[1, -2]] if len(y) > 1 else 0 * gap[[0, -1]]
+        gaps = [gap[end] + away[:, None] * step for end, step in zip((0, -1), rise)]
+    return {
+        **result,
+        "y": np.concatenate([y[0] - away[::-1] * dy, y, y[-1] + away * dy]),
+        "pressure": np.concatenate([low[::-1], result["displaced_pressure"], high]),
+        "coverage": np.concatenate([1.0 * (low[::-1] > 0), result["coverage"], 1.0 * (high > 0)]),
+        "gap": np.nan_to_num(
+            np.concatenate([gaps[0][::-1], gap, gaps[1]]), nan=np.inf, posinf=np.inf
+        ),
+        "rows_beside": beyond,
+        "undeformed": own,
+    }
 
 
 def at_pose(job, pose, program=1, context=None):
@@ -143,7 +187,7 @@ def at_pose(job, pose, program=1, context=None):
     start = time.perf_counter()
     result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
     result["time"] = time.perf_counter() - start
-    return result
+    return _displaced(result)
 
 
 def rim_of(wheel_radius_mm, elasticity):

@@ -26,6 +26,11 @@ def wheel_of(contact):
             "contact.surrogate_profile",
             "a surrogate knows no profiled wheels; leave 'profile_mm' out",
         )
+    if contact["wheel"]["layers"]:
+        raise InputError(
+            "contact.surrogate_layers",
+            "a surrogate knows no rims of several rubbers; leave out 'layers'",
+        )
     wheel = {**contact["wheel"], "youngs_modulus_MPa": contacts.modulus(contact["wheel"])}
     return {key: float(wheel[key]) for key in WHEEL}
 

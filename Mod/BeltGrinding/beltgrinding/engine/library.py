@@ -58,6 +58,15 @@ def load():
         raise ImportError(message(reason), name=NAME) from error
 
 
+def extension(name):
+    """Imports a module that is built and installed beside the core. Raises ImportError."""
+    core = sys.modules.get(NAME) or load()
+    place = str(Path(core.__file__).parent)
+    if place not in sys.path:
+        sys.path.append(place)
+    return importlib.import_module(name)
+
+
 def message(reason):
     """The whole message: the reason, the cores that are there, and the ways out."""
     lines = [f"The compiled core of the belt-grinding workbench does not fit. {reason}"]

@@ -78,7 +78,7 @@ class Studio:
 
     def __init__(self, field, colours, shape=None, context=None):
         self.field = field
-        self.points = field.points + field.height[:, None] * field.normals
+        self.points = field.points + field.height[:, None] * field.rays
         surfaces = [
             {
                 "vertices": self.points,

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
-from . import section_plot
+from . import edge_profile, section_plot
 
 COLUMNS = (
     "piece",
@@ -92,7 +92,7 @@ def verdicts(section, piece):
 
 
 def summary(section):
-    """Figures of a section, weighted by length: mm, shares in [0, 1]."""
+    """Figures of a section, weighted by length: mm, shares in [0, 1]; ``edges`` as ``edge_profile.edges``, if any."""
     height, stock, length = [], [], []
     for piece in section["pieces"]:
         step = np.diff(piece["s"])
@@ -120,6 +120,9 @@ def summary(section):
         figures["removed_mean_mm"] = float((length * stock).sum() / total) - mean
         good = (height >= lower) & (height <= upper)
         figures["in_tolerance_share"] = float(length[good].sum() / total)
+    edges = edge_profile.edges(section)
+    if edges:
+        figures["edges"] = edges
     return figures
 
 

@@ -10,6 +10,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ..engine import InputError
+from . import edge_profile
 
 UNROLLED, SHAPE = "unrolled", "shape"
 SHARE = 0.12  # of the outline's extent that the enlarged heights take
@@ -23,6 +24,7 @@ LOOKS = {
     "ground": ("ground", "#1f5a96", 2.0, ()),
 }
 WIDTH, HEIGHT, TALLEST = 960, 440, 900  # pixels of the SVG
+EDGE_LINE, MOST_EDGES = 18, 6  # pixels of a line of text on an edge, and how many lines
 LEFT, RIGHT, TOP, BOTTOM = 74, 18, 58, 50  # its margins
 
 
@@ -83,7 +85,7 @@ def plot(section, mode=UNROLLED, exaggeration=None):
         height = np.broadcast_to(height, len(piece["s"]))
         if mode == UNROLLED:
             return np.column_stack([piece["s"], height])
-        return (piece["point"] + exaggeration * height[:, None] * piece["normal"]) @ axes
+        return (piece["point"] + exaggeration * height[:, None] * piece["ray"]) @ axes
 
     lower, upper = section["tolerance"]
     lines = {key: [] for key in LOOKS}
@@ -173,7 +175,8 @@ def svg(section, mode=UNROLLED, exaggeration=None):
         y = TOP + height - (points[:, 1] - y0) * scale_y
         return " ".join(f"{a:.2f},{b:.2f}" for a, b in zip(x, y))
 
-    whole = TOP + height + BOTTOM
+    edges = edge_profile.edges(section)[:MOST_EDGES]
+    whole = TOP + height + BOTTOM + EDGE_LINE * len(edges)
     out = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{whole:.0f}" '
         f'viewBox="0 0 {WIDTH} {whole:.0f}" font-family="sans-serif" font-size="12">',
@@ -203,7 +206,11 @@ def svg(section, mode=UNROLLED, exaggeration=None):
         f'<rect x="{LEFT}" y="{TOP}" width="{width}" height="{height:.1f}" fill="none" '
         'stroke="#6b7078"/>'
     )
-    out.append(_text(LEFT + width / 2, whole - 12, drawn["x_label"], "middle"))
+    below = TOP + height + BOTTOM - 12
+    out.append(_text(LEFT + width / 2, below, drawn["x_label"], "middle"))
+    for edge in edges:
+        below += EDGE_LINE
+        out.append(_text(LEFT, below, edge_profile.text(edge), "start"))
     middle = TOP + height / 2
     out.append(
         f'<text transform="translate(18 {middle:.1f}) rotate(-90)" text-anchor="middle">'

@@ -10,6 +10,7 @@ from ..base.messages import fact_data
 from ..cell import motions as ways
 from ..engine import InputError, core
 from ..job.poses import program_name
+from . import edge_profile
 from .verdict_text import text
 
 __all__ = ["cluster_samples", "judge", "of_result", "text", "verdict"]
@@ -60,14 +61,18 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
             one["verdict"] = "unknown"
         if not region["samples"]:
             notes.append(_empty(zone, field.spacing))
-        inside = field.faces[found["zone"] == region["region"]]
+        samples = np.flatnonzero(found["zone"] == region["region"])
+        edge = None
+        if zone is not None and "edge_radius_mm" in zone:
+            edge = edge_profile.of_zone(field, samples, zone["edge_radius_mm"])
         judged.append(
             {
                 "name": None if zone is None else zone["name"],
                 "tolerance_mm": list(rest if zone is None else zone.get("tolerance_mm", rest)),
                 "edge_radius_mm": None if zone is None else zone.get("edge_radius_mm"),
-                "faces": [int(face) + 1 for face in np.unique(inside)],
+                "faces": [int(face) + 1 for face in np.unique(field.faces[samples])],
                 **one,
+                "edge": edge,
                 "thickness": thick,
             }
         )

@@ -30,6 +30,7 @@ def text(verdict):
                 f"    thickness out of tolerance on {100 * thick['out_share']:.2f} % of the area, at "
                 f"worst {thick['worst']['value_mm']:+.3f} mm"
             )
+    lines += [_edge(zone) for zone in verdict["zones"] if zone.get("edge")]
     for cluster in verdict["clusters"][:3]:
         lines.append(f"  {cluster['number']}. {_told(cluster, verdict['programs'])}")
     doubts = [
@@ -45,6 +46,17 @@ def text(verdict):
     if told:
         lines.append(f"  in doubt: {', '.join(told)}")
     return "\n".join(lines + [f"  note: {note}" for note in verdict["notes"]])
+
+
+def _edge(zone):
+    edge = zone["edge"]
+    radius, loss = edge["radius_mm"], edge["chord_loss_mm"]
+    told = f"  zone '{zone['name']}': edges in {edge['sections']} sections: radius "
+    told += f"{radius['min']:.3f} to {radius['max']:.3f} mm" if radius else "not known"
+    told += f" (design {edge['design_radius_mm']['mean']:.3f} mm), chord loss "
+    if not loss:
+        return told + "not known"
+    return told + f"{loss['mean']:.3f} mm on the mean, {loss['max']:.3f} mm at most"
 
 
 def _told(cluster, programs):

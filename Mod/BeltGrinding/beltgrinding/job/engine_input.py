@@ -2,7 +2,11 @@
 
 import math
 
+from ..engine import InputError
 from . import law as laws
+
+TONNES_PER_KG = 1e-3  # t: N s2/mm
+TONNES_PER_MM3 = 1e-12  # of kg/m3
 
 
 def time_law(simulation):
@@ -23,8 +27,10 @@ def compliance_arguments(compliance, wheel):
     if compliance["model"] == "surrogate":
         from . import surrogate_file
 
+        factor = compliance.get("dynamic_modulus_factor", 1.0)
         asked = {
             **compliance,
+            "youngs_modulus_MPa": factor * compliance["youngs_modulus_MPa"],
             "outer_radius_mm": wheel["radius"],
             "width_mm": wheel["width"],
             "crown_radius_mm": wheel["crown_radius"],
@@ -40,16 +46,64 @@ def compliance_arguments(compliance, wheel):
         "stiffness_MPa_per_mm": "stiffness",
     }
     result = {name: float(compliance[key]) for key, name in names.items()}
+    factor = float(compliance.get("dynamic_modulus_factor", 1.0))
+    for name in ("youngs_modulus", "stiffness"):
+        result[name] *= factor
     result["model"] = compliance["model"]
     result["layers"] = [
         {
             "thickness": float(layer["thickness_mm"]),
-            "youngs_modulus": float(layer["youngs_modulus_MPa"]),
+            "youngs_modulus": factor * float(layer["youngs_modulus_MPa"]),
             "poissons_ratio": float(layer["poissons_ratio"]),
         }
         for layer in compliance["layers"]
     ]
     return result
+
+
+def wheel_growth(machine):
+    """mm by which the rim grows by its rotation: rho V_b^2 / R times the integral of (h - x) / M over its thickness, x from
+    the core, with M of the slow modulus, since the load stands still against the rubber. 0 without a density, under
+    force control and for a rigid tool.
+    """
+    compliance = machine["compliance"]
+    if machine["control"] == "force" or compliance["model"] == "geometric":
+        return 0.0
+    layers = compliance["layers"] or [
+        {
+            "thickness_mm": compliance["rim_thickness_mm"],
+            "youngs_modulus_MPa": compliance["youngs_modulus_MPa"],
+            "poissons_ratio": compliance["poissons_ratio"],
+        }
+    ]
+    above, integral = 0.0, 0.0  # mm; mm2/MPa
+    for layer in reversed(layers):
+        thickness, nu = layer["thickness_mm"], layer["poissons_ratio"]
+        modulus = layer["youngs_modulus_MPa"] * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        integral += (above + 0.5 * thickness) * thickness / modulus
+        above += thickness
+    density = TONNES_PER_MM3 * machine["wheel_density_kg_m3"]
+    speed = 1000.0 * machine["belt_speed_m_s"]
+    return density * speed**2 * integral / machine["wheel"]["radius_mm"]
+
+
+def force_dynamics(machine):
+    """The dict that core.simulate takes for a job's ``belt_machine.force_dynamics``: s, N s2/mm, N s/mm, mm/s."""
+    given = machine["force_dynamics"]
+    dynamics = {"overshoot": float(given["overshoot_limit"]), "bounce": float(given["bounce_s"])}
+    if given["model"] != "ideal":
+        dynamics["lag"] = float(given["lag_s"])
+    if given["model"] == "actuator":
+        if not given["moving_mass_kg"] > 0.0 and not given["damping_N_s_per_mm"] > 0.0:
+            raise InputError(
+                "job.actuator_without_inertia",
+                "{key}: an actuator needs a moving mass or a damping; for a force that only lags choose the model lag",
+                key="belt_machine.force_dynamics",
+            )
+        dynamics["mass"] = TONNES_PER_KG * given["moving_mass_kg"]
+        dynamics["damping"] = float(given["damping_N_s_per_mm"])
+        dynamics["speed_limit"] = float(given["speed_limit_mm_s"])
+    return dynamics
 
 
 def engine_arguments(job):
@@ -66,6 +120,8 @@ def engine_arguments(job):
         "force": float(machine["force_N"]),
         "force_travel": float(machine["force_travel_mm"]),
         "robot_stiffness": float(machine["robot_stiffness_N_per_mm"]),
+        "force_dynamics": force_dynamics(machine),
+        "wheel_growth": 0.0 if job["law"]["model"] == "geometric" else wheel_growth(machine),
         "belt_speed": 1000.0 * machine["belt_speed_m_s"],
         "belt_wear": float(machine["belt_wear"]),
         "wear": laws.engine_wear(job["law"]),

@@ -16,6 +16,8 @@ LOOK, GLANCE = 4000, 400  # samples of a first look at the faces, and of one at 
 MOST = 400_000  # samples, of a spacing that is chosen
 COARSEST = 0.5  # mm, of a spacing that is chosen
 FINEST = 0.01
+SAMPLES_A_CELL = 1.5  # of the contact's grid, at least, each way
+CELL_ON_EDGE = 0.75  # of an edge's radius: cells with which force and removal there are within 10 %
 ACROSS_CONTACT, ACROSS_FACE = 12, 4  # spacings, of a spacing that is chosen
 LEAST_ACROSS_CONTACT, LEAST_ACROSS_FACE = 6, 3  # fewer are warned of
 CHORD = 0.1  # of the tolerance's band: between the surface and the chord from sample to sample
@@ -23,6 +25,7 @@ LEAST_CHORD = 0.5  # more is warned of
 SHARE = 0.98  # of the area: what is more curved, or narrower, is a fillet or a sliver
 TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or larger
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
+EDGE = 1e-3  # of the area: less that is sharper than the contact's cells is no edge
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
 
 
@@ -35,6 +38,11 @@ def settled(job, shape, told, context=None):
     spacing = given or chosen(job, seen)
     told += warnings(job, seen, spacing)
     return {**job, "sampling": {**job["sampling"], "spacing_mm": spacing}}, given == 0
+
+
+def by_curvature(job):
+    """Whether samples lie closer together where the faces are curved."""
+    return max(job["sampling"]["precision_mm"], job["sampling"]["edge_spacing_mm"]) > 0
 
 
 def look(job, shape, faces, context=None):
@@ -108,7 +116,7 @@ def chosen(job, seen):
     wanted = [COARSEST, seen["width"] / ACROSS_FACE]
     if seen["length"] is not None:
         wanted.append(min(seen["length"], seen["breadth"]) / ACROSS_CONTACT)
-    if upper > lower:
+    if upper > lower and not by_curvature(job):
         wanted.append(math.sqrt(8.0 * seen["radius"] * CHORD * (upper - lower)))
     least = max(math.sqrt(seen["area"] / MOST), FINEST)
     across = min(seen["length"] or math.inf, seen["breadth"] or math.inf)
@@ -143,7 +151,7 @@ def warnings(job, seen, spacing):
                     wanted=across / ACROSS_CONTACT,
                 )
             )
-        cell = max(job["belt_machine"]["contact_spacing_mm"], 1.5 * spacing)
+        cell = max(job["belt_machine"]["contact_spacing_mm"], SAMPLES_A_CELL * spacing)
         if cell * LEAST_ACROSS_CONTACT / 2.0 > across:
             found.append(
                 core.Fact(
@@ -168,7 +176,7 @@ def warnings(job, seen, spacing):
             )
         )
     chord = min(spacing / (8.0 * seen["radius"]) * spacing, seen["radius"])
-    if chord > LEAST_CHORD * (upper - lower) > 0:
+    if chord > LEAST_CHORD * (upper - lower) > 0 and not by_curvature(job):
         found.append(
             core.Fact(
                 "job.coarse_chords",
@@ -181,6 +189,33 @@ def warnings(job, seen, spacing):
             )
         )
     return found
+
+
+def edge_doubts(job, field):
+    """Facts of convex places of a job's core.HeightField that are sharper than the contact's cells are wide:
+    what is ground there is not resolved."""
+    machine = job["belt_machine"]
+    if machine["compliance"]["model"] == "geometric":
+        return []  # cuts sample by sample
+    cell = max(machine["contact_spacing_mm"], SAMPLES_A_CELL * field.spacing)
+    bend, areas = curvatures(field)
+    sharpest = bend.max(axis=1)
+    sharp = sharpest * cell > 1.0
+    if not areas[sharp].sum() > EDGE * areas.sum():
+        return []
+    radius = 1.0 / weighted_quantile(sharpest[sharp], areas[sharp], 0.5)
+    return [
+        core.Fact(
+            "job.few_cells_on_edge",
+            "the cells of the contact's grid are {cell:.3g} mm wide on an edge of radius {radius:.2g} mm: force and "
+            "removal there may be wrong by half; take {wanted:.2g} mm or less for belt_machine.contact_spacing_mm "
+            "and {samples:.2g} mm for sampling.spacing_mm, in a job of the edge's faces alone",
+            cell=cell,
+            radius=radius,
+            wanted=CELL_ON_EDGE * radius,
+            samples=CELL_ON_EDGE * radius / SAMPLES_A_CELL,
+        )
+    ]
 
 
 def curvatures(field):

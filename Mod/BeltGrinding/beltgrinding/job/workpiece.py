@@ -67,14 +67,19 @@ def make_field(job, shape, warnings, context):
     faces = check_faces(job, shape)
     if job["sampling"]["spacing_mm"] == 0:
         job, _ = spacing.settled(job, shape, warnings, context)
+    sampling = job["sampling"]
     field, report = core.sample_faces(
         shape,
         [face - 1 for face in faces],
-        job["sampling"]["spacing_mm"],
-        job["sampling"]["depth_mm"],
+        sampling["spacing_mm"],
+        sampling["depth_mm"],
         context=context,
+        precision=sampling["precision_mm"],
+        edge_spacing=sampling["edge_spacing_mm"],
     )
     warnings += report["warnings"]
+    if spacing.by_curvature(job):
+        warnings += spacing.edge_doubts(job, field)
     return field
 
 

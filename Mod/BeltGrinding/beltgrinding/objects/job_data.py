@@ -13,6 +13,8 @@ from .proxy import type_of
 KEYS = (
     Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
     Key("Spacing", "Length", "Sampling", "sampling.spacing_mm"),
+    Key("Precision", "Length", "Sampling", "sampling.precision_mm"),
+    Key("EdgeSpacing", "Length", "Sampling", "sampling.edge_spacing_mm"),
     Key("Depth", "Length", "Sampling", "sampling.depth_mm"),
     Key("ToleranceLower", "Distance", "Tolerance", "inspection.tolerance_mm.0"),
     Key("ToleranceUpper", "Distance", "Tolerance", "inspection.tolerance_mm.1"),
@@ -42,6 +44,7 @@ KEYS = (
     Key("WearRest", "Float", "Wear", "law.wear.rest"),
     Key("WearFirstShare", "Float", "Wear", "law.wear.first_share"),
     Key("WearFirstScale", "Float", "Wear", "law.wear.first_scale"),
+    Key("WearExponent", "Float", "Wear", "law.wear.exponent"),
     Key("WearCurve", "VectorList", "Wear", "law.wear.curve"),
     Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
     Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),

@@ -6,6 +6,7 @@ import tempfile
 
 import numpy as np
 
+from ..base import schemas
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs
 from ..job.poses import list_poses
@@ -27,6 +28,14 @@ def without_geometry(job):
     data["design"].update(flips(job))
     data.update(required(job, BeltMachine, "belt machine").Proxy.to_job(child(job, BeltMachine)))
     return data
+
+
+def belt_machine(job):
+    """The part of a job under 'belt_machine', with its defaults. Raises InputError."""
+    machine = required(job, BeltMachine, "belt machine")
+    given = machine.Proxy.to_job(child(job, BeltMachine))["belt_machine"]
+    rule = schemas.schema("job")["properties"]["belt_machine"]
+    return schemas.checked(given, rule, "belt_machine")
 
 
 def without_programs(job, folder):

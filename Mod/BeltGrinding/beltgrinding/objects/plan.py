@@ -245,7 +245,7 @@ def _left(plan):
     left = triangles[(states[triangles] != 0).sum(axis=1) > 1]
     used, numbers = np.unique(left, return_inverse=True)
     points = np.asarray(field.points)[used] + (
-        np.asarray(field.height, dtype=float)[used, None] * np.asarray(field.normals)[used]
+        np.asarray(field.height, dtype=float)[used, None] * np.asarray(field.rays)[used]
     )
     return points, numbers.reshape(-1, 3), states[used]
 

@@ -30,7 +30,7 @@ class Reader:
                 )
             self.shown = shown
             heights = self.field.height[:, None]
-            self.tops = self.field.points + heights * self.field.normals
+            self.tops = self.field.points + heights * self.field.rays
 
     def at(self, point):
         """The reading of the sample nearest to ``point`` (x, y, z in mm, work frame) on the ground

@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from ..engine import InputError
-from ..inspection import section as sections
+from ..inspection import edge_profile, section as sections
 from .fields import field_of
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -28,6 +28,9 @@ OUTPUTS = (
     Output("RootMeanSquare", "Distance", "Figures", "of the deviation, by length"),
     Output("RemovedMean", "Distance", "Figures", "depth removed, by length"),
     Output("InTolerance", "Float", "Figures", "share of the length in tolerance, percent"),
+    Output(
+        "Edges", "StringList", "Figures", "radius left and chord loss at each edge that it meets"
+    ),
     Output("OutOfDate", "Bool", "Figures", "an input of the simulation has changed since"),
     Output("Problem", "String", "Figures", "why there is no section; else empty"),
     Output("Line", "VectorList", "Section", "the ground profile in space", True),
@@ -107,9 +110,10 @@ def show(obj, section):
     obj.Minimum, obj.Maximum = deviation.get("min", 0.0), deviation.get("max", 0.0)
     obj.Mean, obj.RootMeanSquare = deviation.get("mean", 0.0), deviation.get("rms", 0.0)
     obj.RemovedMean = figures.get("removed_mean_mm", 0.0)
+    obj.Edges = [edge_profile.text(edge) for edge in figures.get("edges", [])]
     obj.InTolerance = 100.0 * figures.get("in_tolerance_share", 0.0)
     lines = [
-        piece["point"] + np.nan_to_num(piece["height"])[:, None] * piece["normal"]
+        piece["point"] + np.nan_to_num(piece["height"])[:, None] * piece["ray"]
         for piece in section["pieces"]
     ]
     obj.LineCounts = [len(line) for line in lines]

@@ -108,6 +108,11 @@ class Commands:
                     greatest[own] = max(1.0, settings["force_max_N"] / reference)
         return least, greatest
 
+    def presses(self):
+        """Whether forces may change."""
+        least, greatest = self.force_range
+        return bool((greatest > least).any())
+
     def force(self, factors):
         """(commands,) N: the greatest of a command's motions, with factors (commands,)."""
         found = np.zeros(len(self))

@@ -134,11 +134,12 @@ def _others(one):
             share = shares["slowest_feed"]
             found.append((share, "repeats", {**wanted, "repeats": repeats}))
     width = laid["contact_width_mm"]
-    between = shares["shared"] + shares["border"]
+    between = shares["shared"] + shares["fringe"] + shares["border"]
     closer = CLOSER * laid["step_over_mm"]
     if between > MATTERS and len(laid["frames"]) / CLOSER <= MOST_POSES:
         if width is None or closer >= CLOSEST * width:
-            found.append((shares["shared"], "step_over", {**wanted, "step_over_mm": closer}))
+            share = shares["shared"] + shares["fringe"]
+            found.append((share, "step_over", {**wanted, "step_over_mm": closer}))
     if shares["border"] > MATTERS:
         length = laid["contact_length_mm"]
         for run_out in (0.25 * length, -0.25 * length):

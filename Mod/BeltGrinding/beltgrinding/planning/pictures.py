@@ -19,6 +19,7 @@ INSIDE = 0xDDE3E8FF  # in tolerance
 COLOURS = {  # of the reasons, 0xRRGGBBAA
     reasons.NOT_REACHED: 0xB39DDBFF,
     reasons.NO_ROOM: 0x7A1FA2FF,
+    reasons.FRINGE: 0xCE93D8FF,
     reasons.BORDER: 0x00897BFF,
     reasons.SLOWEST: 0xE65100FF,
     reasons.FASTEST: 0x1565C0FF,
@@ -33,6 +34,7 @@ WORDS = {
     "why": "why it stays out of tolerance",
     "no_motion": "no motion removes anything there",
     "no_room": "the wheel does not fit there",
+    "fringe": "beside what no motion reaches",
     "border": "along the border of the faces",
     "slowest_feed": "too much left at the least feed",
     "fastest_feed": "cut too deep at the greatest feed",

@@ -10,9 +10,11 @@ from ..raster.clearing import Clearing
 from . import limits
 
 GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED, NO_ROOM, PRESSURE, CHANGE = range(10)
+FRINGE = 10
 WORDS = {
     NOT_REACHED: "no_motion",  # none removes anything there, though the wheel fits
     NO_ROOM: "no_room",  # none does, and the wheel would stand in the part there, however its belt travels
+    FRINGE: "fringe",  # too much is left beside where none does: the contact fades out
     BORDER: "border",  # within a contact's half width of the border of the faces
     SLOWEST: "slowest_feed",  # too much is left, and its motions go as slowly, and press as hard, as they may
     FASTEST: "fastest_feed",  # it is cut too deep, and its motions go as fast, and press as little, as they may
@@ -68,8 +70,32 @@ def find(result, commands, feeds, factors, settings, context=None):
     missed = seen & (state == NOT_REACHED)
     if areas[missed].sum() > LEAST * whole:
         state[_without_room(result.job, field, np.flatnonzero(missed), context)] = NO_ROOM
+        left = np.flatnonzero(above & (state == SHARED))
+        if len(left):  # so that some motion removes something
+            reach = _half_width(influence, areas)
+            state[left[_beside(field, left, np.flatnonzero(missed), reach)]] = FRINGE
     shares = {word: float(areas[seen & (state == k)].sum() / whole) for k, word in WORDS.items()}
     return {"state": state, "reached": total > 0.0, "shares": shares}
+
+
+def _half_width(influence, areas):
+    """mm, of a motion's contact: the radius of a disc as large as where it removes half of its most; the median."""
+    motions = np.repeat(np.arange(len(influence)), np.diff(influence.first.astype(int)))
+    most = np.zeros(len(influence))
+    np.maximum.at(most, motions, influence.depth)
+    half = influence.depth >= 0.5 * most[motions]
+    pressed = np.bincount(motions[half], areas[influence.sample[half]], len(influence))
+    return float(np.sqrt(np.median(pressed[pressed > 0.0]) / np.pi))
+
+
+def _beside(field, places, others, reach):
+    """(places,) bool: within ``reach`` mm of one of the samples ``others``."""
+    points = np.asarray(field.points, dtype=float)
+    low, high = points[places].min(axis=0) - reach, points[places].max(axis=0) + reach
+    within = ((points[others] >= low) & (points[others] <= high)).all(axis=1)
+    if not within.any():
+        return np.zeros(len(places), dtype=bool)
+    return reachable.nearest_distance(points[places], points[others[within]]) <= reach
 
 
 def _without_room(job, field, places, context):

@@ -24,10 +24,13 @@ from .commands import Commands
 from .step import SAME, feed_exponent, figures, following
 
 STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
+FEEDS_ONLY = 2  # rounds, in which forces change where feeds are at their limits: larger steps than both at once
 STALLED = 2  # rounds without a gain
 CHECKS = 16.0  # simulations' time: two runs at half the spacing and step
 WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
+FARTHER = 2.0  # times what a round may change, after one that was better
+NEARER_BY = 0.5  # after another
 LOWERED = 6  # simulations, at most, in which forces are lowered to the limit of pressure
 PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 
@@ -92,12 +95,13 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)
     feeds, factors, rounds, best = old, np.ones(len(commands)), [], None
-    before, stalled = None, 0
+    before, stalled, reach = None, 0, 1.0
+    with_forces = commands.presses()
     for number in range(tries):
         begun = time.perf_counter()
         part = context.part(number / whole, (number + 1) / whole)
         tried = commands.with_feeds(feeds, factors)
-        result = runs.run(tried, part, influence=True, shifts=True)
+        result = runs.run(tried, part, influence=True, shifts=True, forces=with_forces)
         one = figures(result, settings)
         rounds.append(one)
         if before is None:
@@ -105,15 +109,29 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         before = before or result
         stalled = 0 if best is None or _gains(one, best["figures"], settings) else stalled + 1
         if best is None or _better(one, best["figures"], settings):
+            if best is not None and best["result"] is not before:
+                best["result"].influence = best["result"].force_influence = None
             best = _tried(one, feeds, factors, result, tried)
+            reach = min(1.0, FARTHER * reach)
+        else:
+            result.influence = result.force_influence = None
+            reach *= NEARER_BY
         ends = number + 1 == tries or stalled >= STALLED
         if number == 0 and start is not None and not ends:
             feeds, factors = start
         elif not ends:
-            feeds, factors, found = following(commands, result, feeds, factors, settings, context)
+            feeds, factors, found = following(
+                commands,
+                best["result"],
+                best["feeds"],
+                best["factors"],
+                settings,
+                context,
+                forces=with_forces and number >= FEEDS_ONLY,
+                reach=reach,
+            )
             one.update(found)
         one["seconds"] = time.perf_counter() - begun
-        result.influence = result.influence if result is best["result"] else None
         if told is not None:
             told(one)
         if ends:

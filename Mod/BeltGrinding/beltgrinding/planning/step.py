@@ -6,7 +6,8 @@ import numpy as np
 
 from ..engine import core
 from ..inspection import verdict as verdicts
-from . import limits, sure
+from . import limits, sure, with_force
+from .thinning import Thinned
 
 SAME = 1e-9  # relative, of a feed or a force
 HURRIED = {"inner_share": 0.7, "inner_cost": 0.1}  # of the band; of what deviations cost beyond
@@ -45,74 +46,87 @@ def figures(result, settings):
     return {**found, **sure.figures(result, settings), **limits.figures(result, settings)}
 
 
-def following(commands, result, feeds, factors, settings, context, time_cost=None):
+class _Seen:
+    """What a simulation of a job says for the next round."""
+
+    def __init__(self, commands, result, feeds, factors, settings):
+        self.commands, self.result, self.settings = commands, result, settings
+        self.feeds, self.factors = feeds, factors
+        lower, upper = verdicts.limits(result.job, result.field)
+        self.half = 0.5 * (upper - lower) * np.ones(result.field.size)  # mm
+        # mm from the middle of the band
+        self.deviation = np.asarray(result.field.height, dtype=float) - 0.5 * (lower + upper)
+        self.weight = sure.seen_areas(result.field)
+        self.influence = result.influence.grouped(commands.group, len(commands))
+        self.power = 1.0 - feed_exponent(result.job)  # removed depth goes with the time to this
+        self.alpha = force_exponent(result.job)
+        self.least, greatest = commands.force_range
+        most = limits.greatest_factors(result, commands, factors, settings)
+        self.greatest = np.maximum(np.minimum(greatest, most), self.least)
+        self._thinned = Thinned(result.field, result.job, self.weight)
+        self._influence = self.thinned(self.influence)  # the solver's
+        self.moved = (np.diff(self._influence.first.astype(int)) > 0) & ~commands.kept
+
+    def solver(self):
+        """(influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver."""
+        thinned, band = self._thinned, sure.band(self.result, self.settings, self.half)
+        kept = thinned.kept
+        return self._influence, self.deviation[kept], band[kept], thinned.weight
+
+    def thinned(self, influence):
+        return self._thinned.influence(influence, len(self.half))
+
+    def by_force(self):
+        """(commands,) core.Influence, mm per relative change of force."""
+        return self.result.force_influence.grouped(self.commands.group, len(self.commands))
+
+    def within(self, low, high, most):
+        """Ranges (commands,) twice of a factor, by no more than the factor ``most`` from 1; 1 of what may not change."""
+        low, high = (np.clip(one, 1.0 / most, most) for one in (low, high))
+        low = np.minimum(low, high)
+        low[~self.moved] = high[~self.moved] = 1.0
+        return low, high
+
+
+def following(
+    commands, result, feeds, factors, settings, context, time_cost=None, forces=False, reach=1.0
+):
     """(feeds (commands,) and factors on forces (commands,) for the next round, what is told of it).
 
     ``time_cost``: mm2 that a second of the process costs; None: only deviations count. Where time counts, deviations
-    within the band hardly do, and forces rather than slow feeds do what is to be done.
+    within the band hardly do, and forces rather than slow feeds do what is to be done. ``forces``: forces are planned
+    with the feeds, by the result's ``force_influence``; else they change where feeds are at their limits. ``reach``: of
+    what a round may change, on a logarithmic scale.
     """
     begun = time.perf_counter()
-    field, job = result.field, result.job
-    lower, upper = verdicts.limits(job, field)
-    height = np.asarray(field.height, dtype=float)
-    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    weight = sure.seen_areas(field)
-    influence = result.influence.grouped(commands.group, len(commands))
-    power = 1.0 - feed_exponent(job)  # removed depth goes with the time to this power
-    alpha = force_exponent(job)
-    least, greatest = commands.force_range
-    greatest = np.maximum(
-        np.minimum(greatest, limits.greatest_factors(result, commands, factors, settings)), least
-    )
-    # How much a command removes, at first order, against the job's: by its time and its force.
-    given = (commands.feed() / feeds) ** power * factors**alpha
-    slowest = (commands.feed() / settings["feed_min_mm_s"]) ** power * greatest**alpha / given
-    fastest = (commands.feed() / settings["feed_max_mm_s"]) ** power * least**alpha / given
-    change = settings["most_change"]
-    slowest, fastest = (np.clip(a, 1.0 / change, change) for a in (slowest, fastest))
-    fastest = np.minimum(fastest, slowest)
-    moved = np.asarray(np.diff(influence.first.astype(int)) > 0) & ~commands.kept
-    fastest[~moved] = slowest[~moved] = 1.0
-    solver, costs = {"smoothing": settings["smoothing"]}, np.zeros(0)
-    if time_cost is not None:
-        solver.update(HURRIED)
-        costs = time_cost * commands.seconds(feeds)
-    found = core.plan_dwell(
-        influence,
-        height - middle,
-        sure.band(result, settings, half),
-        weight,
-        fastest,
-        slowest,
-        1.0 / feeds,
-        solver,
-        context.part(0.0, 0.0),
-        costs,
-    )
-    # The feed does what it can, from the job's own force or, in a hurry, from the greatest; the force the rest.
-    wanted = given * found["factor"]
-    pressed = greatest if time_cost is not None else np.ones(len(wanted))
-    new = commands.feed() * (pressed**alpha / wanted) ** (1.0 / power)
-    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
-    rest = wanted * (new / commands.feed()) ** power
-    force = np.clip(rest ** (1.0 / alpha), least, greatest)
+    seen = _Seen(commands, result, feeds, factors, settings)
+    if forces:
+        new, force, found = _feeds_and_forces(seen, reach, context)
+    else:
+        new, force, found = _feeds_first(seen, time_cost, reach, context)
     force[abs(force - 1.0) <= SAME] = 1.0
-    new, force = np.where(moved, new, feeds), np.where(moved, force, factors)
-    matter = _matter(influence, weight)
+    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
+    new, force = np.where(seen.moved, new, feeds), np.where(seen.moved, force, factors)
+    matter = with_force.energy(seen.influence, seen.weight)
     new = limits.feeds(commands, new, matter, settings)
     force = limits.factors(commands, force, matter, new, settings)
     # What the feeds and forces in the end should do: limits may have changed them.
-    done = (feeds / new) ** power * (force / factors) ** alpha
-    excess = height - middle - _removed(influence, done - 1.0, len(height))
-    inside = abs(excess) <= half
-    predicted = sure.figures(result, settings, middle + excess)
+    longer = (feeds / new) ** seen.power
+    if forces:
+        excess = seen.deviation - _removed(seen.influence, longer - 1.0, len(seen.half))
+        excess -= _removed(seen.by_force(), force / factors - 1.0, len(seen.half))
+    else:
+        done = longer * (force / factors) ** seen.alpha
+        excess = seen.deviation - _removed(seen.influence, done - 1.0, len(seen.half))
+    inside = abs(excess) <= seen.half
+    height = np.asarray(result.field.height, dtype=float) - seen.deviation + excess
+    predicted = sure.figures(result, settings, height)
+    share = float(seen.weight[inside].sum() / seen.weight.sum())
     return (
         new,
         force,
         {
-            "predicted_in_tolerance": sure.share(
-                {"in_tolerance": float(weight[inside].sum() / weight.sum()), **predicted}
-            ),
+            "predicted_in_tolerance": sure.share({"in_tolerance": share, **predicted}),
             "residual": found["residual"],
             "iterations": found["iterations"],
             "planning_seconds": time.perf_counter() - begun,
@@ -120,14 +134,63 @@ def following(commands, result, feeds, factors, settings, context, time_cost=Non
     )
 
 
-def _matter(influence, weight):
-    """(commands,) mm4: of each command, the square of what it removes, over the area."""
-    depth = np.asarray(influence.depth, dtype=float)
-    sums = np.append(0.0, np.cumsum(depth**2 * weight[np.asarray(influence.sample)]))
-    return np.diff(sums[np.asarray(influence.first).astype(int)])
+def _feeds_first(seen, time_cost, reach, context):
+    """(feeds mm/s, factors on forces (commands,), what the solver tells): the feed does what it can, from the job's own
+    force or, in a hurry, from the greatest; the force the rest, as much more as the law has it.
+    """
+    commands, settings, feeds = seen.commands, seen.settings, seen.feeds
+    power, alpha, own = seen.power, seen.alpha, seen.commands.feed()
+    # How much a command removes, at first order, against the job's: by its time and its force.
+    given = (own / feeds) ** power * seen.factors**alpha
+    slowest = (own / settings["feed_min_mm_s"]) ** power * seen.greatest**alpha / given
+    fastest = (own / settings["feed_max_mm_s"]) ** power * seen.least**alpha / given
+    fastest, slowest = seen.within(fastest, slowest, settings["most_change"] ** reach)
+    solver = {"smoothing": settings["smoothing"], "accuracy": with_force.ACCURACY}
+    costs = np.zeros(0)
+    if time_cost is not None:
+        solver.update(HURRIED)
+        costs = time_cost * commands.seconds(feeds)
+    found = core.plan_dwell(
+        *seen.solver(),
+        fastest,
+        slowest,
+        1.0 / feeds,
+        solver,
+        context.part(0.0, 0.0),
+        costs,
+    )
+    wanted = given * found["factor"]
+    pressed = seen.greatest if time_cost is not None else np.ones(len(wanted))
+    new = own * (pressed**alpha / wanted) ** (1.0 / power)
+    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
+    rest = wanted * (new / own) ** power
+    return new, np.clip(rest ** (1.0 / alpha), seen.least, seen.greatest), found
+
+
+def _feeds_and_forces(seen, reach, context):
+    """As ``_feeds_first``, both at once."""
+    settings, feeds, factors = seen.settings, seen.feeds, seen.factors
+    slowest = (feeds / settings["feed_min_mm_s"]) ** seen.power
+    fastest = (feeds / settings["feed_max_mm_s"]) ** seen.power
+    most = min(settings["most_change"], with_force.MOST_TIME) ** reach
+    strongest = min(settings["most_change"], with_force.MOST_FORCE) ** reach
+    influence, *places = seen.solver()
+    longer, stronger, found = with_force.solve(
+        influence,
+        seen.thinned(seen.by_force()),
+        *places,
+        with_force.Ranges(
+            *seen.within(fastest, slowest, most),
+            *seen.within(seen.least / factors, seen.greatest / factors, strongest),
+        ),
+        (1.0 / feeds, factors),
+        settings["smoothing"],
+        context.part(0.0, 0.0),
+    )
+    return feeds / longer ** (1.0 / seen.power), factors * stronger, found
 
 
 def _removed(influence, share, samples):
     """(samples,) mm that motions remove which take so much longer."""
     each = np.repeat(share, np.diff(influence.first).astype(int))
-    return np.bincount(np.asarray(influence.sample), each * np.asarray(influence.depth), samples)
+    return np.bincount(influence.sample, each * influence.depth, samples)

@@ -1,12 +1,13 @@
-"""Presets of wheels, belts, materials and robots, and rubber's modulus.
+"""Presets of wheels, belts, materials, robots and force controls, and rubber's modulus.
 
 What a macro calls; the modules import each other, not this.
 """
 
-from .library import apply, belts, materials, problems, robots, settings, wheels
+from .library import actuators, apply, belts, materials, problems, robots, settings, wheels
 from .rubber import shore_to_modulus
 
 __all__ = [
+    "actuators",
     "apply",
     "belts",
     "materials",

@@ -1,4 +1,4 @@
-"""Presets of contact wheels, belts, materials and robots: plain data, every number with its unit and
+"""Presets of contact wheels, belts, materials, robots and force controls: plain data, every number with its unit and
 its source (Resources/presets, and the user's own files; presets.schema.json).
 """
 
@@ -17,6 +17,7 @@ from . import robot_model
 from .rubber import cite, modulus, shore_to_modulus, spread_text
 
 __all__ = [
+    "actuators",
     "apply",
     "belts",
     "materials",
@@ -27,7 +28,7 @@ __all__ = [
     "wheels",
 ]
 
-KINDS = ("wheels", "belts", "materials", "robots")
+KINDS = ("wheels", "belts", "materials", "robots", "actuators")
 LABELS = {
     "shore_a": "hardness",
     "youngs_modulus": "Young's modulus",
@@ -49,6 +50,18 @@ JOB_KEYS = {
     "bending_stiffness": ("belt_machine.compliance.belt_bending_N_mm", 1.0),
     "belt_speed": ("belt_machine.belt_speed_m_s", 1.0),
     "heat_limit": ("law.heat_limit_MPa_m_s", 1.0),
+    "lag": ("belt_machine.force_dynamics.lag_s", 1.0),
+    "moving_mass": ("belt_machine.force_dynamics.moving_mass_kg", 1.0),
+    "damping": ("belt_machine.force_dynamics.damping_N_s_per_mm", 1.0),
+    "speed_limit": ("belt_machine.force_dynamics.speed_limit_mm_s", 1.0),
+}
+# What a force control's preset sets besides its numbers: what it has no number for is not there.
+ACTUATOR = {
+    "belt_machine.force_dynamics.model": "actuator",
+    "belt_machine.force_dynamics.lag_s": 0.0,
+    "belt_machine.force_dynamics.moving_mass_kg": 0.0,
+    "belt_machine.force_dynamics.damping_N_s_per_mm": 0.0,
+    "belt_machine.force_dynamics.speed_limit_mm_s": 0.0,
 }
 
 
@@ -59,6 +72,7 @@ class Library(NamedTuple):
     belts: list
     materials: list
     robots: list
+    actuators: list
     problems: list
 
 
@@ -75,7 +89,7 @@ def user_folder():
 
 def library():
     """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
-    found = Library([], [], [], [], [])
+    found = Library([], [], [], [], [], [])
     rules = schemas.schema("presets")
     files = [
         *sorted((resources() / "presets").glob("*.json")),
@@ -188,6 +202,11 @@ def robots():
     return library().robots
 
 
+def actuators():
+    """Presets of force controls that take time: as ``wheels``, with lag, moving_mass, damping, speed_limit."""
+    return library().actuators
+
+
 def problems():
     """What is wrong with the files of presets: a list of InputError naming file and key."""
     return library().problems
@@ -203,16 +222,19 @@ def middle(number):
     return number["value"] if "value" in number else sum(number["range"]) / 2.0
 
 
-def settings(wheel=None, belt=None, material=None):
+def settings(wheel=None, belt=None, material=None, actuator=None):
     """{dotted key of a job: value} of what the presets say; each an id or a preset. Only keys that
     jobs have; the modulus follows from the hardness unless the preset gives it. Raises InputError.
     """
     found, known = {}, schemas.schema("job")
-    for kind, preset in zip(KINDS, (wheel, belt, material)):
+    chosen = {"wheels": wheel, "belts": belt, "materials": material, "actuators": actuator}
+    for kind, preset in chosen.items():
         if preset is None:
             continue
         if isinstance(preset, str):
             preset = find(kind, preset)
+        if kind == "actuators":
+            found.update(ACTUATOR)
         for name, number in numbers(preset).items():
             if name in JOB_KEYS:
                 key, factor = JOB_KEYS[name]
@@ -230,10 +252,10 @@ def _is_known(key, rules):
     return True
 
 
-def apply(job, wheel=None, belt=None, material=None):
+def apply(job, wheel=None, belt=None, material=None, actuator=None):
     """A copy of the job (a dict) with what the presets say put in. Raises InputError."""
     job = copy.deepcopy(job)
-    for key, value in settings(wheel, belt, material).items():
+    for key, value in settings(wheel, belt, material, actuator).items():
         *path, last = key.split(".")
         node = job
         for part in path:

@@ -30,7 +30,7 @@ SAGITTA = 0.3  # mm that a rim gives way to a surface hollow across its width
 RIM_SHARE, RIM_MOST = 0.3, 15.0  # the rubber's thickness: of the radius; mm
 FORCE_PER_WIDTH = 1.5  # N/mm
 FORCES = (10.0, 60.0)  # N, chosen; a feed out of its range moves it, up to
-FORCE_MOST = 120.0  # N
+FORCE_LEAST, FORCE_MOST = 1.0, 120.0  # N
 APPROACH_FEED = 200.0  # mm/s: the force presses on the way down, too
 FEEDS = (2.0, 150.0)  # mm/s that robots follow evenly
 STEP_SHARE = 0.5  # of the contact's width: every place lies under two passes
@@ -68,7 +68,8 @@ def propose(job, context=None):
     feed = _feed(job, settings, laid, allowance)
     if feed is not None and not FEEDS[0] <= feed <= FEEDS[1]:
         bound = min(max(feed, FEEDS[0]), FEEDS[1])
-        force = machine["force_N"] = _round(min(force * bound / feed, FORCE_MOST))
+        force = min(max(force * bound / feed, FORCE_LEAST), FORCE_MOST)
+        force = machine["force_N"] = _round(force)
         laid = raster(job, settings, context)
         feed = _feed(job, settings, laid, allowance)
         if not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]:
@@ -88,7 +89,9 @@ def propose(job, context=None):
         "force_N": force,
         "direction": along.tolist(),
         "step_over_share": STEP_SHARE,
-        "feed_mm_s": _round(feed) if feed is not None else settings["feed_mm_s"],
+        "feed_mm_s": settings["feed_mm_s"]
+        if feed is None or not math.isfinite(feed)
+        else _round(feed),
         "approach_feed_mm_s": APPROACH_FEED,
         "spacing_mm": spacing,
         "samples": samples,

@@ -116,6 +116,7 @@ def process(job, summary, words):
             "force control, {force} N unless the program says otherwise",
             force=words.figures(machine["force_N"]),
         )
+        control += _dynamics(machine.get("force_dynamics", {}), words)
     elif machine["robot_stiffness_N_per_mm"]:
         control = words(
             "position control, robot stiffness {stiffness} N/mm",
@@ -123,6 +124,8 @@ def process(job, summary, words):
         )
     else:
         control = words("position control, rigid robot")
+    if grown := summary.get("wheel_growth_mm"):
+        control += "; " + words("the rim grown by {mm} mm by its rotation", mm=words.figures(grown))
     cut = words.percent(summary.get("belt", {}).get("remaining_cut"), 0)
     holding = job["cell"]["holding"]
     rows += [
@@ -152,6 +155,22 @@ def _robot(robot, words):
     return words("a robot of one's own") if own else words("not given; its reach is not checked")
 
 
+def _dynamics(dynamics, words):
+    """Behind the control: how quickly the force is met, if not at every moment."""
+    model = dynamics.get("model", "ideal")
+    if model == "ideal":
+        return ""
+    lag = words.figures(dynamics["lag_s"])
+    if model == "lag":
+        return "; " + words("the force lags by {lag} s", lag=lag)
+    return "; " + words(
+        "moves {mass} kg with a damping of {damping} N s/mm, lag {lag} s",
+        damping=words.figures(dynamics["damping_N_s_per_mm"]),
+        mass=words.figures(dynamics["moving_mass_kg"]),
+        lag=lag,
+    )
+
+
 def _elasticity(compliance, words):
     text = words(ELASTICITY[compliance["model"]])
     if compliance["model"] in ("wheel_rim", "bonded_layer") and not compliance["layers"]:
@@ -162,6 +181,11 @@ def _elasticity(compliance, words):
         )
     elif compliance["layers"]:
         text += ", " + words("{count} layers", count=len(compliance["layers"]))
+    factor = compliance.get("dynamic_modulus_factor", 1.0)
+    if factor != 1.0:
+        text += "; " + words(
+            "{factor} times as stiff under the quick contact", factor=words.figures(factor)
+        )
     return text
 
 

@@ -34,7 +34,7 @@ def zones(verdict, words):
                 *_figures(zone, words),
             )
         )
-    return [table(heads, rows, "list faces"), _thickness(found, words)]
+    return [table(heads, rows, "list faces"), _thickness(found, words), _edges(found, words)]
 
 
 def faces(verdict, words):
@@ -89,6 +89,38 @@ def mark(verdict, words):
 
 def _wave(wave, words):
     return words.number(1000.0 * wave["Wt_mm"], 1) if wave else words.number(None)
+
+
+def _edges(found, words):
+    """The table of edge zones' profiles."""
+
+    def span(figures):
+        if not figures:
+            return "–"
+        return f"{words.number(figures['min'], 3)} … {words.number(figures['max'], 3)}"
+
+    rows = [
+        (
+            zone["name"],
+            words.whole(zone["edge"]["sections"]),
+            *(
+                span(zone["edge"][name])
+                for name in ("design_radius_mm", "radius_mm", "chord_loss_mm")
+            ),
+        )
+        for zone in found
+        if zone.get("edge")
+    ]
+    if not rows:
+        return None
+    heads = [
+        (words("Zone"), ""),
+        (words("Sections"), "number"),
+        (words("design's radius, mm"), "number"),
+        (words("radius left, mm"), "number"),
+        (words("chord loss, mm"), "number"),
+    ]
+    return [element("h3", words("Edges")), table(heads, rows, "list faces")]
 
 
 def _thickness(found, words):

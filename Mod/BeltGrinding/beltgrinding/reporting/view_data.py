@@ -24,6 +24,7 @@ MOST_BYTES = 5_000_000  # of the packed arrays as text
 CHORD = 4e-4  # chord error of the rest of the part, of its diagonal
 COARSER = 2.5
 MOST_FACES = 500
+LEANS = 1.001  # a ray's length, where it is told
 ASKED = 20  # faces, whether they bound a solid
 MOST_MOMENTS = 4000  # of the wheel's way
 SHORTEST = 0.02  # s between two of them
@@ -59,12 +60,15 @@ def _made(content, scale, spots, sides, rest, most, words, context):
     known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
     worst = [*(spot["sample"] for spot in spots), int(known.argmin()), int(known.argmax())]
     chosen, triangles, outline = _mesh(field, most, worst)
-    points, directions = field.points[chosen], field.normals[chosen]
+    points, rays = field.points[chosen], field.rays[chosen]
+    longer = np.linalg.norm(rays, axis=1)
     corners, normals, faces = rest
     low, high = (f(np.vstack([points, corners]), axis=0) for f in (np.min, np.max))
 
     packed.add("points", view_mesh.in_box(points, low, high), "u2")
-    packed.add("normals", view_mesh.octahedral(directions), "u1")
+    packed.add("normals", view_mesh.octahedral(rays), "u1")
+    if longer.max(initial=1.0) > LEANS:
+        packed.add("cosines", np.round(255.0 / longer), "u1")
     view_mesh.add_triangles(packed, "triangles", triangles)
     packed.add("borders", outline, "u4")
     packed.add("rest.points", view_mesh.in_box(corners, low, high), "u2")

@@ -7,13 +7,11 @@ the first three columns: XYZ, ASC, TXT, CSV, PTS). Alignment is by the extension
 
 import json
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 
 from ..base.files import json_bytes
-from ..engine import InputError, core
+from ..engine import InputError, core, library
 from ..job import workpiece
 from . import file as scan_file, start as scan_start, trust
 
@@ -29,11 +27,8 @@ PLAIN_SD = 0.02  # mm at the part's radius: a freedom that is known worse is tol
 
 def extension():
     """The module ``beltgrinding_scan``. Raises InputError saying what is missing."""
-    beside = str(Path(core.__file__).parent)  # built and installed with the core
-    if beside not in sys.path:
-        sys.path.append(beside)
     try:
-        import beltgrinding_scan
+        return library.extension("beltgrinding_scan")
     except ImportError as error:
         raise InputError(
             "scan.no_module",
@@ -42,7 +37,6 @@ def extension():
             "is installed",
             reason=error,
         ) from None
-    return beltgrinding_scan
 
 
 def datum(result, faces=None, context=None):
@@ -86,7 +80,7 @@ def datum(result, faces=None, context=None):
         field = result.field
         keep = np.isin(field.faces, predicted) & ((np.asarray(field.flags) & core.MISSED) == 0)
         upwards = np.asarray(field.normals, dtype=float)[keep]
-        points.append(field.points[keep] + field.height[keep, None] * upwards)
+        points.append(field.points[keep] + field.height[keep, None] * field.rays[keep])
         normals.append(upwards)
     return {
         "points": np.concatenate(points),
@@ -235,7 +229,7 @@ def measure(field, scan, work_from_scan, search_mm=None):
     if scan.triangles is None:
         return np.asarray(
             extension().measure_cloud(
-                moved, field.points, field.normals, np.asarray(field.height), search_mm
+                moved, field.points, field.rays, np.asarray(field.height), search_mm
             )
         )
     target = field.copy()

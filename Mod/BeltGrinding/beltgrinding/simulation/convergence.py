@@ -100,6 +100,9 @@ def scaled(job, level, only=None):
         if only is None or name == only:
             for part, key in keys:
                 job[part][key] *= factor
+    if only in (None, "spacing"):  # chords bulge by the square of their length
+        job["sampling"]["edge_spacing_mm"] *= factor
+        job["sampling"]["precision_mm"] *= factor**2
     return job
 
 

@@ -29,8 +29,9 @@ class Result:
     as in summary.json and events.json), ``steps`` (dict of arrays, one value per step, or None),
     ``recording`` (core.Recording of the heights, or None), ``convergence`` (dict as in
     convergence.json, or None), ``motions`` (as ``motions.of_paths`` gives them, or None), ``verdict``
-    (dict as in verdict.json, or None), ``influence`` (core.Influence) and
-    ``shifts`` ((samples, shifted laws) mm), both only of a run that was asked for them.
+    (dict as in verdict.json, or None), ``influence``, ``force_influence``
+    (core.Influence; mm, mm per relative change of the force) and ``shifts`` ((samples, shifted laws) mm), all only of a run that
+    was asked for them.
     """
 
     VERDICT = "verdict.json"
@@ -40,6 +41,7 @@ class Result:
     motions = None
     verdict = None
     influence = None
+    force_influence = None
     shifts = None
 
     def __init__(self, job, field, summary, events, steps, recording=None):

@@ -35,18 +35,19 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None, recording=None, early=None, influence=False, shifts=False):
+def run(job, context=None, recording=None, early=None, influence=False, shifts=False, forces=False):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
     with a list of the first of its warnings before anything is ground; ``influence``: the result has a
-    core.Influence, what every motion of all programs removed where; ``shifts``: it has what laws would have removed
+    core.Influence, what every motion of all programs removed where; ``forces``: and ``force_influence``, mm that each would
+    remove more per relative change of its force; ``shifts``: it has what laws would have removed
     more that are a standard deviation off (``law.shifted_laws``).
     """
     warnings = []
     phases = _Phases()
     try:
         context = context or core.RunContext()
-        result, by_law = _run(job, context, warnings, recording, phases, early, influence)
+        result, by_law = _run(job, context, warnings, recording, phases, early, influence, forces)
         result.shifts = by_law if shifts else None
         return result
     except MemoryError:
@@ -84,7 +85,7 @@ def _out_of_memory(ended):
     )
 
 
-def _run(job, context, warnings, recording, phases, early, influence):
+def _run(job, context, warnings, recording, phases, early, influence, forces):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
@@ -113,11 +114,16 @@ def _run(job, context, warnings, recording, phases, early, influence):
         early(list(warnings))
 
     removed = core.Influence() if influence else None
+    pressed = core.Influence() if forces else None
+    speed_effects = _speed_effects(job, options)
     options.update(
-        first_motion=0, influence=influence, lower_limits=verdicts.lower_limits(job, field)
+        first_motion=0,
+        influence=influence,
+        force_influence=forces,
+        lower_limits=verdicts.lower_limits(job, field),
     )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
-    found, steps, process_time, models = [], None, 0.0, {}
+    found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}
     for i, path in enumerate(paths):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
@@ -132,11 +138,14 @@ def _run(job, context, warnings, recording, phases, early, influence):
         found.append((i, process_time, sum(lists, result["events"])))
         if influence:
             removed.append(result["influence"])
+        if forces:
+            pressed.append(result["force_influence"])
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
         rows["time"] = rows["time"] + process_time
         steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
         process_time += result["process_time"]
+        lost += result["lost_volume"]
         options["belt"] = result["belt"]
         options["first_motion"] += len(path)
         shifts += result["shifts"]
@@ -154,6 +163,8 @@ def _run(job, context, warnings, recording, phases, early, influence):
         spacing_chosen=chosen,
         steps=len(steps["time"]),
         process_time_s=process_time,
+        lost_volume_mm3=lost,
+        **speed_effects,
         wall_time_s=phases.seconds,
         warnings=warnings,
         warning_facts=[fact_data(warning) for warning in warnings],
@@ -169,11 +180,21 @@ def _run(job, context, warnings, recording, phases, early, influence):
     )
     result = Result(job, field, summary, events, steps, recording)
     result.motions = ways
-    result.influence = removed
+    result.influence, result.force_influence = removed, pressed
     phases.restart()
     result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
     phases.end("verdict")
     return result, shifts
+
+
+def _speed_effects(job, options):
+    """What the summary says of how the rubber behaves at speed, where it is not left out."""
+    factor = job["belt_machine"]["compliance"]["dynamic_modulus_factor"]
+    growth = options["wheel_growth"]
+    return {
+        **({"dynamic_modulus_factor": factor} if factor != 1.0 else {}),
+        **({"wheel_growth_mm": growth} if growth > 0.0 else {}),
+    }
 
 
 def summarise(job, field, events):

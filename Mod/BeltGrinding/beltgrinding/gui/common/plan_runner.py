@@ -14,6 +14,7 @@ def words():
         "why": translate("BeltGrinding", "why it stays out of tolerance"),
         "no_motion": translate("BeltGrinding", "no motion removes anything there"),
         "no_room": translate("BeltGrinding", "the wheel does not fit there"),
+        "fringe": translate("BeltGrinding", "beside what no motion reaches"),
         "border": translate("BeltGrinding", "along the border of the faces"),
         "slowest_feed": translate("BeltGrinding", "too much left at the least feed"),
         "fastest_feed": translate("BeltGrinding", "cut too deep at the greatest feed"),

@@ -5,7 +5,7 @@ import FreeCADGui as Gui
 from ...base.files import cannot_be_written, write_whole
 from ...calibration import calibrate as calibration, example, plot as calibration_plot
 from ...engine import Cancelled, InputError
-from ...objects import job_data, properties
+from ...objects import job_data, job_inputs, properties
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
@@ -78,6 +78,16 @@ class CalibrationPanel:
             translate("BeltGrinding", "needed only where the table gives a wear number"),
         )
         body.addLayout(fields)
+        self.own_wheel = QtGui.QCheckBox(translate("BeltGrinding", "Ground on the job's wheel"))
+        self.own_wheel.setObjectName("ownWheel")
+        self.own_wheel.setToolTip(
+            translate(
+                "BeltGrinding",
+                "The contacts are solved with the job's wheel, and the law is fitted to their pressures; "
+                "columns of the wheel in the table come first",
+            )
+        )
+        body.addWidget(self.own_wheel)
         self.start = self._button(body, translate("BeltGrinding", "Fit"), self.fit)
         self.state = QtGui.QLabel()
         self.state.setObjectName("calibrationState")
@@ -159,12 +169,19 @@ class CalibrationPanel:
             return
         diameter = self._entered(self.diameter)
         unit = self._entered(self.wear_unit) or 1.0
+        machine = None
+        if self.own_wheel.isChecked():
+            try:
+                machine = job_inputs.belt_machine(self.job)
+            except InputError as error:
+                self.state.setText(error_text(error))
+                return
         self._show_parts(False)
         self.start.setEnabled(False)
         self.state.setText(translate("BeltGrinding", "Fitting ..."))
 
         def work(_):
-            result = calibration.fit(path, diameter, unit)
+            result = calibration.fit(path, diameter, unit, machine)
             report = result["report"]
             return result, calibration_plot.render(report), calibration_plot.render_small(report)
 

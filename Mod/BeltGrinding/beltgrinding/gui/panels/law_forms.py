@@ -37,6 +37,7 @@ class LawForms(QtGui.QWidget):
             "none": translate("BeltGrinding", "None"),
             "exponential": translate("BeltGrinding", "Exponential"),
             "two_stage": translate("BeltGrinding", "Two stages"),
+            "power": translate("BeltGrinding", "Power of the wear"),
             "curve": translate("BeltGrinding", "By a curve"),
         }
         self.wear.add("WearModel", translate("BeltGrinding", "Model"), models)
@@ -49,6 +50,7 @@ class LawForms(QtGui.QWidget):
         self.wear.add("WearRest", translate("BeltGrinding", "Share that stays"))
         self.wear.add("WearFirstShare", translate("BeltGrinding", "Share that goes at first"))
         self.wear.add("WearFirstScale", translate("BeltGrinding", "falls to 1/e in"))
+        self.wear.add("WearExponent", translate("BeltGrinding", "Exponent of the fall"))
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for form in (self.law, self.wear):
@@ -81,4 +83,6 @@ class LawForms(QtGui.QWidget):
             wear |= {"WearScale", "WearRest"}
         if obj.WearModel == "two_stage":
             wear |= {"WearFirstShare", "WearFirstScale"}
+        if obj.WearModel == "power":
+            wear |= {"WearScale", "WearExponent"}
         self.wear.show_rows(wear)

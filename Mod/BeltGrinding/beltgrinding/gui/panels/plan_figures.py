@@ -23,10 +23,10 @@ class PlanFigures(QtGui.QWidget):
             "rounds",
             translate("BeltGrinding", "Round"),
             translate("BeltGrinding", "In tol."),
-            translate("BeltGrinding", "RMS, {}").format(preferences.deviation_unit().symbol),
+            translate("BeltGrinding", "RMS"),  # its unit is told below, where there is room
             translate("BeltGrinding", "Time, s"),
-            stretched=2,
         )
+        self.rounds.setWordWrap(False)
         self.table = _table(
             "figures",
             "",

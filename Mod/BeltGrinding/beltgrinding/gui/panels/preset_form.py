@@ -87,7 +87,7 @@ def _formulas_text():
 
 
 class PresetForm(QtGui.QGroupBox):
-    """Combo boxes of wheel, belt and material. A preset sets what it knows when it is chosen; the
+    """Combo boxes of wheel, belt, material and force control. A preset sets what it knows when it is chosen; the
     recommended belt speed only by its button.
     """
 
@@ -106,6 +106,7 @@ class PresetForm(QtGui.QGroupBox):
         self.speed.hide()
         self._add("material", translate("BeltGrinding", "Material"), found.materials)
         self.rows.addRow(self.speed)
+        self._add("actuator", translate("BeltGrinding", "Force control"), found.actuators)
         self.speed.clicked.connect(lambda *_: self._put({SPEED: self.recommended}))
         self.recommended = 0.0  # m/s
         if found.problems:
@@ -162,6 +163,8 @@ class PresetForm(QtGui.QGroupBox):
                     for form in self.forms:
                         if obj is form.obj and key.name in form.rows:
                             form.refresh(key.name)
+        for form in self.forms:
+            form.changed()
 
 
 def _hint(name):

@@ -163,6 +163,10 @@ class BeltMachinePanel(Panel):
         wheel.add(
             "Stiffness", translate("BeltGrinding", "Stiffness (0: of the rim)"), unit="MPa/mm"
         )
+        text = translate("BeltGrinding", "Dynamic modulus")
+        wheel.add("DynamicModulusFactor", text, unit="×")
+        text = translate("BeltGrinding", "Density (0: no growth)")
+        wheel.add("WheelDensity", text, unit="kg/m³")
         trained = translate("BeltGrinding", "Surrogate")
         wheel.add("SurrogateFile", trained, f"{trained} (*.npz)")
         belt = Form(obj, translate("BeltGrinding", "Belt and control"))
@@ -176,6 +180,19 @@ class BeltMachinePanel(Panel):
         belt.add("Control", translate("BeltGrinding", "Control"), control)
         belt.add("Force", translate("BeltGrinding", "Force"))
         belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
+        dynamics = {
+            "ideal": translate("BeltGrinding", "At every moment"),
+            "lag": translate("BeltGrinding", "With a lag"),
+            "actuator": translate("BeltGrinding", "Mass and damping"),
+        }
+        belt.add("ForceModel", translate("BeltGrinding", "Force is met"), dynamics)
+        belt.add("ForceLag", translate("BeltGrinding", "Regulator's lag"), unit="s")
+        belt.add("MovingMass", translate("BeltGrinding", "Moving mass"), unit="kg")
+        belt.add("Damping", translate("BeltGrinding", "Damping"), unit="N s/mm")
+        belt.add("SpeedLimit", translate("BeltGrinding", "Speed limit (0: none)"))
+        text = translate("BeltGrinding", "Overshoot told from")
+        belt.add("OvershootLimit", text)
+        belt.add("BounceTime", translate("BeltGrinding", "Bounces told within"), unit="s")
         text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
         belt.add("RobotStiffness", text, unit="N/mm")
         self.body.addWidget(PresetForm(obj, (wheel, belt), self.hardness))
@@ -188,9 +205,16 @@ class BeltMachinePanel(Panel):
 
     def arrange(self):
         """Shows the fields that the elasticity and the control use."""
-        force = {"force": {"Force", "ForceTravel"}, "position": {"RobotStiffness"}}[
-            self.obj.Control
-        ]
+        moving = {"ForceLag", "OvershootLimit", "BounceTime"}
+        dynamics = {
+            "ideal": set(),
+            "lag": {"ForceLag"},
+            "actuator": moving | {"MovingMass", "Damping", "SpeedLimit"},
+        }[self.obj.ForceModel]
+        force = {
+            "force": {"Force", "ForceTravel", "ForceModel"} | dynamics,
+            "position": {"RobotStiffness"},
+        }[self.obj.Control]
         rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
         rim = rubber | {"RimThickness"}
         belt = {"BeltTension", "BeltBending"}
@@ -204,6 +228,9 @@ class BeltMachinePanel(Panel):
             | (rim | belt if self.obj.Stiffness <= 0 else set()),
         }
         shape = {"WheelRadius", "WheelWidth", "CrownRadius", "Compliance"}
+        if self.obj.Compliance != "geometric":
+            shape |= {"DynamicModulusFactor"}
+            shape |= {"WheelDensity"} if self.obj.Control == "position" else set()
         self.wheel.show_rows(shape | used[self.obj.Compliance])
         self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
         self.hardness.follow()

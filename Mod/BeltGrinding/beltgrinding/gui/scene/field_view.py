@@ -10,7 +10,7 @@ import os
 import numpy as np
 from pivy import coin
 
-from ...engine import InputError, core
+from ...engine import InputError, core, library
 
 STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHeightField
 PICK_RADIUS = 1.0  # pixels
@@ -26,13 +26,13 @@ def _coin_module():
     if os.environ.get(STOCK_NODES):
         return None
     try:
-        import beltgrinding_coin
+        module = library.extension("beltgrinding_coin")
     except ImportError:
         return None  # not built, or its libCoin is not there
     # A second libCoin in the process has not been started, and pivy does not see its types.
-    if not beltgrinding_coin.register_node() or coin.SoType.fromName("SoHeightField").isBad():
+    if not module.register_node() or coin.SoType.fromName("SoHeightField").isBad():
         return None
-    return beltgrinding_coin
+    return module
 
 
 def has_own_node():
@@ -48,7 +48,7 @@ class _OwnNode:
         self.shape = coin.SoType.fromName("SoHeightField").createInstance()
         self.address = int(self.shape.this)
         self.parts = (self.shape,)
-        module.set_samples(self.address, field.points, field.normals, field.triangles)
+        module.set_samples(self.address, field.points, field.rays, field.triangles)
 
     def set_heights(self, heights):
         self.module.set_heights(self.address, heights)
@@ -64,7 +64,7 @@ class _StockNodes:
     """Draws with Coin's SoIndexedFaceSet."""
 
     def __init__(self, field):
-        self.points, self.normals = field.points, field.normals
+        self.points, self.rays, self.normals = field.points, field.rays, field.normals
         self.colours = coin.SoPackedColor()
         binding = coin.SoMaterialBinding()
         binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
@@ -87,7 +87,7 @@ class _StockNodes:
         )
 
     def set_heights(self, heights):
-        points = self.points + heights[:, None] * self.normals
+        points = self.points + heights[:, None] * self.rays
         self.coordinates.point.setValues(0, len(points), list(map(tuple, points.tolist())))
 
     def set_colours(self, packed):
@@ -105,7 +105,7 @@ class FieldView:
     def __init__(self, field, stock_nodes=False):
         # The field itself stays alive: its arrays are views of it.
         self.field = field
-        self.points, self.normals = field.points, field.normals
+        self.points, self.rays = field.points, field.rays
         self.flags, self.faces = field.flags, field.faces
         module = None if stock_nodes else _coin_module()
         self.own_node = module is not None
@@ -122,7 +122,7 @@ class FieldView:
         self.drawn.set_colours(np.full(len(self.points), 0xB0B0B0FF, dtype=np.uint32))
 
     def set_heights(self, heights):
-        """Moves the samples: ``heights`` (n,) mm along the normals. Colours stay as they are."""
+        """Moves the samples: ``heights`` (n,) mm along the rays. Colours stay as they are."""
         self.heights = self._one_each(heights, np.float64).copy()
         self.drawn.set_heights(self.heights)
 
@@ -231,7 +231,7 @@ class FieldView:
         detail = coin.cast(picked.getDetail(), "SoFaceDetail")
         corners = [detail.getPoint(k).getCoordinateIndex() for k in range(detail.getNumPoints())]
         at = np.array(picked.getObjectPoint().getValue(), dtype=float)
-        tops = self.points[corners] + self.heights[corners, None] * self.normals[corners]
+        tops = self.points[corners] + self.heights[corners, None] * self.rays[corners]
         return int(corners[np.linalg.norm(tops - at, axis=1).argmin()])
 
     def _placed(self, scene, region):

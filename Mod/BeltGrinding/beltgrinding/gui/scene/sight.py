@@ -34,7 +34,7 @@ class Sight:
         first, rest = samples[:1], samples[1:]
         near = rest[field.normals[rest] @ field.normals[first[0]] > 0.2]
         chosen = np.concatenate([first, near[sight.thinned(len(near), POINTS)]])
-        points = field.points[chosen] + field.height[chosen, None] * field.normals[chosen]
+        points = field.points[chosen] + field.height[chosen, None] * field.rays[chosen]
         normals = field.normals[chosen]
         target = points[0] if middle is None else np.asarray(middle, dtype=float)
         slack = 2.0 * field.spacing

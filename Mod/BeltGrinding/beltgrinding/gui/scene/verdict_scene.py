@@ -52,7 +52,7 @@ class VerdictScene:
         """Marks the samples ``inside`` (n, bool) of a core.HeightField, and the sample ``worst``."""
         edges = outline(field.triangles, inside)
         used, flat = np.unique(edges, return_inverse=True)
-        tops = field.points[used] + field.height[used, None] * field.normals[used]
+        tops = field.points[used] + field.height[used, None] * field.rays[used]
         self.points.point.deleteValues(0)
         self.lines.coordIndex.deleteValues(0)
         if len(used):
@@ -60,7 +60,7 @@ class VerdictScene:
             ends = np.full((len(edges), 1), -1)
             index = np.hstack([flat.reshape(-1, 2), ends]).ravel()
             self.lines.coordIndex.setValues(0, len(index), index.tolist())
-        top = field.points[worst] + field.height[worst] * field.normals[worst]
+        top = field.points[worst] + field.height[worst] * field.rays[worst]
         self.place.translation = tuple(float(x) for x in top)
         self.switch.whichChild = coin.SO_SWITCH_ALL
 

@@ -1,6 +1,6 @@
 """Plans of feeds on faces of the real parts of shared/data/cad, with even and uneven stock, before and after.
 
-tools/bench plan [NAME]; `python plan_bench.py [NAME] [--json FILE]` does the same. A raster is laid with default
+tools/bench plan [NAME] [--search]; `python plan_bench.py [NAME] [--search] [--json FILE]` does the same. A raster is laid with default
 settings but a step-over of half the contact and poses every 3 mm; the stock is 0.3 mm, or 0.3 mm +- 0.15 mm in waves
 of 40 to 90 mm; the tolerance +-0.05 mm; the feed, before, the default one. Columns:
 
@@ -8,10 +8,13 @@ before, feeds   of the area, in tolerance, %, before and with planned feeds
 forces          the same where forces of 5 to 60 N are planned, too
 one feed        the same with the one feed for all that leaves no more on the mean: what a calculation by hand gives
 reached         of the area, that any motion removes something from, %
+fringe          of the area, too much left beside where none does, %
 cut             of what was reached and out of tolerance before, that is in tolerance with feeds and forces, %
-checked         forces, at half the spacing and step, %
 rounds          simulations
 plan            of a simulation's time, that planning takes between two of them, %
+checked         with --search: forces, at half the spacing and step, %
+searched        as forces, on passes that are searched for from there (`beltgrind grind`), %
+searched cut    the same as cut, on those passes, %
 """
 
 import argparse
@@ -32,6 +35,7 @@ from beltgrinding import planning  # noqa: E402
 from beltgrinding.engine import InputError, core  # noqa: E402
 from beltgrinding.inspection import verdict as verdicts  # noqa: E402
 from beltgrinding.job import load as jobs, poses, workpiece  # noqa: E402
+from beltgrinding.planning import grinding  # noqa: E402
 from beltgrinding.raster import raster_path  # noqa: E402
 from beltgrinding.simulation import run as runs  # noqa: E402
 
@@ -49,7 +53,9 @@ SETS = (
 WHEEL = {"radius_mm": 20, "width_mm": 15, "crown_radius_mm": 60}
 FORCE, STOCK, WAVES = 30.0, 0.3, 0.15  # N, mm, mm
 SAMPLES = 25_000
-HEAD = ("before", "one feed", "feeds", "forces", "reached", "cut", "checked", "rounds", "plan", "s")
+RASTER = {"step_over_share": 0.5, "max_distance_mm": 3.0}
+HEAD = ("before", "one feed", "feeds", "forces", "reached", "fringe", "cut", "rounds", "plan", "s")
+SEARCHED = ("checked", "searched", "searched cut")
 FORCES = {"force_min_N": 5.0, "force_max_N": 60.0}
 
 
@@ -93,45 +99,54 @@ def job_of(file, faces, stock):
         "cell": {"check_collisions": False},
         "programs": [{"poses": []}],
     }
-    laid = raster_path.raster(
-        jobs.validate(given), {"step_over_share": 0.5, "max_distance_mm": 3.0}
-    )
+    laid = raster_path.raster(jobs.validate(given), RASTER)
     given["programs"] = [{"poses": poses.list_poses(laid)}]
     return jobs.validate(given)
 
 
-def measure(file, faces, stock):
-    """The figures of HEAD."""
+def measure(file, faces, stock, search):
+    """The figures of HEAD, and where it is searched of SEARCHED."""
     begun = time.perf_counter()
     job = job_of(file, faces, stock)
     feeds = planning.plan(job, {"check": False}).after.summary["in_tolerance_area_share"]
-    plan = planning.plan(job, FORCES)
+    plan = planning.plan(job, {**FORCES, "check": search})
     before, after = plan.before, plan.after
-    lower, upper = verdicts.limits(before.job, before.field)
-    areas = np.asarray(before.field.areas, dtype=float)
-
-    def out(result):
-        height = np.asarray(result.field.height)
-        return (height < lower) | (height > upper)
-
-    reached = plan.why["reached"]
-    was, left = areas[reached & out(before)].sum(), areas[reached & out(after)].sum()
+    areas, reached = np.asarray(before.field.areas, dtype=float), plan.why["reached"]
     rounds = [one for one in plan.rounds if "planning_seconds" in one]
     share = sum(r["planning_seconds"] for r in rounds) / sum(
         r["seconds"] - r["planning_seconds"] for r in rounds
     )
-    return {
+    found = {
         "before": 100.0 * plan.rounds[0]["in_tolerance"],
         "one feed": 100.0 * hand(plan),
         "feeds": 100.0 * feeds,
         "forces": 100.0 * after.summary["in_tolerance_area_share"],
         "reached": 100.0 * areas[reached].sum() / areas.sum(),
-        "cut": 100.0 * (was - left) / max(was, 1e-12),
-        "checked": 100.0 * plan.checked["after"]["in_tolerance"],
+        "fringe": 100.0 * plan.why["shares"]["fringe"],
+        "cut": cut(plan),
         "rounds": len(plan.rounds),
         "plan": 100.0 * share,
         "s": time.perf_counter() - begun,
     }
+    if search:
+        searched = grinding.grind(job, RASTER, FORCES).plan
+        found["checked"] = 100.0 * plan.checked["after"]["in_tolerance"]
+        found["searched"] = 100.0 * searched.after.summary["in_tolerance_area_share"]
+        found["searched cut"] = cut(searched)
+    return found
+
+
+def cut(plan):
+    """Of the area that the plan's motions reach and that was out of tolerance, what no longer is, %."""
+    lower, upper = verdicts.limits(plan.before.job, plan.before.field)
+    areas = np.asarray(plan.before.field.areas, dtype=float)
+
+    def out(result):
+        height = np.asarray(result.field.height)
+        return areas[plan.why["reached"] & ((height < lower) | (height > upper))].sum()
+
+    was = out(plan.before)
+    return 100.0 * (was - out(plan.after)) / max(was, 1e-12)
 
 
 def hand(plan):
@@ -148,13 +163,15 @@ def hand(plan):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("name", nargs="?", default="", help="only parts whose name has this in it")
+    parser.add_argument("--search", action="store_true", help="check, and search for passes, too")
     parser.add_argument("--json", help="file for Google Benchmark's JSON")
     arguments = parser.parse_args()
     if not PARTS.is_dir():
         print(f"plan: no data at {PARTS}")
         return
+    head = HEAD + (SEARCHED if arguments.search else ())
     print(
-        f"| part | faces | stock | {' | '.join(HEAD)} |\n|{' --- |' * (len(HEAD) + 3)}", flush=True
+        f"| part | faces | stock | {' | '.join(head)} |\n|{' --- |' * (len(head) + 3)}", flush=True
     )
     benchmarks = []
     for name, faces in SETS:
@@ -170,9 +187,9 @@ def main():
             for kind, stock in stocks.items():
                 label = f"{name} | {', '.join(map(str, faces))} | {kind}"
                 try:
-                    found = measure(file, faces, stock)
+                    found = measure(file, faces, stock, arguments.search)
                 except InputError as error:
-                    print(f"| {label} |{' |' * len(HEAD)} {error}", flush=True)
+                    print(f"| {label} |{' |' * len(head)} {error}", flush=True)
                     continue
                 cells = [f"{v:.1f}" if isinstance(v, float) else str(v) for v in found.values()]
                 print(f"| {label} | {' | '.join(cells)} |", flush=True)

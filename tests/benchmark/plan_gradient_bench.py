@@ -2,8 +2,8 @@
 
 tools/bench plan_gradient; `python plan_gradient_bench.py [--motions N]` does the same. For some motions of the marine
 blade's raster, feed and force are changed by 3 % both ways and the job simulated anew; what that changes, sample by
-sample where the motion removes most, is compared with what the planner takes it for: A for the time, A times the law's
-exponent for the force. Printed: the error's median and 95th percentile, and that of all a motion removes together.
+sample where the motion removes most, is compared with what the planner takes it for: A for the time, the
+simulation's own influence of the force. Printed: the error's median and 95th percentile, and that of all a motion removes together.
 """
 
 import argparse
@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import plan_bench  # noqa: E402
-from beltgrinding.planning import rounds, step  # noqa: E402
+from beltgrinding.planning import rounds  # noqa: E402
 from beltgrinding.planning.commands import Commands  # noqa: E402
 from beltgrinding.simulation import run as runs  # noqa: E402
 
@@ -37,29 +37,31 @@ def main():
     job = plan_bench.job_of(file, [1], {"allowance_mm": plan_bench.STOCK})
     commands = Commands(job, rounds.validate({"force_max_N": 60.0}))
     feeds, ones = commands.feed(), np.ones(len(commands))
-    influence = runs.run(job, influence=True).influence.grouped(commands.group, len(commands))
-    first = np.asarray(influence.first).astype(int)
-    samples, depth = np.asarray(influence.sample), np.asarray(influence.depth, dtype=float)
+    run = runs.run(job, influence=True, forces=True)
+    told = {
+        "feed": run.influence.grouped(commands.group, len(commands)),
+        "force": run.force_influence.grouped(commands.group, len(commands)),
+    }
     random = np.random.default_rng(0)
-    busy = np.flatnonzero(np.diff(first) > LEAST)
-    alpha = step.force_exponent(job)
+    busy = np.flatnonzero(np.diff(told["feed"].first.astype(int)) > LEAST)
 
     def height(feeds, factors):
         return np.asarray(runs.run(commands.with_feeds(feeds, factors)).field.height, dtype=float)
 
     errors = {"feed": ([], []), "force": ([], [])}
     for k in random.choice(busy, min(arguments.motions, len(busy)), replace=False):
-        mine = slice(first[k], first[k + 1])
-        most = np.argsort(-depth[mine])[: max(20, (first[k + 1] - first[k]) // 3)]
-        some = random.choice(most, PER_MOTION, replace=False)
         for what, (single, whole) in errors.items():
+            first = told[what].first.astype(int)
+            mine = slice(first[k], first[k + 1])
+            samples, taken = told[what].sample[mine], told[what].depth[mine].astype(float)
+            most = np.argsort(-taken)[: max(20, len(taken) // 3)]
+            some = random.choice(most, PER_MOTION, replace=False)
             ends = []
             for change in (1.0 + CHANGE, 1.0 - CHANGE):
                 other = (feeds if what == "feed" else ones).copy()
                 other[k] = other[k] / change if what == "feed" else other[k] * change
                 ends.append(height(other, ones) if what == "feed" else height(feeds, other))
-            found = (ends[1] - ends[0])[samples[mine]] / (2.0 * CHANGE)
-            taken = depth[mine] * (1.0 if what == "feed" else alpha)
+            found = (ends[1] - ends[0])[samples] / (2.0 * CHANGE)
             single += (found[some] / taken[some] - 1.0).tolist()
             whole.append(found.sum() / taken.sum() - 1.0)
     for what, (single, whole) in errors.items():

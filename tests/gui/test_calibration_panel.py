@@ -30,6 +30,17 @@ table = field("calibrationTable")
 names = [table.item(row, 0).text() for row in range(table.rowCount())]
 assert names[:3] == ["coefficient\\nmm²/N", "pressure\\nexponent", "speed\\nexponent"], names
 assert abs(float(table.item(1, 1).text().split()[0]) - 1) < 0.1
+field("ownWheel").setChecked(True)
+press("Fit")
+wait(lambda: "median error" in field("calibrationState").text())
+told = field("calibrationWarnings").text()
+assert "solved from wheel and part (wheel_rim)" in told and "not from the table" in told, told
+field("ownWheel").setChecked(False)
+press("Fit")
+wait(lambda: "median error" in field("calibrationState").text())
+assert not [  # of even pressures there is nothing to warn
+    one for one in Gui.getMainWindow().findChildren(QtGui.QLabel, "calibrationWarnings") if one.isVisible()
+]
 picture = field("calibrationPlot").pixmap().toImage()
 assert picture.width() > 150 and picture.height() > 150
 steps = doc.UndoCount

@@ -301,3 +301,20 @@ subprocess.run(["/usr/bin/python3", "-c", code], check=True, env={**os.environ, 
 """,
         window=False,
     )
+
+
+def test_the_own_node_is_found_beside_the_core(freecad):
+    """Also where nothing else has put the core's folder on Python's path, or has taken it off again."""
+    freecad.run(
+        """
+import sys
+from pathlib import Path
+from beltgrinding import core
+place = str(Path(core.__file__).parent)
+sys.path[:] = [folder for folder in sys.path if folder != place]
+from beltgrinding.gui.scene import field_view
+assert "beltgrinding_coin" not in sys.modules and field_view.has_own_node()
+""",
+        window=True,
+        fresh=True,
+    )

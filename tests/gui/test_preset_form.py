@@ -60,6 +60,39 @@ press("Cancel")
     )
 
 
+def test_a_force_control_takes_time_and_shows_what_it_takes(freecad):
+    freecad.run(
+        PREPARE
+        + """
+def shown(name):
+    return [w for w in widgets(QtGui.QLineEdit, name) if w.isVisible()]
+
+job = prepare()
+machine = job.Document.BeltMachine
+assert machine.ForceModel == "ideal"
+menu("Belt machine")
+assert not shown("MovingMass") and field("Force").isVisible()
+choose_preset("actuatorPreset", "Pneumatic force flange")
+assert "estimate" in field("actuatorPresetHint").text()
+assert machine.ForceModel == "actuator" and machine.MovingMass == 5.5
+for name in ("ForceLag", "MovingMass", "Damping", "SpeedLimit", "OvershootLimit", "BounceTime"):
+    assert field(name).isVisible(), name
+choose_preset("actuatorPreset", "Robot with force control")
+assert machine.ForceLag == 0.0 and machine.SpeedLimit.Value == 60.0
+type_in("MovingMass", "7.5")
+press("OK")
+given = machine.Proxy.to_job(machine)["belt_machine"]["force_dynamics"]
+assert (given["model"], given["moving_mass_kg"]) == ("actuator", 7.5), given
+menu("Belt machine")
+field("ForceModel", QtGui.QComboBox).setCurrentIndex(0)
+settle()
+assert machine.ForceModel == "ideal" and not shown("MovingMass")
+press("Cancel")
+""",
+        window=True,
+    )
+
+
 def test_the_hardness_gives_the_modulus(freecad):
     freecad.run(
         PREPARE

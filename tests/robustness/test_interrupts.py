@@ -1,5 +1,6 @@
 """Ctrl-C at any moment: 130, and the old result or the new one, whole, as the message says."""
 
+import errno
 import json
 import os
 import random
@@ -119,6 +120,28 @@ def test_an_interruption_between_two_lines_leaves_nothing(tmp_path, monkeypatch,
     else:
         monkeypatch.setattr(shutil, "rmtree", interrupted(shutil.rmtree, False))
     before = signal.signal(signal.SIGINT, interrupts.stop)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            folders.replace(tmp_path / "out", {"a": b"new"})
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert came and not [p.name for p in tmp_path.rglob(folders.STAGE + "*")]
+
+
+def test_an_interruption_waits_for_a_folder_to_be_gone(tmp_path, monkeypatch):
+    # shutil.rmtree closes a descriptor twice if it comes between two of its lines, and raises the error of that.
+    real, came = shutil.rmtree, []
+
+    def interrupted(path, *arguments, **keywords):
+        came.append(path)
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            real(path, *arguments, **keywords)
+        except KeyboardInterrupt:
+            raise OSError(errno.EBADF, os.strerror(errno.EBADF)) from None
+
+    monkeypatch.setattr(shutil, "rmtree", interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
             folders.replace(tmp_path / "out", {"a": b"new"})

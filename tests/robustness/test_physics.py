@@ -3,6 +3,7 @@
 The envelope is worked out here anew, from the poses, the wheel and the time series.
 """
 
+import json
 import math
 import random
 import sys
@@ -180,6 +181,41 @@ def test_no_height_falls_below_the_wheels_envelope(number):
     assert height.min() >= lowest - travel - ROUNDING
 
 
+def random_dynamics(number):
+    """A force control that takes time, from far too quick to far too slow."""
+    dice = random.Random(1000 + number)
+    return {
+        "model": dice.choice(("lag", "actuator", "actuator")),
+        "lag_s": dice.choice((0.0, 10.0 ** dice.uniform(-4, 1))),
+        "moving_mass_kg": dice.choice((0.0, 10.0 ** dice.uniform(-4, 3))),
+        "damping_N_s_per_mm": 10.0 ** dice.uniform(-5, 3),
+        "speed_limit_mm_s": dice.choice((0.0, 10.0 ** dice.uniform(-1, 3))),
+    }
+
+
+@pytest.mark.parametrize("number", range(20, 32))
+def test_a_force_control_that_takes_time_keeps_to_envelope_and_travel(number):
+    one = random_pass(number)
+    one["belt_machine"]["control"] = "force"
+    one["belt_machine"]["force_dynamics"] = random_dynamics(number)
+    one["belt_machine"]["compliance"] = {
+        "model": "elastic_foundation",
+        "stiffness_MPa_per_mm": 0.5,
+    }
+    try:
+        result, height, points, _ = ground(one)
+    except beltgrinding.InputError as error:
+        assert "never touches" in str(error)
+        return
+    bound = np.minimum(0.3, envelope(result, points, one, PLACE))
+    assert (height >= bound - ROUNDING).all(), np.min(height - bound)
+    travel = one["belt_machine"]["force_travel_mm"]
+    assert np.max(result.steps["deepest_approach"]) <= travel + ROUNDING
+    for name, values in result.steps.items():
+        assert np.isfinite(np.asarray(values, dtype=float)).all(), name
+    assert not any(event["kind"] == "not_converged" for event in result.events)
+
+
 def test_the_envelope_is_told_from_one_that_is_too_deep():
     one = job(line((20, 15, TOP - 2), (21, 15, TOP - 2), feed=0.01))
     one["belt_machine"]["control"] = "position"
@@ -229,6 +265,19 @@ def test_no_force_presses_the_rim_in_beyond_its_thickness():
     assert told and told[0]["limit"] == pytest.approx(15.0)
     assert "would press the wheel in" in told[0]["message"]
     assert result.steps["approach"].max() <= 15.4 and height.min() >= -15.1
+
+
+def test_what_no_sample_has_is_told():
+    """Where the law takes more than the wheel stands deep, its envelope keeps some back."""
+    told = []
+    for coefficient in (1e-4, 2e-2):
+        one = job(line((4, 13, TOP), (36, 18, TOP)), simulation__max_travel_mm=4.0)
+        one["law"] = {"coefficient_mm2_per_N": coefficient}
+        summary = ground(one)[0].summary
+        told.append(summary["lost_volume_mm3"] / summary["removed_volume_mm3"])
+        events = summary["events"]
+        assert ("volume_lost" in json.dumps(events)) == (told[-1] > 0.01)
+    assert told[0] < 1e-3 and told[1] > 0.01
 
 
 def at_least_as_deep(more, less):
@@ -304,7 +353,10 @@ def test_halving_the_steps_converges(part):
     if part == "too coarse":
         one["law"] = {"coefficient_mm2_per_N": 5e-3}
     heights = []
-    for travel in (4.0, 2.0, 1.0, 0.5):
+    travels = (4.0, 2.0, 1.0, 0.5)
+    if part == "too coarse":  # 5 mm in one pass
+        travels = (2.0, 1.0, 0.5, 0.25)
+    for travel in travels:
         one["simulation"] = {"max_travel_mm": travel, "max_angle_deg": 20.0 * travel}
         heights.append(ground(one)[1])
     taken = np.abs(0.3 - heights[-1]).mean()

@@ -66,6 +66,8 @@ for obj, name, other in (
     (doc.Stock, "Allowance", "0.25 mm"),
     (job, "LawCoefficient", 2e-4),
     (job, "Spacing", "0.7 mm"),
+    (job, "Precision", "0.01 mm"),
+    (job, "EdgeSpacing", "0.05 mm"),
     (path, "FeedOverride", "31 mm/s"),
     (doc.Block, "Placement", FreeCAD.Placement(FreeCAD.Vector(0, 0, 0.01), FreeCAD.Rotation())),
 ):

@@ -88,10 +88,9 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     summary, kinds, verdict = ground(made / "vane")
     assert 0.85 < summary["in_tolerance_area_share"] < 0.95
     assert "collision" not in kinds and "gouge" in kinds
-    deep = verdict["clusters"][:2]
-    assert [one["side"] for one in deep] == ["below", "below"]  # a strip on each side of the edge
-    for one in deep:
-        assert one["centroid_mm"][0] < -15.0 and one["worst"]["value_mm"] < -0.2
+    deep = verdict["clusters"][0]  # a strip along the edge
+    assert deep["side"] == "below" and deep["area_mm2"] > 800
+    assert deep["centroid_mm"][0] < -15.0 and deep["worst"]["value_mm"] < -0.2
     shares = {face["face"]: face["in_share"] for face in verdict["faces"]}
     sides = sorted(shares.values())[-2:]
     assert sides[0] > 0.88  # of pressure and suction side
@@ -104,7 +103,7 @@ def test_the_robot_slows_down_at_the_knifes_tip(made):
     assert summary["robot"]["reached_poses"] == summary["robot"]["poses"]
     assert set(kinds) <= {"gouge", "edge_contact"}
     tip = min(verdict["clusters"], key=lambda one: one["worst"]["value_mm"])
-    assert tip["centroid_mm"][0] > 175.0 and tip["worst"]["value_mm"] < -0.3
+    assert tip["centroid_mm"][0] > 175.0 and tip["worst"]["value_mm"] < -0.25
 
     # At a constant feed the tip would get off lightly.
     job = json.loads((made / "knife" / "job.json").read_text())

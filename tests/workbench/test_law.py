@@ -139,7 +139,11 @@ def test_a_law_from_the_calibration_predicts_and_grinds_a_job(tmp_path, capsys):
     arguments = ["calibrate", str(tmp_path / "grinds.csv"), "-o", str(tmp_path / "law.json")]
     assert cli.main(arguments) == 0
     law = json.loads((tmp_path / "law.json").read_text())
-    assert law["wear"]["model"] == "exponential"
+    wear = laws.engine_wear({"wear": {"curve": [], **law["wear"]}})
+    for work in (1e4, 4e4, 1e5, 2e5):  # of whichever form, the belt wears as it was made to
+        told = [core.belt_remaining(wear, {"work": used}) for used in (work, 6e4)]
+        truth = [0.5 + 0.5 * math.exp(-used / 5e4) for used in (work, 6e4)]
+        assert told[0] / told[1] == pytest.approx(truth[0] / truth[1], rel=0.08)
     capsys.readouterr()
     again = ["predict", str(tmp_path / "law.json"), str(tmp_path / "grinds.csv")]
     assert cli.main([*again, "-o", str(tmp_path / "predicted.csv")]) == 0

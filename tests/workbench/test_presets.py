@@ -85,6 +85,17 @@ def test_the_files_are_read_without_complaint(user):
     assert rubber.formulas().keys() == rubber.EQUATIONS.keys()
 
 
+def test_a_force_control_sets_what_it_knows_and_nothing_of_the_one_before(user):
+    ids = {preset["id"] for preset in presets.actuators()}
+    assert {"pneumatic_flange", "electric_flange", "robot_admittance"} <= ids
+    job = presets.apply({}, actuator="pneumatic_flange")
+    first = job["belt_machine"]["force_dynamics"]
+    assert first["model"] == "actuator" and first["lag_s"] == pytest.approx(0.065)
+    second = presets.apply(job, actuator="robot_admittance")["belt_machine"]["force_dynamics"]
+    assert second["lag_s"] == 0.0 and second["moving_mass_kg"] == 5.0
+    assert second["damping_N_s_per_mm"] == 5.0 and second["speed_limit_mm_s"] == 60.0
+
+
 def test_shore_a_by_all_formulas():
     found = presets.shore_to_modulus(60)
     assert next(iter(found)) == "gent"

@@ -8,6 +8,7 @@ import pytest
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import load, spacing, workpiece
 from beltgrinding.simulation import run as runs
+from beltgrinding.simulation.convergence import scaled
 
 
 @pytest.fixture
@@ -122,6 +123,37 @@ def test_the_chosen_spacing_is_that_of_the_run_and_its_convergence(parts, capsys
     assert json.dumps(runs.run(with_it).summary["deviation_mm"]) == json.dumps(
         result.summary["deviation_mm"]
     )
+
+
+def test_a_precision_takes_the_place_of_a_finer_spacing_on_curved_faces(parts):
+    plain = job_of(parts / "rod.brep", [], spacing_mm=1.0)
+    job = job_of(parts / "rod.brep", [], spacing_mm=1.0, precision_mm=0.002)
+    assert "job.coarse_chords" in settled(plain)[2] and "job.coarse_chords" not in settled(job)[2]
+    shape = workpiece.read_design(job["design"])
+    field = workpiece.make_field(job, shape, [], None)
+    corners = field.triangles
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        way = field.points[corners[:, b]] - field.points[corners[:, a]]
+        turn = field.normals[corners[:, b]] - field.normals[corners[:, a]]
+        assert (way * turn).sum(axis=1).max() / 8 < 1.1 * 0.002
+    exact = sum(shape.face_area(face) for face in range(shape.face_count))
+    assert field.areas.sum() == pytest.approx(exact, rel=1e-5)
+    assert field.spacing == 1.0
+    finer = scaled(job, "fine")["sampling"]
+    assert (finer["spacing_mm"], finer["precision_mm"]) == (0.5, 0.0005)
+
+
+def test_an_edge_that_the_contacts_cells_do_not_resolve_is_told(parts):
+    path = parts / "rod.brep"
+    shape = workpiece.read_design(job_of(path, [])["design"])
+    for cell, codes in ((3.5, ["job.few_cells_on_edge"]), (1.0, [])):
+        given = job_of(path, [], spacing_mm=0.5, precision_mm=0.002)
+        given["belt_machine"]["contact_spacing_mm"] = cell
+        told = []
+        workpiece.make_field(given, shape, told, None)
+        assert [fact.code for fact in told] == codes
+        given["belt_machine"]["compliance"]["model"] = "geometric"
+        assert spacing.edge_doubts(given, workpiece.make_field(given, shape, [], None)) == []
 
 
 def test_what_is_too_coarse_is_told_before_anything_is_ground(parts):

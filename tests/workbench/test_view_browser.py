@@ -416,3 +416,27 @@ def test_an_empty_trace_and_many_samples(browser, tmp_path, ground):
     assert told == "Heights and colours are those at the end."
     assert not page.faults
     page.close()
+
+
+def test_the_surface_beside_a_sharp_edge_is_where_it_was_ground(browser, tmp_path):
+    points = np.array([[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0], [60, 0, -20], [60, 40, -20]])
+    corners = np.array([[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]], np.uint32)
+    shape = core.shape_from_mesh(core.TriangleMesh(points.astype(np.float32), corners))
+    job = plate_job()
+    job["design"] = {"brep": shape.write_brep()}
+    result = beltgrinding.run(job)
+    field = result.field
+    tops = field.points + field.height[:, None] * field.rays
+    assert (
+        np.linalg.norm(tops - field.points - field.height[:, None] * field.normals, axis=1).max()
+        > 0.1
+    )
+    beltgrinding.view(result, tmp_path / "view.html")
+    page = browser.open(tmp_path / "view.html")
+    page.wait(READY)
+    assert page.value("beltgrindingView.result.about.samples") == field.size
+    drawn = page.value("Array.from(beltgrindingView.result.ground)")
+    middle = page.value("beltgrindingView.result.middle")
+    assert np.abs(np.array(drawn).reshape(-1, 3) + middle - tops).max() < 0.01
+    assert not page.faults
+    page.close()

@@ -249,17 +249,29 @@ void GapMap::mark_edges(double pressable) {
 }
 
 void GapMap::part_edges(const SampleBlocks& blocks) {
-    const auto edge = [&](int cell) { return kind_[static_cast<std::size_t>(cell)] == kEdge; };
     if (std::find(kind_.begin(), kind_.end(), kEdge) == kind_.end()) return;
+    // What is not covered as a whole: edge cells, and those that slivers of these may be given to.
+    const int nx = grid_.nx, above = grid_.ny > 1 ? nx : 0;
+    std::vector<std::uint8_t>& uneven = wider_;
+    uneven.assign(kind_.size(), 0);
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        const auto k = static_cast<std::size_t>(cell);
+        if (kind_[k] != kEdge) continue;
+        uneven[k] = 1;
+        if (cell % nx > 0) uneven[k - 1] = 1;
+        if (cell % nx + 1 < nx) uneven[k + 1] = 1;
+        if (cell >= nx) uneven[k - static_cast<std::size_t>(nx)] = 1;
+        if (cell + nx < grid_.cells()) uneven[k + static_cast<std::size_t>(nx)] = 1;
+    }
+    std::vector<std::uint8_t>& parted = beside_pressable_;  // by first cell
+    parted.assign(kind_.size(), 0);
+    for (int cell = 0; cell + above + 1 < grid_.cells(); ++cell) {
+        const auto k = static_cast<std::size_t>(cell), up = k + static_cast<std::size_t>(above);
+        parted[k] = uneven[k] | uneven[k + 1] | uneven[up] | uneven[up + 1];
+    }
     // A patch of half a cell may lie on cells that its sample is not between.
     const bool wide =
         blocks.field().spacing > kSmallPatch * std::min(grid_.ds, grid_.dy) || !longer_.empty();
-    const int above = grid_.ny > 1 ? grid_.nx : 0;
-    std::vector<std::uint8_t>& parted = wider_;
-    parted.assign(kind_.size(), 0);
-    for (int cell = 0; cell + above + 1 < grid_.cells(); ++cell)
-        parted[static_cast<std::size_t>(cell)] =
-            edge(cell) || edge(cell + 1) || edge(cell + above) || edge(cell + above + 1);
     for (std::size_t k = 0; k < placed_count_; ++k) {
         PlacedBlock& placed = placed_[k];
         for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {

@@ -17,8 +17,6 @@ constexpr double kFull = 0.999;
 constexpr double kGraded = 0.001;   // of the samples away from borders: fewer small ones are chance
 constexpr double kDenser = 0.6;     // of the field's spacing: where curvature asks for more samples
 constexpr double kStraight = 1e-6;  // less: a spike, which has no way along
-// Spacing of samples, in cells, up to which their patches are certainly less than a cell.
-constexpr double kSmallPatch = 0.45;
 
 }  // namespace
 
@@ -250,40 +248,15 @@ void GapMap::mark_edges(double pressable) {
 
 void GapMap::part_edges(const SampleBlocks& blocks) {
     if (std::find(kind_.begin(), kind_.end(), kEdge) == kind_.end()) return;
-    // What is not covered as a whole: edge cells, and those that slivers of these may be given to.
-    const int nx = grid_.nx, above = grid_.ny > 1 ? nx : 0;
-    std::vector<std::uint8_t>& uneven = wider_;
-    uneven.assign(kind_.size(), 0);
-    for (int cell = 0; cell < grid_.cells(); ++cell) {
-        const auto k = static_cast<std::size_t>(cell);
-        if (kind_[k] != kEdge) continue;
-        uneven[k] = 1;
-        if (cell % nx > 0) uneven[k - 1] = 1;
-        if (cell % nx + 1 < nx) uneven[k + 1] = 1;
-        if (cell >= nx) uneven[k - static_cast<std::size_t>(nx)] = 1;
-        if (cell + nx < grid_.cells()) uneven[k + static_cast<std::size_t>(nx)] = 1;
-    }
-    std::vector<std::uint8_t>& parted = beside_pressable_;  // by first cell
-    parted.assign(kind_.size(), 0);
-    for (int cell = 0; cell + above + 1 < grid_.cells(); ++cell) {
-        const auto k = static_cast<std::size_t>(cell), up = k + static_cast<std::size_t>(above);
-        parted[k] = uneven[k] | uneven[k + 1] | uneven[up] | uneven[up + 1];
-    }
-    // A patch of half a cell may lie on cells that its sample is not between.
-    const bool wide =
-        blocks.field().spacing > kSmallPatch * std::min(grid_.ds, grid_.dy) || !longer_.empty();
+    const auto nx = static_cast<std::size_t>(grid_.nx);
     for (std::size_t k = 0; k < placed_count_; ++k) {
         PlacedBlock& placed = placed_[k];
         for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            const auto cell = static_cast<std::size_t>(placed.cell[lane]);
-            if (parted[cell] == 0) {
-                if (!wide) continue;
-                const std::size_t own =
-                    cell + (placed.u[lane] >= 0.5f ? 1 : 0) +
-                    (placed.v[lane] >= 0.5f ? static_cast<std::size_t>(grid_.nx) : 0);
-                if (kind_[own] == kWhole) continue;
-            }
+            const std::size_t own = static_cast<std::size_t>(placed.cell[lane]) +
+                                    (placed.u[lane] >= 0.5f ? 1 : 0) +
+                                    (placed.v[lane] >= 0.5f ? nx : 0);
+            if (kind_[own] == kWhole) continue;
             placed.regular &= ~(std::uint64_t{1} << lane);
             const std::size_t before = footprints_.size();
             place_alone(blocks,

@@ -54,6 +54,13 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     for (const Eigen::Vector2d& at : wheel.profile)
         steepest_flank_ =
             std::max(steepest_flank_, std::abs(wheel.drop_slope(std::clamp(at.x(), -half, half))));
+    for (std::size_t k = 1; k < wheel.profile.size(); ++k) {
+        const Eigen::Vector2d &from = wheel.profile[k - 1], &to = wheel.profile[k];
+        const double slope = (to.y() - from.y()) / (to.x() - from.x());
+        profile_.push_back({static_cast<float>(to.x()),
+                            static_cast<float>(from.y() - slope * from.x()),
+                            static_cast<float>(slope)});
+    }
 }
 
 void GapMap::fit_grid(double half_length) {

@@ -25,7 +25,8 @@ void trace_block(const Traced& traced, const double* height, std::uint32_t motio
             __builtin_convertvector(load_doubles(traced.before + k) - after, Floats);
         const Ints some = less > 0.0f;  // else it is lost in rounding
         const Ints first = load(traced.first + k), last = load(traced.last + k);
-        store(traced.first + k, some & (first == never) ? now : first);
+        const Ints begins = some & (first == never);
+        store(traced.first + k, begins ? now : first);
         store(traced.last + k, some ? now : last);
         const Floats before = load(traced.removed + k);
         const Floats removed = some ? kept(before, last == now) + less : before;

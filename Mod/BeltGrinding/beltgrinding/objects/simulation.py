@@ -163,9 +163,10 @@ def _store_verdict(obj, result):
 
 def _prepare_recording(obj, result):
     """The property exists only where there is a recording: FreeCAD empties none of its kind."""
-    if "Recording" in obj.PropertiesList:
+    there = "Recording" in obj.PropertiesList
+    if there and result.recording is None:
         obj.removeProperty("Recording")
-    if result.recording is None:
+    if there or result.recording is None:
         return
     text = "what changed in every step, for playback"
     obj.addProperty("App::PropertyFileIncluded", "Recording", "Result", text)

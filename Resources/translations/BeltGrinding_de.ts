@@ -4805,6 +4805,26 @@ im Mittel {} abgetragen</translation>
         <translation>Bandschleifen: Beurteilen</translation>
     </message>
     <message>
+        <source>{} (coarse)</source>
+        <translation>{} (grob)</translation>
+    </message>
+    <message>
+        <source>Coarse resolution: for searching, no verdict.</source>
+        <translation>Grobe Auflösung: zum Suchen, kein Urteil.</translation>
+    </message>
+    <message>
+        <source>Resolution of the search</source>
+        <translation>Auflösung der Suche</translation>
+    </message>
+    <message>
+        <source>full</source>
+        <translation>voll</translation>
+    </message>
+    <message>
+        <source>coarse</source>
+        <translation>grob</translation>
+    </message>
+    <message>
         <source>Belt grinding: paths</source>
         <translation>Bandschleifen: Bahnen</translation>
     </message>

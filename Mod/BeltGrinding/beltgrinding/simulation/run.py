@@ -10,7 +10,7 @@ from ..cell import collision, events as event_lists, gaps, motions, reach
 from ..cell.tool_path import tool_path
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
-from ..job import inputs, law as laws, spacing
+from ..job import inputs, law as laws, resolution, spacing
 from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
@@ -91,8 +91,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
-    wheel, compliance, law, options = engine_arguments(job)
-    core.check_wheel(wheel)
+    core.check_wheel(engine_arguments(job)[0])
     left_out = []
     paths = [tool_path(job, i, warnings, gaps=left_out) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
@@ -106,6 +105,8 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     phases.end("read")
     check_faces(job, shape)
     job, chosen = spacing.settled(job, shape, warnings, context.part(0.0, 0.0))
+    job = resolution.applied(job, warnings)
+    wheel, compliance, law, options = engine_arguments(job)
     sampled = lambda: phases.end("sample")
     field = make_stocked_field(job, shape, warnings, context.part(0.0, 0.27), sampled)
     phases.end("stock")
@@ -162,6 +163,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     summary.update(
         spacing_mm=job["sampling"]["spacing_mm"],
         spacing_chosen=chosen,
+        resolution=resolution.mode(job),
         steps=len(steps["time"]),
         process_time_s=process_time,
         lost_volume_mm3=lost,

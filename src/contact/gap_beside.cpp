@@ -46,38 +46,4 @@ double GapMap::volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& bes
     return within + (beside * reach_).sum() * grid_.ds;
 }
 
-void GapMap::sum_rates(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside,
-                       std::vector<double>& sums) const {
-    sums.assign(footprints_.size(), 0.0);
-    for (std::size_t k = 0; k < footprints_.size(); ++k) {
-        const Footprint& f = footprints_[k];
-        if (f.nearest) sums[k] = f.inside * at(f, rate);
-    }
-    if (reach_.size() == 0 || beside.size() != reach_.size()) return;
-    for (const BesidePatch& patch : beside_patches_) {
-        if (patch.share > 0.0) sums[patch.footprint] += patch.share * beside_at(patch, beside);
-    }
-}
-
-void GapMap::spread(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside, double duration,
-                    Eigen::Ref<Eigen::ArrayXd> amounts) const {
-    sum_rates(rate, beside, sums_);
-    for (std::size_t k = 0; k < footprints_.size(); ++k) {
-        const Footprint& f = footprints_[k];
-        amounts[f.sample] += f.taken * sums_[k] * duration;
-    }
-}
-
-void GapMap::raise(const DisplacedPressure& pressure, std::span<float> largest) const {
-    const auto to = [&](const Footprint& f, double value) {
-        largest[f.sample] = std::max(largest[f.sample], static_cast<float>(value));
-    };
-    for (const Footprint& f : footprints_) {
-        if (f.nearest && f.inside > 0.0f) to(f, at(f, pressure.pressure));
-    }
-    for (const BesidePatch& patch : beside_patches_) {
-        if (patch.share > 0.0) to(footprints_[patch.footprint], beside_at(patch, pressure.beside));
-    }
-}
-
 }  // namespace beltgrinding

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -16,6 +17,8 @@ constexpr double kFull = 0.999;
 constexpr double kGraded = 0.001;   // of the samples away from borders: fewer small ones are chance
 constexpr double kDenser = 0.6;     // of the field's spacing: where curvature asks for more samples
 constexpr double kStraight = 1e-6;  // less: a spike, which has no way along
+// Spacing of samples, in cells, up to which their patches are certainly less than a cell.
+constexpr double kSmallPatch = 0.45;
 
 }  // namespace
 
@@ -192,39 +195,104 @@ void GapMap::for_patch(const EdgePatch& patch, Visit visit) const {
     }
 }
 
-void GapMap::mark_edges() {
+void GapMap::mark_edges(double pressable) {
     const int nx = grid_.nx, ny = grid_.ny;
     kind_.assign(nearest_.size(), kWhole);
+    // Calls visit(cell) for those up to `steps` away from a cell.
+    const auto round = [&](int cell, int steps, auto visit) {
+        const int i = cell % nx, j = cell / nx;
+        for (int b = std::max(0, j - steps); b <= std::min(ny - 1, j + steps); ++b)
+            for (int a = std::max(0, i - steps); a <= std::min(nx - 1, i + steps); ++a)
+                visit(static_cast<std::size_t>(b * nx + a));
+    };
+    pressable_.clear();
+    beside_pressable_.assign(nearest_.size(), 1);
+    if (pressable < kNone) {
+        pressable_.assign(nearest_.size(), 0);
+        std::fill(beside_pressable_.begin(), beside_pressable_.end(), std::uint8_t{0});
+        for (int cell = 0; cell < nx * ny; ++cell) {
+            if (!(nearest_[static_cast<std::size_t>(cell)] <= pressable)) continue;
+            pressable_[static_cast<std::size_t>(cell)] = 1;
+            round(cell, 1, [&](std::size_t k) { beside_pressable_[k] = 1; });
+        }
+    }
     // Marks the cells round those that `is` tells, up to `steps` away.
     const auto spread = [&](auto is, std::uint8_t kind, int steps) {
-        for (int j = 0; j < ny; ++j) {
-            for (int i = 0; i < nx; ++i) {
-                if (!is(j * nx + i)) continue;
-                for (int b = std::max(0, j - steps); b <= std::min(ny - 1, j + steps); ++b) {
-                    for (int a = std::max(0, i - steps); a <= std::min(nx - 1, i + steps); ++a) {
-                        auto& one = wider_[static_cast<std::size_t>(b * nx + a)];
-                        one = std::max(one, kind);
-                    }
-                }
-            }
-        }
+        wider_ = kind_;
+        for (int cell = 0; cell < nx * ny; ++cell)
+            if (is(cell))
+                round(cell, steps, [&](std::size_t k) { wider_[k] = std::max(wider_[k], kind); });
         kind_ = wider_;
     };
-    wider_ = kind_;
+    bool any = false;
     spread(
         [&](int cell) {
             const auto k = static_cast<std::size_t>(cell);
             const double nearest = nearest_[k];
-            if (nearest == kNone || farthest_[k] - nearest > layer_) return true;
             // A step between this cell's layer and the next one's.
             const auto steps = [&](std::size_t next) {
                 return nearest_[next] != kNone && std::abs(nearest_[next] - nearest) > layer_;
             };
-            return (cell % nx + 1 < nx && steps(k + 1)) ||
-                   (cell + nx < nx * ny && steps(k + static_cast<std::size_t>(nx)));
+            const bool edge = nearest == kNone || farthest_[k] - nearest > layer_ ||
+                              (cell % nx + 1 < nx && steps(k + 1)) ||
+                              (cell + nx < nx * ny && steps(k + static_cast<std::size_t>(nx)));
+            if (!edge) return false;
+            bool matters = false;
+            round(cell, 1,
+                  [&](std::size_t near) { matters = matters || beside_pressable_[near] != 0; });
+            any = any || matters;
+            return matters;
         },
         kEdge, 1);
+    if (!any) return;
     spread([&](int cell) { return kind_[static_cast<std::size_t>(cell)] == kEdge; }, kNearEdge, 2);
+}
+
+void GapMap::part_edges(const SampleBlocks& blocks) {
+    if (std::find(kind_.begin(), kind_.end(), kEdge) == kind_.end()) return;
+    // What is not covered as a whole: edge cells, and those that slivers of these may be given to.
+    const int nx = grid_.nx, above = grid_.ny > 1 ? nx : 0;
+    std::vector<std::uint8_t>& uneven = wider_;
+    uneven.assign(kind_.size(), 0);
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        const auto k = static_cast<std::size_t>(cell);
+        if (kind_[k] != kEdge) continue;
+        uneven[k] = 1;
+        if (cell % nx > 0) uneven[k - 1] = 1;
+        if (cell % nx + 1 < nx) uneven[k + 1] = 1;
+        if (cell >= nx) uneven[k - static_cast<std::size_t>(nx)] = 1;
+        if (cell + nx < grid_.cells()) uneven[k + static_cast<std::size_t>(nx)] = 1;
+    }
+    std::vector<std::uint8_t>& parted = beside_pressable_;  // by first cell
+    parted.assign(kind_.size(), 0);
+    for (int cell = 0; cell + above + 1 < grid_.cells(); ++cell) {
+        const auto k = static_cast<std::size_t>(cell), up = k + static_cast<std::size_t>(above);
+        parted[k] = uneven[k] | uneven[k + 1] | uneven[up] | uneven[up + 1];
+    }
+    // A patch of half a cell may lie on cells that its sample is not between.
+    const bool wide =
+        blocks.field().spacing > kSmallPatch * std::min(grid_.ds, grid_.dy) || !longer_.empty();
+    for (std::size_t k = 0; k < placed_count_; ++k) {
+        PlacedBlock& placed = placed_[k];
+        for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            const auto cell = static_cast<std::size_t>(placed.cell[lane]);
+            if (parted[cell] == 0) {
+                if (!wide) continue;
+                const std::size_t own =
+                    cell + (placed.u[lane] >= 0.5f ? 1 : 0) +
+                    (placed.v[lane] >= 0.5f ? static_cast<std::size_t>(grid_.nx) : 0);
+                if (kind_[own] == kWhole) continue;
+            }
+            placed.regular &= ~(std::uint64_t{1} << lane);
+            const std::size_t before = footprints_.size();
+            place_alone(blocks,
+                        std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane));
+            if (footprints_.size() == before) continue;
+            put_on_grid(footprints_.back());
+            footprints_.back().nearest = true;
+        }
+    }
 }
 
 void GapMap::cover(const HeightField& field) {
@@ -267,6 +335,12 @@ void GapMap::cover(const HeightField& field) {
 }
 
 void GapMap::average_gap() {
+    limit_.resize(nearest_.size());
+    for (std::size_t cell = 0; cell < nearest_.size(); ++cell)
+        limit_[cell] = static_cast<float>(nearest_[cell] + layer_);
+    const int above = grid_.ny > 1 ? grid_.nx : 0;
+    for (std::size_t k = 0; k < placed_count_; ++k)
+        average_cells(placed_[k], above, limit_.data(), gap_.data(), weight_.data());
     for (const Footprint& f : footprints_) {
         for_cells(f, [&](int cell, float share, double carried) {
             if (carried - nearest_[static_cast<std::size_t>(cell)] > layer_) return;

@@ -42,12 +42,13 @@ Handle open_image(std::string_view image) {
 
 }  // namespace
 
-InputFile::InputFile(std::string_view image, const char* format_name, int known)
+InputFile::InputFile(std::string_view image, const char* format_name, int known, int oldest)
     : bytes_(image.size()), file_(open_image(image)) {
     require(file_.ok(), "hdf5.no_file", "is no HDF5 file");
     int format = 0;
     read_scalar(file_, format_name, H5T_NATIVE_INT, &format);
-    require(format == known, "hdf5.format", "has format {format}, this version reads {known}",
+    require(format <= known && format >= (oldest > 0 ? oldest : known), "hdf5.format",
+            "has format {format}, this version reads {known}",
             {{"format", format}, {"known", known}});
 }
 

@@ -1,5 +1,4 @@
-// Own code, because no library has boxes of K slabs that are asked for the reach of a wheel, and
-// refitted at each step where heights changed and nowhere else.
+// Own code, because no library has boxes of K slabs that are asked for the reach of a wheel.
 
 #include "heightfield/kdop_tree.h"
 
@@ -13,9 +12,7 @@
 namespace beltgrinding {
 namespace {
 
-constexpr std::uint32_t kLeafSize = 24;           // segments; smaller costs memory, larger queries
-constexpr std::uint32_t kSequential = 1U << 15U;  // below this many segments one thread builds
-constexpr double kBoundarySlack = 1e-9;           // relative, of the exact segment test
+constexpr std::uint32_t kSequential = 512;  // below this many leaves one thread builds
 
 /// The slab directions: the first 3 serve K = 6, then 4 corners (14), 6 edges (18: axes and edges).
 template <int K>
@@ -96,96 +93,70 @@ bool sphere_meets(const WheelReach& reach, const Vec3& centre, double radius) {
     return across <= reach.radius + radius;
 }
 
-/// Exact: clips the segment to the slab and the half-space, then finds its nearest point to the
-/// axis.
-bool segment_meets(const WheelReach& reach, const Vec3& from, const Vec3& to) {
-    const Vec3 a = from - reach.centre;
-    const Vec3 d = to - from;
-    double begin = 0.0, end = 1.0;
-    const auto clip = [&](double value, double slope, double bound) {  // value + t slope <= bound
-        if (slope > 0.0) {
-            end = std::min(end, (bound - value) / slope);
-        } else if (slope < 0.0) {
-            begin = std::max(begin, (bound - value) / slope);
-        } else if (value > bound) {
-            end = -1.0;
-        }
-    };
-    const double slack = kBoundarySlack * reach.radius;
-    const double y = a.dot(reach.axis), dy = d.dot(reach.axis);
-    clip(y, dy, reach.half_width + slack);
-    clip(-y, -dy, reach.half_width + slack);
-    const double z = a.dot(reach.direction), dz = d.dot(reach.direction);
-    clip(-z, -dz, -reach.min_along + slack);
-    if (begin > end) return false;
-    const Vec3 a_across = a - y * reach.axis;
-    const Vec3 d_across = d - dy * reach.axis;
-    const double length2 = d_across.squaredNorm();
-    const double nearest =
-        length2 > 0.0 ? std::clamp(-a_across.dot(d_across) / length2, begin, end) : begin;
-    const double r = reach.radius + slack;
-    return (a_across + nearest * d_across).squaredNorm() <= r * r;
-}
-
 }  // namespace
 
-/// A complete binary tree in heap order: node n has children 2n + 1 and 2n + 2; the leaves are the
-/// last level and split the ordered segments evenly, so that no links need to be stored.
+/// A binary tree in preorder: a node over n leaves has 2n - 1 nodes, the first child follows it and
+/// has n / 2 leaves, so that no links need to be stored.
 template <int K>
 struct KDopTree<K>::Impl {
-    std::vector<std::uint32_t> order;    // segments as they lie in the leaves
-    std::vector<std::uint32_t> leaf_of;  // leaf of each sample
+    std::vector<std::uint32_t> order;  // samples as they lie in the leaves
     std::vector<Dop<K>> nodes;
-    std::uint32_t leaves = 1;
+    std::uint32_t leaves = 0;
 
-    std::uint32_t leaf_begin(std::uint32_t leaf) const {
-        return static_cast<std::uint32_t>(static_cast<std::uint64_t>(order.size()) * leaf / leaves);
+    std::size_t leaf_begin(std::uint32_t leaf) const {
+        return std::min(order.size(), std::size_t{kLeafSize} * leaf);
     }
-    Dop<K> bound_leaf(const HeightField& field, std::uint32_t leaf) const {
-        Dop<K> dop;
-        dop.clear();
-        for (std::uint32_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
-            const std::uint32_t s = order[i];
-            dop.add(field.top(s));
-            dop.add(field.bottom(s));
-        }
-        return dop;
+    std::span<const std::uint32_t> leaf(std::uint32_t number) const {
+        return std::span(order).subspan(leaf_begin(number),
+                                        leaf_begin(number + 1) - leaf_begin(number));
     }
-    void sort_range(const HeightField& field, std::uint32_t first_leaf, std::uint32_t leaf_count);
-    void query_node(const HeightField& field, const Query& q, std::uint32_t node,
-                    std::vector<std::uint32_t>& hits) const;
+    void build(const HeightField& field, std::uint32_t node, std::uint32_t first,
+               std::uint32_t count);
+    void query(const Query& q, std::uint32_t node, std::uint32_t first, std::uint32_t count,
+               std::vector<std::uint32_t>& found) const;
 };
 
 template <int K>
-void KDopTree<K>::Impl::sort_range(const HeightField& field, std::uint32_t first_leaf,
-                                   std::uint32_t leaf_count) {
-    if (leaf_count <= 1) return;
-    const std::uint32_t begin = leaf_begin(first_leaf);
-    const std::uint32_t end = leaf_begin(first_leaf + leaf_count);
-    const std::uint32_t middle = leaf_begin(first_leaf + leaf_count / 2);
+void KDopTree<K>::Impl::build(const HeightField& field, std::uint32_t node, std::uint32_t first,
+                              std::uint32_t count) {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(leaf_begin(first));
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(leaf_begin(first + count));
+    Dop<K>& dop = nodes[node];
+    dop.clear();
+    if (count == 1) {
+        std::sort(begin, end);
+        for (auto s = begin; s != end; ++s) {
+            dop.add(field.top(*s));
+            dop.add(field.bottom(*s));
+        }
+        return;
+    }
     Eigen::AlignedBox3d box;
-    for (std::uint32_t i = begin; i < end; ++i) box.extend(field.point[order[i]]);
-    if (box.isEmpty()) return;
+    for (auto s = begin; s != end; ++s) box.extend(field.point[*s]);
     int axis = 0;
     box.sizes().maxCoeff(&axis);
-    std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         const double pa = field.point[a][axis], pb = field.point[b][axis];
-                         return pa != pb ? pa < pb : a < b;
-                     });
-    const auto lower = [&] { sort_range(field, first_leaf, leaf_count / 2); };
-    const auto upper = [&] { sort_range(field, first_leaf + leaf_count / 2, leaf_count / 2); };
-    if (end - begin > kSequential) {
-        parallel_both(lower, upper);
+    const std::uint32_t lower = count / 2;
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(leaf_begin(first + lower));
+    std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
+        const double pa = field.point[a][axis], pb = field.point[b][axis];
+        return pa != pb ? pa < pb : a < b;
+    });
+    const std::uint32_t second = node + 2 * lower;
+    const auto build_lower = [&] { build(field, node + 1, first, lower); };
+    const auto build_upper = [&] { build(field, second, first + lower, count - lower); };
+    if (count > kSequential) {
+        parallel_both(build_lower, build_upper);
     } else {
-        lower();
-        upper();
+        build_lower();
+        build_upper();
     }
+    dop = nodes[node + 1];
+    dop.add(nodes[second]);
 }
 
 template <int K>
-void KDopTree<K>::Impl::query_node(const HeightField& field, const Query& q, std::uint32_t node,
-                                   std::vector<std::uint32_t>& hits) const {
+void KDopTree<K>::Impl::query(const Query& q, std::uint32_t node, std::uint32_t first,
+                              std::uint32_t count, std::vector<std::uint32_t>& found) const {
     const Dop<K>& dop = nodes[node];
     for (std::size_t k = 0; k < K / 2; ++k) {
         if (dop.low[k] > q.high[k] || dop.high[k] < q.low[k]) return;
@@ -193,16 +164,13 @@ void KDopTree<K>::Impl::query_node(const HeightField& field, const Query& q, std
     const Vec3 low(dop.low[0], dop.low[1], dop.low[2]);
     const Vec3 high(dop.high[0], dop.high[1], dop.high[2]);
     if (!sphere_meets(q.reach, 0.5 * (low + high), 0.5 * (high - low).norm())) return;
-    if (node < leaves - 1) {
-        query_node(field, q, 2 * node + 1, hits);
-        query_node(field, q, 2 * node + 2, hits);
+    if (count == 1) {
+        found.push_back(first);
         return;
     }
-    const std::uint32_t leaf = node - (leaves - 1);
-    for (std::uint32_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
-        const std::uint32_t s = order[i];
-        if (segment_meets(q.reach, field.bottom(s), field.top(s))) hits.push_back(s);
-    }
+    const std::uint32_t lower = count / 2;
+    query(q, node + 1, first, lower, found);
+    query(q, node + 2 * lower, first + lower, count - lower, found);
 }
 
 template <int K>
@@ -212,25 +180,11 @@ KDopTree<K>::KDopTree(const HeightField& field, const RunContext& context)
     const auto n = static_cast<std::uint32_t>(field.size());
     t.order.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) t.order[i] = i;
-    while (static_cast<std::uint64_t>(t.leaves) * kLeafSize < n) t.leaves *= 2;
-    t.sort_range(field, 0, t.leaves);
-    context.throw_if_cancelled();
-    t.leaf_of.resize(n);
+    t.leaves = n / kLeafSize + (n % kLeafSize != 0 ? 1 : 0);
+    if (t.leaves == 0) return;
     t.nodes.resize(2 * static_cast<std::size_t>(t.leaves) - 1);
-    parallel_blocks(t.leaves, 256, context, [&](std::size_t begin, std::size_t end) {
-        for (auto leaf = static_cast<std::uint32_t>(begin); leaf < end; ++leaf) {
-            std::sort(t.order.begin() + t.leaf_begin(leaf),
-                      t.order.begin() + t.leaf_begin(leaf + 1));
-            for (std::uint32_t i = t.leaf_begin(leaf); i < t.leaf_begin(leaf + 1); ++i) {
-                t.leaf_of[t.order[i]] = leaf;
-            }
-            t.nodes[t.leaves - 1 + leaf] = t.bound_leaf(field, leaf);
-        }
-    });
-    for (std::uint32_t node = t.leaves - 1; node-- > 0;) {
-        t.nodes[node] = t.nodes[2 * node + 1];
-        t.nodes[node].add(t.nodes[2 * node + 2]);
-    }
+    t.build(field, 0, 0, t.leaves);
+    context.throw_if_cancelled();
 }
 
 template <int K>
@@ -241,38 +195,43 @@ template <int K>
 KDopTree<K>& KDopTree<K>::operator=(KDopTree&&) noexcept = default;
 
 template <int K>
-void KDopTree<K>::query(const HeightField& field, const WheelReach& reach,
-                        std::vector<std::uint32_t>& hits) const {
-    hits.clear();
-    if (impl_->order.empty()) return;
-    impl_->query_node(field, prepare<K>(reach), 0, hits);
-    std::sort(hits.begin(), hits.end());
+std::uint32_t KDopTree<K>::leaves() const {
+    return impl_->leaves;
 }
 
 template <int K>
-void KDopTree<K>::refit(const HeightField& field, std::span<const std::uint32_t> changed) {
-    Impl& t = *impl_;
-    std::vector<std::uint32_t> level;
-    for (const std::uint32_t s : changed) level.push_back(t.leaves - 1 + t.leaf_of[s]);
-    std::sort(level.begin(), level.end());
-    level.erase(std::unique(level.begin(), level.end()), level.end());
-    for (const std::uint32_t node : level) {
-        t.nodes[node] = t.bound_leaf(field, node - (t.leaves - 1));
-    }
-    while (!level.empty() && level.front() > 0) {
-        for (std::uint32_t& node : level) node = (node - 1) / 2;
-        level.erase(std::unique(level.begin(), level.end()), level.end());
-        for (const std::uint32_t node : level) {
-            t.nodes[node] = t.nodes[2 * node + 1];
-            t.nodes[node].add(t.nodes[2 * node + 2]);
-        }
+std::span<const std::uint32_t> KDopTree<K>::leaf(std::uint32_t number) const {
+    return impl_->leaf(number);
+}
+
+template <int K>
+std::span<const std::uint32_t> KDopTree<K>::order() const {
+    return impl_->order;
+}
+
+template <int K>
+void KDopTree<K>::query(const WheelReach& reach, std::vector<std::uint32_t>& found) const {
+    found.clear();
+    if (impl_->leaves > 0) impl_->query(prepare<K>(reach), 0, 0, impl_->leaves, found);
+}
+
+template <int K>
+void KDopTree<K>::extend(std::uint32_t leaf, const Vec3& point) {
+    std::uint32_t node = 0, first = 0, count = impl_->leaves;
+    impl_->nodes[node].add(point);
+    while (count > 1) {
+        const std::uint32_t lower = count / 2;
+        const bool upper = leaf >= first + lower;
+        node += upper ? 2 * lower : 1;
+        first += upper ? lower : 0;
+        count = upper ? count - lower : lower;
+        impl_->nodes[node].add(point);
     }
 }
 
 template <int K>
 std::size_t KDopTree<K>::bytes() const {
     return impl_->order.capacity() * sizeof(std::uint32_t) +
-           impl_->leaf_of.capacity() * sizeof(std::uint32_t) +
            impl_->nodes.capacity() * sizeof(Dop<K>);
 }
 

@@ -157,7 +157,6 @@ py::dict to_dict(const SimulationResult& result) {
     wall["gap"] = result.wall.gap;
     wall["contact"] = result.wall.contact;
     wall["removal"] = result.wall.removal;
-    wall["refit"] = result.wall.refit;
     wall["trace"] = result.wall.trace;
     wall["events"] = result.wall.events;
     py::dict d;

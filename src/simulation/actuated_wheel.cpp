@@ -35,8 +35,7 @@ void ActuatedWheel::learn_stiffness(double commanded) {
     stiffness_ = now * std::pow(more, 1.0 - 1.0 / kExponent);
 }
 
-Pressing::State ActuatedWheel::look(const HeightField& field, const SegmentTree& tree,
-                                    const PathStep& step) {
+Pressing::State ActuatedWheel::look(const SampleBlocks& blocks, const PathStep& step) {
     const bool fresh = !begun_ || step.time - 0.5 * step.duration > end_ + kSameTime;
     if (fresh) {
         off_ = -1.0;
@@ -45,15 +44,15 @@ Pressing::State ActuatedWheel::look(const HeightField& field, const SegmentTree&
         actuator_.rest(step.force > 0.0 ? travel : -travel, step.force);
     }
     bounce_ = 0.0;
-    if (!moves()) return pressing_.press(field, tree, step.work_from_contact, lagging(step).force);
+    if (!moves()) return pressing_.press(blocks, step.work_from_contact, lagging(step).force);
     if (fresh) {
-        const auto state = pressing_.press(field, tree, step.work_from_contact, step.force);
+        const auto state = pressing_.press(blocks, step.work_from_contact, step.force);
         if (state != Pressing::State::kNoContact) {
             actuator_.rest(pressing_.approach(), step.force);
         }
     }
     pressing_.stand(step.work_from_contact);
-    const auto state = pressing_.hold(field, tree, actuator_.place(), 0.0);
+    const auto state = pressing_.hold(blocks, actuator_.place(), 0.0);
     learn_stiffness(step.force);
     return actuator_.held_by_stop(pressing_.solution().force) ? pressing_.at_stop() : state;
 }
@@ -95,11 +94,11 @@ void ActuatedWheel::begin(double seconds, double commanded) {
     actuator_.begin(seconds, commanded, stiffness_);
 }
 
-double ActuatedWheel::press_stage(const HeightField& field, const SegmentTree& tree) {
+double ActuatedWheel::press_stage(const SampleBlocks& blocks) {
     const ForceActuator::Stage stage = actuator_.stage();
-    pressing_.hold(field, tree, stage.place, stage.give);
+    pressing_.hold(blocks, stage.place, stage.give);
     if (const auto within = actuator_.limited(pressing_.approach())) {
-        pressing_.hold(field, tree, *within, 0.0);
+        pressing_.hold(blocks, *within, 0.0);
         if (std::abs(*within) >= process_.force_travel) pressing_.at_stop();
         actuator_.end_stage(*within);
     } else {

@@ -20,7 +20,7 @@ class ActuatedWheel {
     /// motion it rests where the force is met, else at its travel's end towards the work (away from
     /// it where no force is commanded), and the regulator has come to the step's force. Changes
     /// nothing that a second call would not find.
-    Pressing::State look(const HeightField& field, const SegmentTree& tree, const PathStep& step);
+    Pressing::State look(const SampleBlocks& blocks, const PathStep& step);
     /// The step with the force that is met in it, if that only lags.
     PathStep lagging(const PathStep& step) const;
     /// Parts that the step that was looked at should be cut into, for the wheel to be followed: 1
@@ -32,7 +32,7 @@ class ActuatedWheel {
     void begin(double seconds, double commanded);
     /// Solves the contact of the next stage. Returns the share of the time step in which its force
     /// acts.
-    double press_stage(const HeightField& field, const SegmentTree& tree);
+    double press_stage(const SampleBlocks& blocks);
     /// The step is done, what it begins and ends with included.
     void end(const PathStep& step);
 

@@ -17,9 +17,9 @@ constexpr double kJoule = 1e-3;  // of a N mm
 
 }  // namespace
 
-Grinding::Grinding(HeightField& field, Pressing& pressing, const RemovalLaw& law,
+Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
                    const SimulationOptions& options, TraceKeeper* trace)
-    : field_(field),
+    : blocks_(blocks),
       pressing_(pressing),
       law_(law),
       process_(options.process),
@@ -27,9 +27,9 @@ Grinding::Grinding(HeightField& field, Pressing& pressing, const RemovalLaw& law
       trace_(trace),
       belt_(options.process.belt),
       shifts_(
-          Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(field.size()),
+          Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(blocks.field().size()),
                                 static_cast<Eigen::Index>(options.outputs.shifted_laws.size()))) {
-    if (outputs_.force_influence) force_influence_.emplace(field.size());
+    if (outputs_.force_influence) force_influence_.emplace(blocks.field().size());
 }
 
 double Grinding::set_rate(const PathStep& step) {
@@ -54,29 +54,27 @@ double Grinding::removal(const PathStep& step) {
     return pressing_.yields() ? fastest * step.duration : 0.0;
 }
 
-double Grinding::grind(const PathStep& step, double share, SegmentTree& tree,
-                       std::vector<std::uint32_t>& changed) {
+double Grinding::grind(const PathStep& step, double share) {
     deepest_ = pressing_.approach();
     impulse_ = greatest_force_ = 0.0;
     motion_ = step.pose;
-    if (pressing_.rigid()) return cut_all(step, changed);
+    if (pressing_.rigid()) return cut_all(step);
     double volume = 0.0;
     double left = step.duration;
     const double least = step.duration / (share * kMaxParts);
     while (left > 0.0) {
         follow_trace();
         const double part = holds(left, least);
-        volume += remove(part, changed);
+        volume += remove(part);
         left -= part;
         if (left <= 1e-12 * step.duration) break;
-        if (!press_again(step, tree, changed)) break;
+        if (!press_again(step)) break;
         deepest_ = std::max(deepest_, pressing_.approach());
     }
     return volume;
 }
 
-double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel,
-                       const SegmentTree& tree, std::vector<std::uint32_t>& changed) {
+double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel) {
     deepest_ = pressing_.approach();
     impulse_ = greatest_force_ = 0.0;
     motion_ = step.pose;
@@ -90,11 +88,11 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel,
         if (pressed()) part = holds(part, std::min(least, part));
         wheel.begin(part, step.force);
         for (int stage = 0; stage < ForceActuator::kStages; ++stage) {
-            const double time = part * wheel.press_stage(field_, tree);
+            const double time = part * wheel.press_stage(blocks_);
             if (!pressed()) continue;
             follow_trace();
             set_rate(step);
-            volume += remove(time, changed);
+            volume += remove(time);
             deepest_ = std::max(deepest_, pressing_.approach());
             greatest_force_ = std::max(greatest_force_, pressing_.solution().force);
         }
@@ -109,28 +107,17 @@ void Grinding::follow_trace() {
     trace_->press(pressing_.map(), pressing_.displaced_pressure());
 }
 
-bool Grinding::press_again(const PathStep& step, SegmentTree& tree,
-                           std::vector<std::uint32_t>& changed) {
-    auto state = pressing_.press_again(field_, step.force);
-    if (state == Pressing::State::kMoved) {
-        refit(tree, changed);
-        state = pressing_.press_anew(field_, tree, step.force);
-    }
+bool Grinding::press_again(const PathStep& step) {
+    auto state = pressing_.press_again(blocks_, step.force);
+    if (state == Pressing::State::kMoved) state = pressing_.press_anew(blocks_, step.force);
     if (state == Pressing::State::kNoContact) return false;
     set_rate(step);
     return true;
 }
 
-void Grinding::refit(SegmentTree& tree, std::vector<std::uint32_t>& changed) {
-    const Stopwatch watch(times_.refit);
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    tree.refit(field_, changed);
-}
-
 // A rigid tool: all that overlaps goes, whatever the law.
-double Grinding::cut_all(const PathStep& step, std::vector<std::uint32_t>& changed) {
-    const double volume = pressing_.map().cut(field_, changed);
+double Grinding::cut_all(const PathStep& step) {
+    const double volume = pressing_.map().cut(blocks_);
     belt_.volume += volume;
     belt_.time += step.duration;
     integrated_rate_ += volume;
@@ -142,7 +129,7 @@ double Grinding::holds(double left, double least) const {
     return std::clamp(kRecession * pressing_.indentation() / fastest_, std::min(least, left), left);
 }
 
-double Grinding::remove(double part, std::vector<std::uint32_t>& changed) {
+double Grinding::remove(double part) {
     const Stopwatch watch(times_.removal);
     GapMap& map = pressing_.map();
     const ContactSolution& contact = pressing_.solution();
@@ -155,11 +142,14 @@ double Grinding::remove(double part, std::vector<std::uint32_t>& changed) {
         most_beside << most.head(columns), most.tail(columns);
         beside_ = beside_.min(most_beside);
     }
-    const double removed = map.remove(field_, rate_, beside_, part, contact.approach, changed);
+    const double removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
     for (std::size_t k = 0; k < outputs_.shifted_laws.size(); ++k) {
         set_rate(*outputs_.shifted_laws[k], shifted_, shifted_beside_);
-        map.spread(shifted_.min(most) - rate_, shifted_beside_.min(most_beside) - beside_, part,
-                   shifts_.col(static_cast<Eigen::Index>(k)));
+        auto shift = shifts_.col(static_cast<Eigen::Index>(k));
+        map.for_samples(shifted_.min(most) - rate_, shifted_beside_.min(most_beside) - beside_,
+                        part, [&](std::size_t position, double amount) {
+                            shift[blocks_.sample(position)] += amount;
+                        });
     }
     if (force_influence_) note_force(part);
     impulse_ += contact.force * part;
@@ -192,8 +182,9 @@ void Grinding::note_force(double part) {
         pressed_beside_ /= kMoreForce;
     }
     map.for_samples((pressed_ - rate_) / kMoreForce, pressed_beside_, part,
-                    [&](std::uint32_t sample, double amount) {
-                        force_influence_->add(sample, amount, motion_);
+                    [&](std::size_t position, double amount) {
+                        force_influence_->add(blocks_.sample(position), map.scale() * amount,
+                                              motion_);
                     });
 }
 

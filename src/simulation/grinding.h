@@ -16,7 +16,7 @@ namespace beltgrinding {
 class Grinding {
   public:
     /// All of them must outlive it. `trace` may be null.
-    Grinding(HeightField& field, Pressing& pressing, const RemovalLaw& law,
+    Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
              const SimulationOptions& options, TraceKeeper* trace);
 
     /// mm that the law takes during one step at the wheel's deepest place as it is pressed now, if
@@ -24,14 +24,11 @@ class Grinding {
     double removal(const PathStep& step);
     /// Removes what the law says during one step, in as many parts as the pressure needs to follow.
     /// After `removal`, for the wheel as it is pressed then. `share`: of a planned step, which has
-    /// a number of parts. Appends the samples that it lowered to `changed`; the tree has to be
-    /// refitted to them, except to those up to `refitted`. Returns the volume, mm3.
-    double grind(const PathStep& step, double share, SegmentTree& tree,
-                 std::vector<std::uint32_t>& changed);
+    /// a number of parts. Returns the volume, mm3.
+    double grind(const PathStep& step, double share);
 
     /// The same under a force control that takes time, with a wheel that moves: after its `look`.
-    double grind(const PathStep& step, double share, ActuatedWheel& wheel, const SegmentTree& tree,
-                 std::vector<std::uint32_t>& changed);
+    double grind(const PathStep& step, double share, ActuatedWheel& wheel);
 
     /// mm, where the wheel stood deepest in the last step that was ground, from its programmed
     /// pose.
@@ -43,8 +40,6 @@ class Grinding {
     double impulse() const { return impulse_; }
     /// N, the greatest force in the last step that was ground.
     double greatest_force() const { return greatest_force_; }
-    /// Refits the tree to the samples `changed`, which are in order then, each of them once.
-    void refit(SegmentTree& tree, std::vector<std::uint32_t>& changed);
     /// Hands over `SimulationResult::shifts`.
     Eigen::ArrayXXd take_shifts() { return std::move(shifts_); }
     /// Hands over `SimulationResult::force_influence`, of so many motions.
@@ -59,17 +54,17 @@ class Grinding {
     void note_force(double part);
     /// The rates of a law at the current contact.
     void set_rate(const RemovalLaw& law, Eigen::ArrayXd& rate, Eigen::ArrayXd& beside);
-    double cut_all(const PathStep& step, std::vector<std::uint32_t>& changed);
+    double cut_all(const PathStep& step);
     /// s for which the pressure holds while the surface recedes, at least `least`, at most `left`.
     double holds(double left, double least) const;
     /// Removes for `part` s what the law says of the wheel as it is pressed. Returns the volume,
     /// mm3.
-    double remove(double part, std::vector<std::uint32_t>& changed);
+    double remove(double part);
     void follow_trace();
     /// False if the wheel has lost the work.
-    bool press_again(const PathStep& step, SegmentTree& tree, std::vector<std::uint32_t>& changed);
+    bool press_again(const PathStep& step);
 
-    HeightField& field_;
+    SampleBlocks& blocks_;
     Pressing& pressing_;
     const RemovalLaw& law_;
     const ProcessSettings& process_;

@@ -46,16 +46,17 @@ Influence Influence::grouped(std::span<const std::uint32_t> group, std::size_t c
     return result;
 }
 
-void InfluenceKeeper::remove(const std::vector<double>& heights,
-                             std::span<const std::uint32_t> changed, std::uint32_t motion) {
+void InfluenceKeeper::remove(const SampleBlocks& blocks,
+                             std::span<const SampleBlocks::Change> changes, std::uint32_t motion) {
     begin(motion);
-    for (const std::uint32_t s : changed) {
-        const double removed = height_[s] - heights[s];
-        if (!(removed > 0.0)) continue;  // lost in rounding
-        height_[s] = heights[s];
+    for_changed(changes, [&](std::size_t position) {
+        const std::uint32_t s = blocks.sample(position);
+        const double height = blocks.height(position), removed = height_[s] - height;
+        if (!(removed > 0.0)) return;  // lost in rounding
+        height_[s] = height;
         if (removed_[s] == 0.0) touched_.push_back(s);
         removed_[s] += removed;
-    }
+    });
 }
 
 void InfluenceKeeper::add(std::uint32_t sample, double amount, std::uint32_t motion) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "beltgrinding/simulation.h"
+#include "heightfield/sample_blocks.h"
 
 namespace beltgrinding {
 
@@ -17,8 +18,8 @@ class InfluenceKeeper {
     /// For `add` alone, on a field of so many samples.
     explicit InfluenceKeeper(std::size_t samples) : removed_(samples, 0.0) {}
 
-    /// The motion number `motion` has lowered the samples `changed` (each named once) to `heights`.
-    void remove(const std::vector<double>& heights, std::span<const std::uint32_t> changed,
+    /// The motion number `motion` has lowered samples to the heights that they have now.
+    void remove(const SampleBlocks& blocks, std::span<const SampleBlocks::Change> changes,
                 std::uint32_t motion);
     /// The motion number `motion` has `amount` mm at a sample.
     void add(std::uint32_t sample, double amount, std::uint32_t motion);

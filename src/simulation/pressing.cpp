@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/stopwatch.h"
@@ -15,6 +16,9 @@ constexpr double kMargin = 0.2;
 // mm: below this change of approach the radial gap need not be mapped anew (it would change by
 // the approach times 1 - cos of the contact's half angle, 0.4 % at 5 degrees).
 constexpr double kPlacement = 0.05;
+// mm: cells with larger gaps bear no pressure, as a rule, where the wheel stands as at the last
+// pose; else edges are looked at once more.
+constexpr double kPressable = 0.03;
 constexpr int kMaxPlacements = 12;
 constexpr double kAtStop = 1e-9;  // mm
 // mm by which the wheel may move while it grinds at a place: samples further away than the margin
@@ -40,7 +44,7 @@ Frame Pressing::placed_frame() const {
     return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
 }
 
-void Pressing::localise(const HeightField& field, const SegmentTree& tree, double margin) {
+void Pressing::localise(const SampleBlocks& blocks, double margin) {
     const Stopwatch watch(times_.localise);
     const Frame frame = placed_frame();
     WheelReach reach;
@@ -48,31 +52,31 @@ void Pressing::localise(const HeightField& field, const SegmentTree& tree, doubl
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
     reach.radius = process_.wheel.radius + margin;
-    reach.half_width = 0.5 * (process_.wheel.width + field.spacing) + model_.beside();
+    reach.half_width = 0.5 * (process_.wheel.width + blocks.field().spacing) + model_.beside();
     reach.min_along = kAhead * process_.wheel.radius;
-    tree.query(field, reach, hits_);
+    near_.find(blocks, reach, hits_);
 }
 
-void Pressing::map_gap(const HeightField& field, double reach) {
+void Pressing::map_gap(const SampleBlocks& blocks, double reach, double pressable) {
     const Stopwatch watch(times_.gap);
-    map_.update(field, hits_, placed_frame(), reach);
+    map_.update(blocks, hits_, placed_frame(), reach, kAhead * process_.wheel.radius, pressable);
 }
 
-void Pressing::solve_force(double force) {
+void Pressing::solve_force(const SampleBlocks& blocks, double force) {
     ContactProblem problem;
     problem.force = force;
-    solve(std::move(problem));
+    solve(blocks, std::move(problem));
 }
 
-void Pressing::solve_held() {
+void Pressing::solve_held(const SampleBlocks& blocks) {
     ContactProblem problem;
     problem.force_control = false;
     problem.approach = held_at_ - placed_;
     problem.robot_compliance = give_;
-    solve(std::move(problem));
+    solve(blocks, std::move(problem));
 }
 
-void Pressing::solve(ContactProblem problem) {
+void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     const Stopwatch watch(times_.contact);
     const ContactGrid& grid = map_.grid();
     Eigen::ArrayXd start;
@@ -81,32 +85,39 @@ void Pressing::solve(ContactProblem problem) {
         contact_.reset();  // its memory is taken again
         contact_ = model_.prepare(grid);
     }
-    problem.gap = map_.gap();
     problem.drop = profile_drop(process_.wheel, grid);
-    problem.coverage = map_.coverage();
     problem.tolerance = tolerance_;
-    solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
+    const auto solve_once = [&] {
+        problem.gap = map_.gap();
+        problem.coverage = map_.coverage();
+        solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
+    };
+    solve_once();
+    if (!map_.holds_for(solution_.pressure)) {
+        map_.look_at_all_edges(blocks);
+        solve_once();
+    }
     warm_ = solution_.force > 0.0;
     displaced_ = displaced(grid, solution_, problem.coverage, model_.beside());
     map_.reach_beside(displaced_);
 }
 
-bool Pressing::find_touch(const HeightField& field, const SegmentTree& tree) {
+bool Pressing::find_touch(const SampleBlocks& blocks) {
     const double travel = process_.force_travel;
     placed_ = 0.0;
-    localise(field, tree, travel + kMargin);
-    map_gap(field, travel + kMargin);
+    localise(blocks, travel + kMargin);
+    map_gap(blocks, travel + kMargin, std::numeric_limits<double>::infinity());
     if (map_.empty() || !(map_.lowest() <= travel)) return false;
     placed_ = std::clamp(map_.lowest(), -travel, travel);
     return true;
 }
 
-Pressing::State Pressing::press_position(const HeightField& field, const SegmentTree& tree) {
+Pressing::State Pressing::press_position(const SampleBlocks& blocks) {
     placed_ = 0.0;
     for (int i = 0; i < kMaxPlacements; ++i) {
-        localise(field, tree, kMargin);
-        map_gap(field, kMargin);
-        solve_held();
+        localise(blocks, kMargin);
+        map_gap(blocks, kMargin, kPressable);
+        solve_held(blocks);
         if (solution_.area <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
         if (std::abs(solution_.approach) <= kPlacement) break;
@@ -115,15 +126,14 @@ Pressing::State Pressing::press_position(const HeightField& field, const Segment
     return State::kPressed;
 }
 
-Pressing::State Pressing::press(const HeightField& field, const SegmentTree& tree,
-                                const Frame& work_from_contact, double force) {
+Pressing::State Pressing::press(const SampleBlocks& blocks, const Frame& work_from_contact,
+                                double force) {
     programmed_ = work_from_contact;
-    state_ = process_.force_control ? press_force(field, tree, force) : press_position(field, tree);
+    state_ = process_.force_control ? press_force(blocks, force) : press_position(blocks);
     return state_;
 }
 
-Pressing::State Pressing::press_force(const HeightField& field, const SegmentTree& tree,
-                                      double force) {
+Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) {
     const auto nothing = [&] {
         warm_ = false;
         placed_ = 0.0;
@@ -134,16 +144,16 @@ Pressing::State Pressing::press_force(const HeightField& field, const SegmentTre
     if (force <= 0.0) return nothing();
     bool searched = false;
     if (!warm_) {
-        if (!find_touch(field, tree)) return nothing();
+        if (!find_touch(blocks)) return nothing();
         searched = true;
     }
     for (int i = 0;; ++i) {
-        localise(field, tree, kMargin);
-        map_gap(field, kMargin);
-        if (!map_.empty()) solve_force(force);
+        localise(blocks, kMargin);
+        map_gap(blocks, kMargin, kPressable);
+        if (!map_.empty()) solve_force(blocks, force);
         if (map_.empty() || solution_.force <= 0.0) {
             // The surface fell away from where it was at the last pose.
-            if (searched || !find_touch(field, tree)) return nothing();
+            if (searched || !find_touch(blocks)) return nothing();
             searched = true;
             continue;
         }
@@ -166,13 +176,13 @@ Pressing::State Pressing::press_force(const HeightField& field, const SegmentTre
                    last || std::abs(wanted - placed_) < near) {
             if (last) {
                 placed_ = wanted;
-                localise(field, tree, kMargin);
-                map_gap(field, kMargin);
+                localise(blocks, kMargin);
+                map_gap(blocks, kMargin, kPressable);
             }
             if (!map_.empty()) {
                 held_at_ = placed_;
                 give_ = 0.0;
-                solve_held();
+                solve_held(blocks);
             }
             return !map_.empty() && solution_.force > 0.0 ? state : nothing();
         }
@@ -195,18 +205,17 @@ std::optional<Pressing::Pressed> Pressing::with_force(double force) {
     return pressed;
 }
 
-Pressing::State Pressing::hold(const HeightField& field, const SegmentTree& tree, double place,
-                               double give) {
+Pressing::State Pressing::hold(const SampleBlocks& blocks, double place, double give) {
     held_at_ = place;
     give_ = give;
     state_ = State::kNoContact;
     for (int i = 0; i < kMaxPlacements; ++i) {
         // Heights only fall, so that what was found before has all that is in reach now.
         if (!localised_ || std::abs(placed_ - *localised_) > kDrift) {
-            localise(field, tree, kMargin + kDrift);
+            localise(blocks, kMargin + kDrift);
             localised_ = placed_;
         }
-        map_gap(field, kMargin);
+        map_gap(blocks, kMargin, kPressable);
         if (map_.empty()) {
             const bool there = placed_ == place;
             placed_ = place;
@@ -215,7 +224,7 @@ Pressing::State Pressing::hold(const HeightField& field, const SegmentTree& tree
             solution_ = ContactSolution{};
             return state_;
         }
-        solve_held();
+        solve_held(blocks);
         if (std::abs(solution_.approach) <= kPlacement) break;
         placed_ += solution_.approach;
     }
@@ -223,14 +232,14 @@ Pressing::State Pressing::hold(const HeightField& field, const SegmentTree& tree
     return state_;
 }
 
-Pressing::State Pressing::press_again(const HeightField& field, double force) {
+Pressing::State Pressing::press_again(const SampleBlocks& blocks, double force) {
     if (state_ == State::kOverCompressed) return State::kMoved;  // it follows what recedes
-    map_gap(field, kMargin);
+    map_gap(blocks, kMargin, kPressable);
     const bool at_stop = state_ == State::kBeyondTravel;
     if (process_.force_control && !at_stop) {
-        solve_force(force);
+        solve_force(blocks, force);
     } else {
-        solve_held();
+        solve_held(blocks);
     }
     if (solution_.force <= 0.0) return State::kNoContact;
     if (at_stop) {

@@ -9,7 +9,7 @@
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/simulation.h"
 #include "contact/gap_map.h"
-#include "heightfield/kdop_tree.h"
+#include "heightfield/sample_blocks.h"
 
 namespace beltgrinding {
 
@@ -29,10 +29,9 @@ class Pressing {
     enum class State { kNoContact, kPressed, kBeyondTravel, kOverCompressed, kMoved };
 
     /// Presses at the programmed pose.
-    State press(const HeightField& field, const SegmentTree& tree, const Frame& work_from_contact,
-                double force);
+    State press(const SampleBlocks& blocks, const Frame& work_from_contact, double force);
     /// Solves again at the same place after the surface was lowered (no new localisation).
-    State press_again(const HeightField& field, double force);
+    State press_again(const SampleBlocks& blocks, double force);
     struct Pressed {
         ContactSolution solution;
         DisplacedPressure pressure;
@@ -47,15 +46,15 @@ class Pressing {
     }
     /// Holds the wheel by a spring: it stands at `place` mm along z from the pose, less `give` mm
     /// for each N of the contact.
-    State hold(const HeightField& field, const SegmentTree& tree, double place, double give);
+    State hold(const SampleBlocks& blocks, double place, double give);
     /// The wheel that is held is so by an end of the travel. Returns its state.
     State at_stop() {
         if (state_ != State::kNoContact) state_ = State::kBeyondTravel;
         return state_;
     }
-    /// Presses anew where `press` did. `tree`: of the lowered field.
-    State press_anew(const HeightField& field, const SegmentTree& tree, double force) {
-        return press(field, tree, Frame(programmed_), force);
+    /// Presses anew where `press` did.
+    State press_anew(const SampleBlocks& blocks, double force) {
+        return press(blocks, Frame(programmed_), force);
     }
 
     /// A rigid tool: `solution` has an area and no pressure.
@@ -81,19 +80,21 @@ class Pressing {
     std::string describe() const { return contact_ ? contact_->describe() : model_.describe(); }
     /// s of wall time for localise, gap and contact so far.
     const PhaseTimes& times() const { return times_; }
-    std::size_t localised() const { return hits_.size(); }
+    /// Samples that were mapped last.
+    std::size_t localised() const { return map_.samples(); }
 
   private:
-    State press_force(const HeightField& field, const SegmentTree& tree, double force);
-    State press_position(const HeightField& field, const SegmentTree& tree);
+    State press_force(const SampleBlocks& blocks, double force);
+    State press_position(const SampleBlocks& blocks);
     Frame placed_frame() const;
-    void localise(const HeightField& field, const SegmentTree& tree, double margin);
-    void map_gap(const HeightField& field, double reach);
-    void solve_force(double force);
+    void localise(const SampleBlocks& blocks, double margin);
+    /// `pressable`: as of `GapMap::update`.
+    void map_gap(const SampleBlocks& blocks, double reach, double pressable);
+    void solve_force(const SampleBlocks& blocks, double force);
     /// The wheel is held at `held_at_`, by a spring that gives way by `give_`.
-    void solve_held();
-    void solve(ContactProblem problem);
-    bool find_touch(const HeightField& field, const SegmentTree& tree);
+    void solve_held(const SampleBlocks& blocks);
+    void solve(const SampleBlocks& blocks, ContactProblem problem);
+    bool find_touch(const SampleBlocks& blocks);
 
     const ProcessSettings& process_;
     double tolerance_;
@@ -102,7 +103,8 @@ class Pressing {
     std::unique_ptr<PreparedContact> contact_;  // on the grid of the last solution
     ContactSolution solution_;
     DisplacedPressure displaced_;
-    std::vector<std::uint32_t> hits_;
+    NearBlocks near_;
+    std::vector<std::uint32_t> hits_;  // blocks
     Frame programmed_ = Frame::Identity();
     double placed_ = 0.0;  // mm along z: where the wheel stands undeformed for the gap
     double growth_;        // mm

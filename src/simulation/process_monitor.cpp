@@ -28,32 +28,36 @@ constexpr double kLostShare = 0.01;  // of what the law takes: less is not told
 
 }  // namespace
 
-ProcessMonitor::ProcessMonitor(const HeightField& field, const ToolPath& path,
+ProcessMonitor::ProcessMonitor(const SampleBlocks& blocks, const ToolPath& path,
                                const ProcessSettings& process, const MonitorLimits& limits,
                                const RemovalLaw& law)
-    : field_(field),
+    : blocks_(blocks),
+      field_(blocks.field()),
       path_(path),
       process_(process),
       limits_(limits),
       law_(law),
       events_(path, kPause) {
     if (limits.lower.empty()) return;
-    below_.resize(field.size());
-    for (std::uint32_t s = 0; s < field.size(); ++s) below_[s] = field.height[s] < lower_limit(s);
+    below_.resize(field_.size());
+    for (std::size_t k = 0; k < below_.size(); ++k) {
+        below_[k] = blocks_.height(k) < lower_limit(k);
+        highest_limit_ = std::max(highest_limit_, lower_limit(k));
+    }
 }
 
-double ProcessMonitor::lower_limit(std::uint32_t sample) const {
+double ProcessMonitor::lower_limit(std::size_t position) const {
     const auto& limits = limits_.lower;
-    return limits[limits.size() == 1 ? 0 : sample];
+    return limits[limits.size() == 1 ? 0 : blocks_.sample(position)];
 }
 
-void ProcessMonitor::put(Event& event, std::uint32_t sample) const {
-    event.point = field_.top(sample);
-    event.face = field_.face[sample] + 1;
+void ProcessMonitor::put(Event& event, std::size_t position) const {
+    event.point = blocks_.top(position);
+    event.face = field_.face[blocks_.sample(position)] + 1;
 }
 
 void ProcessMonitor::put(Event& event, const Pressing& pressing, double s, double y) const {
-    if (const auto sample = pressing.map().sample_near(s, y)) put(event, *sample);
+    if (const auto position = pressing.map().sample_near(s, y)) put(event, *position);
 }
 
 void ProcessMonitor::begin(const PathStep& step, std::size_t planned) {
@@ -357,27 +361,30 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
                         pressing.approach() - process_.wheel.radius + r * std::cos(angle));
 }
 
-void ProcessMonitor::ground(std::span<const std::uint32_t> changed) {
+void ProcessMonitor::ground(std::span<const SampleBlocks::Change> changes) {
     const std::size_t index = steps_.size() - 1;
     double deepest = 0.0, worst = 0.0;
-    std::uint32_t deepest_at = 0, worst_at = 0;
+    std::size_t deepest_at = 0, worst_at = 0;
     bool fresh = false;  // a sample was within its limits before
-    for (const std::uint32_t s : changed) {
-        const double height = field_.height[s];
-        if (height < deepest) deepest = height, deepest_at = s;
-        if (below_.empty() || height >= lower_limit(s)) continue;
-        if (below_[s] == 0) {
-            below_[s] = 1;
+    const double of_interest = std::max(highest_limit_, -field_.depth);
+    const auto look = [&](std::size_t k) {
+        const double height = blocks_.height(k);
+        if (height < deepest) deepest = height, deepest_at = k;
+        if (below_.empty() || height >= lower_limit(k)) return;
+        if (below_[k] == 0) {
+            below_[k] = 1;
             fresh = true;
         }
-        if (height - lower_limit(s) < worst) worst = height - lower_limit(s), worst_at = s;
-    }
+        if (height - lower_limit(k) < worst) worst = height - lower_limit(k), worst_at = k;
+    };
+    for (const SampleBlocks::Change& change : changes)
+        if (blocks_.lowest(change.block) < of_interest) for_changed({&change, 1}, look);
     if (fresh) {
-        if (Event* event = note("gouge", index, field_.height[worst_at], 0, -worst)) {
+        if (Event* event = note("gouge", index, blocks_.height(worst_at), 0, -worst)) {
             event->limit = lower_limit(worst_at);
             event->facts = {{"event.gouge",
                              "ground to {height:.3f} mm, below the lower limit of {limit:.3g} mm",
-                             {{"height", field_.height[worst_at]}, {"limit", event->limit}}}};
+                             {{"height", blocks_.height(worst_at)}, {"limit", event->limit}}}};
             put(*event, worst_at);
         }
     }
@@ -488,7 +495,7 @@ void ProcessMonitor::lost(const Pressing& pressing, double asked, double removed
     if (less <= lost_.most) return;
     lost_.most = less;
     lost_.step = steps_.size() - 1;
-    lost_.sample = pressing.map().sample_near(0.0, 0.0);
+    lost_.position = pressing.map().sample_near(0.0, 0.0);
 }
 
 void ProcessMonitor::note_lost_volume() {
@@ -501,7 +508,7 @@ void ProcessMonitor::note_lost_volume() {
                      {{"lost", lost_.lost},
                       {"asked", lost_.asked},
                       {"share", 100.0 * lost_.lost / lost_.asked}}}};
-    if (lost_.sample) put(*event, *lost_.sample);
+    if (lost_.position) put(*event, *lost_.position);
 }
 
 std::vector<Event> ProcessMonitor::take() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,8 +16,8 @@ namespace beltgrinding {
 /// It only looks on: the result is the same without it.
 class ProcessMonitor {
   public:
-    /// All of them must outlive it. `field` is the one that is ground.
-    ProcessMonitor(const HeightField& field, const ToolPath& path, const ProcessSettings& process,
+    /// All of them must outlive it. `blocks` are those that are ground.
+    ProcessMonitor(const SampleBlocks& blocks, const ToolPath& path, const ProcessSettings& process,
                    const MonitorLimits& limits, const RemovalLaw& law);
 
     /// A step begins: what is told after this is of it. `planned`: number of the step that it is
@@ -27,8 +28,8 @@ class ProcessMonitor {
     /// The law takes `removal` mm in the step, more than `most`, though it is one of `parts` that
     /// the planned step was cut into.
     void coarse(const Pressing& pressing, double removal, double most, int parts);
-    /// The step has lowered the samples `changed`.
-    void ground(std::span<const std::uint32_t> changed);
+    /// The step has lowered samples.
+    void ground(std::span<const SampleBlocks::Change> changes);
     /// Under a force control that takes time the step's greatest force was `force` N, and the wheel
     /// came back to the work after `bounce` s; 0: it did not.
     void moved(const Pressing& pressing, Pressing::State state, double force, double bounce);
@@ -51,11 +52,12 @@ class ProcessMonitor {
     void note_orientation_jumps();
     void note_lost_contact();
     void note_lost_volume();
-    double lower_limit(std::uint32_t sample) const;
-    void put(Event& event, std::uint32_t sample) const;
+    double lower_limit(std::size_t position) const;
+    void put(Event& event, std::size_t position) const;
     void put(Event& event, const Pressing& pressing, double s, double y) const;
 
-    const HeightField& field_;
+    const SampleBlocks& blocks_;
+    const HeightField& field_;  // for all but the heights
     const ToolPath& path_;
     std::vector<PathStep> steps_;       // begun so far
     std::vector<std::size_t> planned_;  // by step: number of the planned one
@@ -67,12 +69,13 @@ class ProcessMonitor {
     struct LostVolume {
         double asked = 0.0, lost = 0.0, most = 0.0;
         std::size_t step = 0;
-        std::optional<std::uint32_t> sample;
+        std::optional<std::size_t> position;
     };
     LostVolume lost_;
     std::size_t pass_ = 0;               // of the step, by number
     std::vector<std::uint8_t> touched_;  // by step
-    std::vector<std::uint8_t> below_;    // by sample: under its lower limit
+    std::vector<std::uint8_t> below_;    // by position: under its lower limit
+    double highest_limit_ = -std::numeric_limits<double>::infinity();  // mm, of all lower ones
 };
 
 }  // namespace beltgrinding

@@ -1,6 +1,7 @@
 #include "simulation/recording.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <utility>
 
@@ -13,27 +14,32 @@ namespace {
 // milliseconds.
 constexpr std::size_t kKeyFrameChanges = std::size_t{1} << 21;
 
-/// Heights of samples, each the last one given; taken out in ascending order.
+/// Heights by number, each the last one given; taken out in ascending order.
 class Latest {
   public:
-    explicit Latest(std::size_t samples)
-        : marked_((samples + 63) / 64, 0), height_(samples, 0.0f) {}
-    void set(std::uint32_t sample, float height) {
-        marked_[sample >> 6] |= std::uint64_t{1} << (sample & 63);
-        height_[sample] = height;
+    explicit Latest(std::size_t numbers)
+        : marked_((numbers + 63) / 64, 0), height_(numbers, 0.0f) {}
+    void set(std::uint32_t number, float height) {
+        marked_[number >> 6] |= std::uint64_t{1} << (number & 63);
+        height_[number] = height;
     }
-    Recording::Changes take() {
-        Recording::Changes changes;
+    /// Calls visit(number, height) for all that were given.
+    template <class Visit>
+    void take(Visit visit) {
         for (std::size_t w = 0; w < marked_.size(); ++w) {
             for (std::uint64_t bits = marked_[w]; bits != 0; bits &= bits - 1) {
-                const auto sample = static_cast<std::uint32_t>(
-                    64 * w + static_cast<std::size_t>(__builtin_ctzll(bits)));
-                changes.sample.push_back(sample);
-                changes.height.push_back(height_[sample]);
+                const auto number = static_cast<std::uint32_t>(64 * w) +
+                                    static_cast<std::uint32_t>(std::countr_zero(bits));
+                visit(number, height_[number]);
             }
             marked_[w] = 0;
         }
-        return changes;
+    }
+    /// The same as a block of `log`.
+    void take(ChangeLog& log) {
+        log.begin_block();
+        take([&](std::uint32_t number, float height) { log.add(number, height); });
+        log.end_block();
     }
 
   private:
@@ -53,25 +59,13 @@ void ChangeLog::shrink_to_fit() {
     ends_.shrink_to_fit();
 }
 
-void ChangeLog::append(std::span<const std::uint32_t> samples, std::span<const float> heights) {
-    const std::size_t first = runs_.size();
-    for (const std::uint32_t sample : samples) {
-        if (runs_.size() > first && runs_.back().first + runs_.back().count == sample) {
-            ++runs_.back().count;
-        } else {
-            runs_.push_back({sample, 1});
-        }
-    }
-    height_.insert(height_.end(), heights.begin(), heights.end());
-    ends_.push_back({runs_.size(), height_.size()});
-}
-
 Recording::Recording(std::size_t max_bytes) : max_bytes_(max_bytes) {
     clear();
 }
 
 void Recording::clear() {
     start_.clear();
+    order_.clear();
     log_ = keys_ = {};
     key_end_.clear();
     open_changes_ = 0;
@@ -80,48 +74,63 @@ void Recording::clear() {
     stride_ = 1;
     duration_ = offset_ = 0.0;
     pending_.clear();
+    pending_blocks_.clear();
     pending_steps_ = total_steps_ = 0;
 }
 
-void Recording::begin(const HeightField& field, double duration) {
+void Recording::begin(const HeightField& field, double duration,
+                      std::span<const std::uint32_t> order) {
     if (start_.empty()) {
         start_.assign(field.height.begin(), field.height.end());
+        order_.assign(order.begin(), order.end());
     } else if (start_.size() != field.size()) {
         throw InputError("recording.other_field",
                          "the recording has {recorded} samples, the height field {given}; record "
                          "each field on its own",
                          {{"recorded", start_.size()}, {"given", field.size()}});
+    } else if (!std::equal(order.begin(), order.end(), order_.begin(), order_.end())) {
+        throw InputError("recording.other_place",
+                         "the recording's samples lie elsewhere than those of the height field; "
+                         "record each field on its own");
     }
     offset_ = duration_;
     duration_ += duration;
 }
 
-void Recording::add_step(const HeightField& field, std::span<const std::uint32_t> changed,
+void Recording::add_step(const SampleBlocks& blocks, std::span<const SampleBlocks::Change> changes,
                          double time) {
-    pending_.insert(pending_.end(), changed.begin(), changed.end());
+    pending_.resize(blocks.count(), 0);
+    for (const SampleBlocks::Change& change : changes) {
+        if (pending_[change.block] == 0) pending_blocks_.push_back(change.block);
+        pending_[change.block] |= change.lanes;
+    }
     pending_time_ = offset_ + time;
     ++total_steps_;
-    if (++pending_steps_ >= stride_) close_frame(field);
+    if (++pending_steps_ >= stride_) close_frame(blocks);
 }
 
-void Recording::end(const HeightField& field) {
-    if (pending_steps_ > 0) close_frame(field);
+void Recording::end(const SampleBlocks& blocks) {
+    if (pending_steps_ > 0) close_frame(blocks);
     log_.shrink_to_fit();
     keys_.shrink_to_fit();
 }
 
-void Recording::close_frame(const HeightField& field) {
-    if (stride_ > 1) {
-        std::sort(pending_.begin(), pending_.end());
-        pending_.erase(std::unique(pending_.begin(), pending_.end()), pending_.end());
+void Recording::close_frame(const SampleBlocks& blocks) {
+    std::sort(pending_blocks_.begin(), pending_blocks_.end());
+    log_.begin_block();
+    for (const std::uint32_t number : pending_blocks_) {
+        const auto& height = blocks.block(number).height;
+        for (std::uint64_t lanes = pending_[number]; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            log_.add(number * SampleBlocks::kLanes + static_cast<std::uint32_t>(lane),
+                     static_cast<float>(height[static_cast<std::size_t>(lane)]));
+        }
+        pending_[number] = 0;
     }
-    std::vector<float> heights(pending_.size());
-    std::transform(pending_.begin(), pending_.end(), heights.begin(),
-                   [&](std::uint32_t s) { return static_cast<float>(field.height[s]); });
-    log_.append(pending_, heights);
+    log_.end_block();
     times_.push_back(pending_time_);
     steps_.push_back(static_cast<std::uint32_t>(total_steps_));
-    pending_.clear();
+    pending_blocks_.clear();
     pending_steps_ = 0;
     if (log_.bytes() > max_bytes_ && last() > 1) {
         halve();
@@ -140,8 +149,7 @@ void Recording::close_key_frame(std::size_t frame) {
     for (std::size_t k = key_end_.empty() ? 0 : key_end_.back(); k < frame; ++k) {
         log_.visit(k, [&](std::uint32_t s, float h) { latest.set(s, h); });
     }
-    const Changes sum = latest.take();
-    keys_.append(sum.sample, sum.height);
+    latest.take(keys_);
     key_end_.push_back(static_cast<std::uint32_t>(frame));
     open_changes_ = 0;
 }
@@ -156,8 +164,7 @@ void Recording::halve() {
         for (std::size_t i = k; i < next; ++i) {
             log_.visit(i, [&](std::uint32_t s, float h) { latest.set(s, h); });
         }
-        const Changes sum = latest.take();
-        log.append(sum.sample, sum.height);
+        latest.take(log);
         times.push_back(times_[next]);
         steps.push_back(steps_[next]);
     }
@@ -177,8 +184,8 @@ std::size_t Recording::frame_at(double time) const {
 }
 
 std::size_t Recording::bytes() const {
-    return start_.size() * sizeof(float) + log_.bytes() + keys_.bytes() +
-           times_.size() * (sizeof(double) + sizeof(std::uint32_t)) +
+    return start_.size() * sizeof(float) + order_.size() * sizeof(std::uint32_t) + log_.bytes() +
+           keys_.bytes() + times_.size() * (sizeof(double) + sizeof(std::uint32_t)) +
            key_end_.size() * sizeof(std::uint32_t);
 }
 
@@ -209,7 +216,7 @@ void Recording::visit(std::size_t from, std::size_t to, Visit&& visit) const {
 std::vector<float> Recording::heights_at(std::size_t frame) const {
     check_frame(frame);
     std::vector<float> height = start_;
-    visit(0, frame, [&](std::uint32_t s, float h) { height[s] = h; });
+    visit(0, frame, [&](std::uint32_t p, float h) { height[sample_at(p)] = h; });
     return height;
 }
 
@@ -218,8 +225,12 @@ Recording::Changes Recording::advance(std::size_t from, std::size_t to) const {
     check_frame(to);
     Latest latest(samples());
     visit(std::min(from, to), std::max(from, to),
-          [&](std::uint32_t s, float h) { latest.set(s, h); });
-    Changes changes = latest.take();
+          [&](std::uint32_t p, float h) { latest.set(sample_at(p), h); });
+    Changes changes;
+    latest.take([&](std::uint32_t sample, float height) {
+        changes.sample.push_back(sample);
+        changes.height.push_back(height);
+    });
     if (to < from && !changes.sample.empty()) {
         const std::vector<float> height = heights_at(to);
         std::transform(changes.sample.begin(), changes.sample.end(), changes.height.begin(),

@@ -11,7 +11,11 @@ namespace beltgrinding {
 using namespace hdf5;
 
 namespace {
-constexpr int kFormat = 1;  // of the file; a reader refuses newer ones
+// Of the file; a reader refuses newer ones. Since 2 runs are positions, which `order` makes
+// samples.
+constexpr int kFormat = 2;
+constexpr int kOldest = 1;
+constexpr const char* kOrder = "order";
 
 Fact within(const std::string& path) {
     return {"recording.file", "{file}: the recording ", {{"file", path}}};
@@ -40,11 +44,12 @@ struct RecordingFile {
         each_array(r, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
             write_array(file, name, data, type, row);
         });
+        write_array(file, kOrder, r.order_, H5T_NATIVE_UINT32, 1);
         write_text(file, "attributes", attributes);
     }
 
     static Recording read(std::string_view image, std::string* attributes) {
-        const InputFile file(image, "recording_format", kFormat);
+        const InputFile file(image, "recording_format", kFormat, kOldest);
         Recording r;
         std::uint64_t stride = 1;
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
@@ -53,6 +58,8 @@ struct RecordingFile {
         each_array(r, [&](const char* name, auto& data, hid_t type, hsize_t row) {
             read_array(file, name, data, type, row);
         });
+        if (H5Lexists(file, kOrder, H5P_DEFAULT) > 0)
+            read_array(file, kOrder, r.order_, H5T_NATIVE_UINT32, 1);
         check(r);
         for (std::size_t frame = 1; frame <= r.last(); ++frame) r.count_frame(frame);
         r.total_steps_ = r.steps_.back();
@@ -62,6 +69,14 @@ struct RecordingFile {
 
     static void check(const Recording& r) {
         const ChangeLog& log = r.log_;
+        std::vector<bool> there(r.order_.size(), false);
+        for (const std::uint32_t sample : r.order_) {
+            require(sample < there.size() && !there[sample], "recording.order",
+                    "has samples in no order");
+            there[sample] = true;
+        }
+        require(r.order_.empty() || r.order_.size() == r.start_.size(), "recording.order",
+                "has samples in no order");
         require(r.stride_ > 0 && std::isfinite(r.duration_), "recording.no_duration",
                 "has no duration");
         require(r.times_.size() == log.blocks() + 1 && r.steps_.size() == log.blocks() + 1 &&

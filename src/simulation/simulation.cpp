@@ -8,7 +8,7 @@
 #include "base/stopwatch.h"
 #include "beltgrinding/error.h"
 #include "grinding.h"
-#include "heightfield/kdop_tree.h"
+#include "heightfield/sample_blocks.h"
 #include "influence_keeper.h"
 #include "pressing.h"
 #include "process_monitor.h"
@@ -70,24 +70,6 @@ void refuse_force_of_rigid(const ContactModel& model, const ProcessSettings& pro
     }
 }
 
-/// Restores the heights unless told to keep them: a cancelled or failed run leaves no trace.
-class HeightGuard {
-  public:
-    explicit HeightGuard(HeightField& field) : field_(field), before_(field.height) {}
-    ~HeightGuard() {
-        if (!kept_) field_.height.swap(before_);
-    }
-    HeightGuard(const HeightGuard&) = delete;
-    HeightGuard& operator=(const HeightGuard&) = delete;
-    void keep() { kept_ = true; }
-    const std::vector<double>& before() const { return before_; }
-
-  private:
-    HeightField& field_;
-    std::vector<double> before_;
-    bool kept_ = false;
-};
-
 /// Clears a recording unless told to keep it: what a cancelled or failed run left of it is nothing.
 class RecordingGuard {
   public:
@@ -126,27 +108,26 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     result.process_time = path.duration();
     result.steps.reserve(steps.planned());
     PhaseTimes& wall = result.wall;
-    HeightGuard guard(field);
     Recording* const recording = options.outputs.recording;
     RecordingGuard recording_guard(recording);
-    if (recording != nullptr) recording->begin(field, path.duration());
-    ProcessMonitor monitor(field, path, process, options.limits, law);
-    std::optional<TraceKeeper> trace;
-    if (options.outputs.trace) trace.emplace(field);
-    std::optional<InfluenceKeeper> influence;
-    if (options.outputs.influence) influence.emplace(field.height);
-    std::unique_ptr<SegmentTree> tree;
+    std::optional<SampleBlocks> built;  // the field stays as it is until all is done
     {
         const Stopwatch watch(wall.build);
-        tree = std::make_unique<SegmentTree>(field, context);
+        built.emplace(field, context);
     }
+    SampleBlocks& blocks = *built;
+    if (recording != nullptr) recording->begin(field, path.duration(), blocks.samples());
+    ProcessMonitor monitor(blocks, path, process, options.limits, law);
+    std::optional<TraceKeeper> trace;
+    if (options.outputs.trace) trace.emplace(blocks);
+    std::optional<InfluenceKeeper> influence;
+    if (options.outputs.influence) influence.emplace(field.height);
     const double cell = contact_cell(field, process.wheel, resolution);
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
-    Grinding grinding(field, pressing, law, options, trace ? &*trace : nullptr);
+    Grinding grinding(blocks, pressing, law, options, trace ? &*trace : nullptr);
     std::optional<ActuatedWheel> wheel;  // of a force control that takes time
     if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);
-    std::vector<std::uint32_t> changed;
     bool touched = false;
 
     for (std::size_t i = 0; steps.next(); ++i) {
@@ -155,8 +136,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             context.report(steps.progress());
         }
         const PathStep& step = steps.step();
-        const auto state = wheel ? wheel->look(field, *tree, step)
-                                 : pressing.press(field, *tree, step.work_from_contact, step.force);
+        const auto state = wheel ? wheel->look(blocks, step)
+                                 : pressing.press(blocks, step.work_from_contact, step.force);
         const bool moving = wheel && wheel->moves();
         if (wheel && steps.divisible()) {
             if (const double parts = wheel->parts(step); parts > 1.0) {
@@ -180,7 +161,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         record.duration = static_cast<float>(step.duration);
         record.feed = static_cast<float>(step.feed);
 
-        changed.clear();
+        blocks.clear_changes();
         record.segments = static_cast<std::uint32_t>(pressing.localised());
         if (state != Pressing::State::kNoContact) {
             touched = true;
@@ -200,28 +181,27 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             const double share =
                 std::min(removal > most ? kCoarseShare : steps.share(), steps.share());
             const double asked = grinding.integrated_rate();
-            const double volume = moving ? grinding.grind(step, share, *wheel, *tree, changed)
-                                  : wheel
-                                      ? grinding.grind(wheel->lagging(step), share, *tree, changed)
-                                      : grinding.grind(step, share, *tree, changed);
+            const double volume = moving  ? grinding.grind(step, share, *wheel)
+                                  : wheel ? grinding.grind(wheel->lagging(step), share)
+                                          : grinding.grind(step, share);
             touched = touched || grinding.impulse() > 0.0;
             record.force = static_cast<float>(grinding.impulse() / step.duration);
             record.deepest_approach = static_cast<float>(grinding.deepest());
             record.removal_rate = static_cast<float>(volume / step.duration);
-            grinding.refit(*tree, changed);
             const Stopwatch watch(wall.events);
-            monitor.ground(changed);
+            monitor.ground(blocks.changes());
             monitor.lost(pressing, grinding.integrated_rate() - asked, volume);
             if (moving) monitor.moved(pressing, state, grinding.greatest_force(), wheel->bounce());
         }
         if (wheel) wheel->end(step);
-        if (trace && !changed.empty()) {
+        const auto changes = blocks.changes();
+        if (trace && !changes.empty()) {
             const Stopwatch watch(wall.trace);
-            trace->remove(field, changed, options.outputs.first_motion + step.pose);
+            trace->remove(changes, options.outputs.first_motion + step.pose);
         }
-        if (influence && !changed.empty()) influence->remove(field.height, changed, step.pose);
+        if (influence && !changes.empty()) influence->remove(blocks, changes, step.pose);
         if (recording != nullptr) {
-            recording->add_step(field, changed, step.time + 0.5 * step.duration);
+            recording->add_step(blocks, changes, step.time + 0.5 * step.duration);
         }
         result.steps.push_back(record);
     }
@@ -232,9 +212,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             "cell (tool in hand or part in hand), the unit and the travel of the force "
             "control");
     }
-    for (std::size_t s = 0; s < field.size(); ++s) {
-        result.removed_volume += field.area[s] * (guard.before()[s] - field.height[s]);
-    }
+    std::vector<double> heights = blocks.heights();
+    for (std::size_t s = 0; s < field.size(); ++s)
+        result.removed_volume += field.area[s] * (field.height[s] - heights[s]);
     context.report(1.0);
     result.events = monitor.take();
     result.model = pressing.describe();
@@ -246,13 +226,13 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         result.force_influence = grinding.take_force_influence(path.poses().size());
     wall += pressing.times();
     wall += grinding.times();
-    if (recording != nullptr) recording->end(field);
+    if (recording != nullptr) recording->end(blocks);
     if (trace) {
         trace->keep(field);
     } else {
         field.trace.clear();
     }
-    guard.keep();
+    field.height.swap(heights);
     recording_guard.keep();
     return result;
 }
@@ -288,7 +268,7 @@ std::vector<std::optional<PoseContact>> contacts_at(const HeightField& field, co
         throw InputError("simulation.rigid_pressure",
                          "a geometric (rigid) tool has no pressure; choose an elastic model");
     }
-    const SegmentTree tree(field);
+    const SampleBlocks blocks(field, context);
     std::vector<std::optional<PoseContact>> result;
     for (const std::size_t pose : poses) {
         context.throw_if_cancelled();
@@ -298,8 +278,8 @@ std::vector<std::optional<PoseContact>> contacts_at(const HeightField& field, co
         // One of its own each: a contact must not depend on the one before.
         Pressing pressing(process, contact_cell(field, process.wheel, resolution),
                           resolution.contact_tolerance, model);
-        const auto state = pressing.press(
-            field, tree, path.frames().work_from_contact(at.base_from_tcp), contact.commanded);
+        const auto state = pressing.press(blocks, path.frames().work_from_contact(at.base_from_tcp),
+                                          contact.commanded);
         if (state == Pressing::State::kNoContact) {
             result.emplace_back();
             continue;

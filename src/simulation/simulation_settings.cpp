@@ -77,7 +77,6 @@ PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
     gap += more.gap;
     contact += more.contact;
     removal += more.removal;
-    refit += more.refit;
     trace += more.trace;
     events += more.events;
     return *this;

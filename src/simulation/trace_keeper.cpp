@@ -1,38 +1,92 @@
 #include "trace_keeper.h"
 
+#include "base/lanes.h"
 #include "beltgrinding/error.h"
 
 namespace beltgrinding {
+namespace {
 
-TraceKeeper::TraceKeeper(const HeightField& field)
-    : trace_(field.trace), height_(field.height), removed_(field.size(), 0.0F) {
-    if (trace_.empty()) trace_.reset(field.size());
-    if (trace_.first.size() != field.size()) {
+using namespace lanes;
+
+/// A block's arrays.
+struct Traced {
+    std::uint32_t *first, *last, *dominant;
+    float *dominant_depth, *removed;
+    double* before;
+};
+
+BELTGRINDING_CLONES
+void trace_block(const Traced& traced, const double* height, std::uint32_t motion) {
+    const Ints now = Ints{} + static_cast<std::int32_t>(motion);
+    const Ints never = Ints{} + static_cast<std::int32_t>(RemovalTrace::kNever);
+    for (int k = 0; k < static_cast<int>(SampleBlocks::kLanes); k += kWide) {
+        const Doubles after = load_doubles(height + k);
+        const Floats less =
+            __builtin_convertvector(load_doubles(traced.before + k) - after, Floats);
+        const Ints some = less > 0.0f;  // else it is lost in rounding
+        const Ints first = load(traced.first + k), last = load(traced.last + k);
+        store(traced.first + k, some & (first == never) ? now : first);
+        store(traced.last + k, some ? now : last);
+        const Floats before = load(traced.removed + k);
+        const Floats removed = some ? kept(before, last == now) + less : before;
+        store(traced.removed + k, removed);
+        const Floats most = load(traced.dominant_depth + k);
+        const Ints leads = some & (removed > most);
+        store(traced.dominant + k, leads ? now : load(traced.dominant + k));
+        store(traced.dominant_depth + k, leads ? removed : most);
+        __builtin_memcpy(traced.before + k, &after, sizeof after);
+    }
+}
+
+/// By position, with as many lanes in the last block as in others.
+template <class T>
+std::vector<T> by_position(const SampleBlocks& blocks, const std::vector<T>& by_sample, T none) {
+    std::vector<T> values(std::size_t{blocks.count()} * SampleBlocks::kLanes, none);
+    for (std::size_t k = 0; k < by_sample.size(); ++k) values[k] = by_sample[blocks.sample(k)];
+    return values;
+}
+
+template <class T>
+std::vector<T> by_sample(const SampleBlocks& blocks, const std::vector<T>& by_position) {
+    std::vector<T> values(blocks.samples().size());
+    for (std::size_t k = 0; k < values.size(); ++k) values[blocks.sample(k)] = by_position[k];
+    return values;
+}
+
+}  // namespace
+
+TraceKeeper::TraceKeeper(const SampleBlocks& blocks) : blocks_(blocks) {
+    const HeightField& field = blocks.field();
+    const RemovalTrace& before = field.trace;
+    if (!before.empty() && before.first.size() != field.size()) {
         throw InputError("simulation.other_trace", "the field's removal trace is of another field");
     }
-}
-
-void TraceKeeper::press(const GapMap& map, const DisplacedPressure& pressure) {
-    map.raise(pressure, trace_.peak_pressure);
-}
-
-void TraceKeeper::remove(const HeightField& field, std::span<const std::uint32_t> changed,
-                         std::uint32_t motion) {
-    for (const std::uint32_t s : changed) {
-        const double removed = height_[s] - field.height[s];
-        if (!(removed > 0.0)) continue;  // lost in rounding
-        height_[s] = field.height[s];
-        if (trace_.first[s] == RemovalTrace::kNever) trace_.first[s] = motion;
-        if (trace_.last[s] != motion) {
-            trace_.last[s] = motion;
-            removed_[s] = 0.0F;
-        }
-        removed_[s] += static_cast<float>(removed);
-        if (removed_[s] > trace_.dominant_depth[s]) {
-            trace_.dominant[s] = motion;
-            trace_.dominant_depth[s] = removed_[s];
-        }
+    trace_.first = by_position(blocks, before.first, RemovalTrace::kNever);
+    trace_.last = by_position(blocks, before.last, RemovalTrace::kNever);
+    trace_.dominant = by_position(blocks, before.dominant, RemovalTrace::kNever);
+    trace_.dominant_depth = by_position(blocks, before.dominant_depth, 0.0F);
+    trace_.peak_pressure = by_position(blocks, before.peak_pressure, 0.0F);
+    removed_.assign(trace_.first.size(), 0.0F);
+    height_.reserve(trace_.first.size());
+    for (std::uint32_t k = 0; k < blocks.count(); ++k) {
+        const auto& heights = blocks.block(k).height;
+        height_.insert(height_.end(), heights.begin(), heights.end());
     }
+}
+
+void TraceKeeper::remove(std::span<const SampleBlocks::Change> changes, std::uint32_t motion) {
+    for (const SampleBlocks::Change& change : changes) {
+        const std::size_t at = std::size_t{change.block} * SampleBlocks::kLanes;
+        trace_block({&trace_.first[at], &trace_.last[at], &trace_.dominant[at],
+                     &trace_.dominant_depth[at], &removed_[at], &height_[at]},
+                    blocks_.block(change.block).height.data(), motion);
+    }
+}
+
+void TraceKeeper::keep(HeightField& field) const {
+    field.trace = {by_sample(blocks_, trace_.first), by_sample(blocks_, trace_.last),
+                   by_sample(blocks_, trace_.dominant), by_sample(blocks_, trace_.dominant_depth),
+                   by_sample(blocks_, trace_.peak_pressure)};
 }
 
 }  // namespace beltgrinding

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "beltgrinding/height_field.h"
@@ -17,19 +15,21 @@ namespace beltgrinding {
 class TraceKeeper {
   public:
     /// Goes on with the field's trace, if it has one.
-    explicit TraceKeeper(const HeightField& field);
+    explicit TraceKeeper(const SampleBlocks& blocks);
 
     /// The wheel presses with `pressure` (MPa per cell of the map).
-    void press(const GapMap& map, const DisplacedPressure& pressure);
-    /// The motion number `motion` has lowered the samples `changed` (each named once) to the
-    /// heights that they have now. Motions come one after the other.
-    void remove(const HeightField& field, std::span<const std::uint32_t> changed,
-                std::uint32_t motion);
+    void press(const GapMap& map, const DisplacedPressure& pressure) {
+        map.raise(pressure, trace_.peak_pressure);
+    }
+    /// The motion number `motion` has lowered samples to the heights that they have now. Motions
+    /// come one after the other.
+    void remove(std::span<const SampleBlocks::Change> changes, std::uint32_t motion);
     /// Hands the trace over to the field.
-    void keep(HeightField& field) { field.trace = std::move(trace_); }
+    void keep(HeightField& field) const;
 
   private:
-    RemovalTrace trace_;
+    const SampleBlocks& blocks_;
+    RemovalTrace trace_;          // by position, whole blocks
     std::vector<double> height_;  // mm, as of the last `remove`
     std::vector<float> removed_;  // mm, by the sample's last motion so far
 };

@@ -1,8 +1,8 @@
-// The k-DOP tree over a million segments: build, query of about 20 k hits, refit of what a contact
-// changes; bytes a sample as a counter.
+// The blocks over a million segments: build, query of the tree, the blocks near a wheel that holds
+// about 20 k; bytes a sample as a counter.
 #include <benchmark/benchmark.h>
 
-#include "heightfield/kdop_tree.h"
+#include "heightfield/sample_blocks.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -24,33 +24,35 @@ WheelReach contact() {
     return reach;
 }
 
-void tree_build(benchmark::State& state) {
+void blocks_build(benchmark::State& state) {
     for (auto _ : state) {
-        const SegmentTree tree(million());
-        benchmark::DoNotOptimize(tree.bytes());
+        const SampleBlocks blocks(million());
+        benchmark::DoNotOptimize(blocks.bytes());
     }
-    const SegmentTree tree(million());
-    state.counters["bytes_per_sample"] = static_cast<double>(tree.bytes() + million().bytes()) /
-                                         static_cast<double>(million().size());
+    const SampleBlocks blocks(million());
+    state.counters["bytes_per_sample"] =
+        static_cast<double>(blocks.bytes()) / static_cast<double>(million().size());
+    state.counters["of_the_field"] =
+        static_cast<double>(million().bytes()) / static_cast<double>(million().size());
 }
-BENCHMARK(tree_build)->Unit(benchmark::kMillisecond);
+BENCHMARK(blocks_build)->Unit(benchmark::kMillisecond);
 
 void tree_query(benchmark::State& state) {
     const SegmentTree tree(million());
-    std::vector<std::uint32_t> hits;
-    for (auto _ : state) tree.query(million(), contact(), hits);
-    state.counters["hits"] = static_cast<double>(hits.size());
+    std::vector<std::uint32_t> found;
+    for (auto _ : state) tree.query(contact(), found);
+    state.counters["leaves"] = static_cast<double>(found.size());
 }
-BENCHMARK(tree_query)->Unit(benchmark::kMillisecond);
+BENCHMARK(tree_query)->Unit(benchmark::kMicrosecond);
 
-void tree_refit(benchmark::State& state) {
-    SegmentTree tree(million());
-    std::vector<std::uint32_t> hits;
-    tree.query(million(), contact(), hits);
-    for (auto _ : state) tree.refit(million(), hits);
-    state.counters["hits"] = static_cast<double>(hits.size());
+void blocks_near(benchmark::State& state) {
+    const SampleBlocks blocks(million());
+    NearBlocks near;
+    std::vector<std::uint32_t> found;
+    for (auto _ : state) near.find(blocks, contact(), found);
+    state.counters["blocks"] = static_cast<double>(found.size());
 }
-BENCHMARK(tree_refit)->Unit(benchmark::kMillisecond);
+BENCHMARK(blocks_near)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace beltgrinding

@@ -1,4 +1,4 @@
-// What a step costs: localise, gap, contact, removal, refit, on plates of 0.25, 1 and 4 million
+// What a step costs: localise, gap, contact, removal, on plates of 0.25, 1 and 4 million
 // samples at the same spacing. The counters are microseconds a step by phase; a step must cost what
 // the contact costs, so they should hardly change with the size of the field.
 #include <benchmark/benchmark.h>
@@ -43,7 +43,7 @@ void step_cost(benchmark::State& state) {
         HeightField first = field;  // the rim is solved once, no part of a step
         simulate(first, path, elastic, law, options);
     }
-    double steps = 0, localise = 0, gap = 0, contact = 0, removal = 0, refit = 0, segments = 0;
+    double steps = 0, localise = 0, gap = 0, contact = 0, removal = 0, segments = 0;
     for (auto _ : state) {
         result = simulate(field, path, elastic, law, options);
         steps += static_cast<double>(result.steps.size());
@@ -51,19 +51,17 @@ void step_cost(benchmark::State& state) {
         gap += result.wall.gap;
         contact += result.wall.contact;
         removal += result.wall.removal;
-        refit += result.wall.refit;
         for (const StepRecord& step : result.steps) segments += step.segments;
         // The tree's build is no part of a step.
         state.SetIterationTime(result.wall.localise + result.wall.gap + result.wall.contact +
-                               result.wall.removal + result.wall.refit);
+                               result.wall.removal);
     }
     state.counters["segments"] = segments / steps;
-    state.counters["step_us"] = 1e6 * (localise + gap + contact + removal + refit) / steps;
+    state.counters["step_us"] = 1e6 * (localise + gap + contact + removal) / steps;
     state.counters["localise_us"] = 1e6 * localise / steps;
     state.counters["gap_us"] = 1e6 * gap / steps;
     state.counters["contact_us"] = 1e6 * contact / steps;
     state.counters["removal_us"] = 1e6 * removal / steps;
-    state.counters["refit_us"] = 1e6 * refit / steps;
 }
 BENCHMARK(step_cost)
     ->ArgNames({"samples", "rim"})

@@ -12,6 +12,7 @@
 
 #include "contact/gap_map.h"
 #include "contact/wheel_rim.h"
+#include "support/blocks.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -146,10 +147,9 @@ TEST(Displaced, WhatBulgesTakesFromSamplesBeyondTheSideFaceAndTheVolumeIsKept) {
     Frame pose = Frame::Identity();
     pose.linear() = Eigen::AngleAxisd(M_PI, Vec3::UnitX()).toRotationMatrix();
     pose.translation() = Vec3(30.0, 30.1, 0.0) /* its sides lie between samples */;
-    std::vector<std::uint32_t> hits(field.size());
-    std::iota(hits.begin(), hits.end(), 0U);
+    SampleBlocks blocks(field);
     GapMap map(wheel, 1.0, 1.0);
-    map.update(field, hits, pose, 0.5);
+    map.update(blocks, testing::all_of(blocks), pose, 0.5);
     const ContactGrid& grid = map.grid();
     const Eigen::ArrayXd rate = (map.gap() < 0.1).select(Eigen::ArrayXd::Ones(grid.cells()), 0.0);
     DisplacedPressure pressure;
@@ -166,8 +166,8 @@ TEST(Displaced, WhatBulgesTakesFromSamplesBeyondTheSideFaceAndTheVolumeIsKept) {
     EXPECT_NEAR(asked,
                 (rate * map.coverage()).sum() * grid.cell_area() + pressure.reach.sum() * grid.ds,
                 1e-9);
-    std::vector<std::uint32_t> changed;
-    const double volume = map.remove(field, rate, pressure.beside, 0.01, 1.0, changed);
+    const double volume = map.remove(blocks, rate, pressure.beside, 0.01, 1.0);
+    field.height = blocks.heights();
     double removed = 0.0, beyond = 0.0, wrong = 0.0;
     for (std::size_t k = 0; k < field.size(); ++k) {
         const double lost = field.area[k] * (before[k] - field.height[k]);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "support/blocks.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -21,11 +21,7 @@ Frame above(double x, double y, double z, double angle = 0.0) {
     return frame;
 }
 
-std::vector<std::uint32_t> all_of(const HeightField& field) {
-    std::vector<std::uint32_t> hits(field.size());
-    std::iota(hits.begin(), hits.end(), 0U);
-    return hits;
-}
+using testing::all_of;
 
 TEST(GapMap, GivesTheRadialGapOfAPlateAtAnyAngle) {
     const ContactWheel wheel{80.0, 20.0, 0.0};
@@ -33,7 +29,8 @@ TEST(GapMap, GivesTheRadialGapOfAPlateAtAnyAngle) {
     const double lift = 0.15;  // of the wheel above the stock
     for (const double angle : {0.0, 0.3, 0.785, 1.2}) {
         GapMap map(wheel, 1.0);
-        map.update(field, all_of(field), above(40.0, 40.0, 0.2 + lift, angle), 1.0);
+        const SampleBlocks blocks(field);
+        map.update(blocks, all_of(blocks), above(40.0, 40.0, 0.2 + lift, angle), 1.0);
         const ContactGrid& grid = map.grid();
         int seen = 0;
         for (int j = 0; j < grid.ny; ++j) {
@@ -54,7 +51,8 @@ TEST(GapMap, CrownOpensTheGapTowardsTheEdges) {
     const ContactWheel wheel{80.0, 20.0, 60.0};
     const HeightField field = testing::plate(60.0, 60.0, 0.4);
     GapMap map(wheel, 1.0);
-    map.update(field, all_of(field), above(30.0, 30.0, 0.0), 3.0);
+    const SampleBlocks blocks(field);
+    map.update(blocks, all_of(blocks), above(30.0, 30.0, 0.0), 3.0);
     const ContactGrid& grid = map.grid();
     for (int j = 0; j < grid.ny; ++j) {
         EXPECT_NEAR(map.gap()[j * grid.nx + grid.nx / 2], wheel.drop(grid.y(j)), 5e-3);
@@ -66,7 +64,8 @@ TEST(GapMap, CoverageEndsWhereTheFaceEnds) {
     const HeightField field = testing::plate(60.0, 60.0, 0.5);
     GapMap map(wheel, 1.0);
     // Half of the wheel's width hangs over the edge y = 0; cells are halved there.
-    map.update(field, all_of(field), above(30.0, 0.0, 0.0), 0.5);
+    const SampleBlocks blocks(field);
+    map.update(blocks, all_of(blocks), above(30.0, 0.0, 0.0), 0.5);
     const ContactGrid& grid = map.grid();
     double covered = 0.0;
     for (int j = 0; j < grid.ny; ++j)
@@ -85,13 +84,13 @@ TEST(GapMap, SeesOnlyTheNearestLayer) {
         field.area[n + i] = below.area[i];
     }
     GapMap map({60.0, 20.0, 0.0}, 1.0);
-    map.update(field, all_of(field), above(20.0, 20.0, 0.0), 5.0);
+    SampleBlocks blocks(field);
+    map.update(blocks, all_of(blocks), above(20.0, 20.0, 0.0), 5.0);
     EXPECT_NEAR(map.lowest(), 0.0, 2e-3);
-    std::vector<std::uint32_t> changed;
     Eigen::ArrayXd rate = (map.gap() < 0.2).select(Eigen::ArrayXd::Ones(map.gap().size()), 0.0);
-    map.remove(field, rate, {}, 0.01, 1.0, changed);
-    for (const std::uint32_t s : changed) EXPECT_LT(s, n);
-    EXPECT_FALSE(changed.empty());
+    map.remove(blocks, rate, {}, 0.01, 1.0);
+    for_changed(blocks.changes(), [&](std::size_t k) { EXPECT_LT(blocks.sample(k), n); });
+    EXPECT_FALSE(blocks.changes().empty());
 }
 
 TEST(GapMap, RemovesTheVolumeOfTheCells) {
@@ -99,10 +98,11 @@ TEST(GapMap, RemovesTheVolumeOfTheCells) {
         HeightField field = testing::cylinder(45.0, 60.0, 40.0, spacing, 0.5);
         const std::vector<double> before = field.height;
         GapMap map({50.0, 15.0, 0.0}, 1.0);
-        map.update(field, all_of(field), above(0.0, 20.0, 0.2, 0.4), 1.0);
+        SampleBlocks blocks(field);
+        map.update(blocks, all_of(blocks), above(0.0, 20.0, 0.2, 0.4), 1.0);
         const Eigen::ArrayXd rate = (-map.gap()).max(0.0);
-        std::vector<std::uint32_t> changed;
-        const double volume = map.remove(field, rate, {}, 0.5, 1.0, changed);
+        const double volume = map.remove(blocks, rate, {}, 0.5, 1.0);
+        field.height = blocks.heights();
         EXPECT_NEAR(volume, (rate * map.coverage()).sum() * map.grid().cell_area() * 0.5, 1e-12);
         double removed = 0.0;
         for (std::size_t i = 0; i < field.size(); ++i) {
@@ -130,12 +130,13 @@ TEST(GapMap, NoSampleFallsBelowTheEnvelope) {
             HeightField field = testing::cylinder(45.0, 60.0, 40.0, 0.6, 0.5);
             const HeightField before = field;
             GapMap map(wheel, 1.0);
-            map.update(field, all_of(field), pose, 1.0);
+            SampleBlocks blocks(field);
+            map.update(blocks, all_of(blocks), pose, 1.0);
             // The middle gets more than there is, the border about as much.
             const Eigen::ArrayXd rate = 2.0 * (approach + 0.5 - map.gap()).max(0.0);
-            std::vector<std::uint32_t> changed;
-            const double volume = map.remove(field, rate, {}, 1.0, approach, changed);
-            EXPECT_FALSE(changed.empty());
+            const double volume = map.remove(blocks, rate, {}, 1.0, approach);
+            EXPECT_FALSE(blocks.changes().empty());
+            field.height = blocks.heights();
             double removed = 0.0;
             for (std::size_t i = 0; i < field.size(); ++i) {
                 EXPECT_LE(field.height[i], before.height[i]);
@@ -157,13 +158,14 @@ TEST(GapMap, ADeepCutEndsOnTheEnvelope) {
         const HeightField before = field;
         GapMap map(wheel, 1.0);
         const Frame pose = above(30.0, 20.0, -deep);
-        map.update(field, all_of(field), pose, 0.2);
-        std::vector<std::uint32_t> changed;
-        map.cut(field, changed);
-        EXPECT_FALSE(changed.empty());
-        for (const std::uint32_t s : changed) {
-            EXPECT_NEAR(overlap(field, s, wheel, pose, 0.0), 0.0, 2e-5) << deep;
-        }
+        SampleBlocks blocks(field);
+        map.update(blocks, all_of(blocks), pose, 0.2);
+        map.cut(blocks);
+        EXPECT_FALSE(blocks.changes().empty());
+        field.height = blocks.heights();
+        for_changed(blocks.changes(), [&](std::size_t k) {
+            EXPECT_NEAR(overlap(field, blocks.sample(k), wheel, pose, 0.0), 0.0, 2e-5) << deep;
+        });
     }
 }
 
@@ -171,11 +173,13 @@ TEST(GapMap, LeavesOutWhatFacesAwayOrWasMissed) {
     HeightField field = testing::plate(20.0, 20.0, 0.5);
     for (auto& n : field.normal) n = -n;
     GapMap map({60.0, 20.0, 0.0}, 1.0);
-    map.update(field, all_of(field), above(10.0, 10.0, 0.0), 5.0);
+    const SampleBlocks blocks(field);
+    map.update(blocks, all_of(blocks), above(10.0, 10.0, 0.0), 5.0);
     EXPECT_TRUE(map.empty());
     field = testing::plate(20.0, 20.0, 0.5);
     for (auto& f : field.flags) f |= kMissed;
-    map.update(field, all_of(field), above(10.0, 10.0, 0.0), 5.0);
+    const SampleBlocks missed(field);
+    map.update(missed, all_of(missed), above(10.0, 10.0, 0.0), 5.0);
     EXPECT_TRUE(map.empty());
 }
 

@@ -18,25 +18,27 @@ namespace {
 /// Steps of random runs of samples that are lowered a little, some of them without any; enough
 /// changes for several key frames, and the whole field after each step to compare with.
 struct Made {
-    HeightField field = testing::plate(10.0, 10.0, 0.2, 0.5);
+    HeightField field = testing::plate(10.0, 10.0, 0.2, 0.5);  // `blocks` look at what stays of it
     std::vector<std::vector<float>> truth;
     Recording recording;
 
     explicit Made(int steps, std::size_t max_bytes = Recording::kMaxBytes) : recording(max_bytes) {
         std::mt19937 random(7);
         remember();
-        recording.begin(field, steps);
+        SampleBlocks blocks(field);
+        recording.begin(field, steps, blocks.samples());
         for (int k = 0; k < steps; ++k) {
-            std::vector<std::uint32_t> changed;
+            blocks.clear_changes();
             for (std::uint32_t s = random() % 500; k % 7 != 3 && s < field.size();
                  s += random() % 50 == 0 ? random() % 90 + 1 : 1) {
-                changed.push_back(s);
-                field.height[s] -= 1e-4 * (1 + random() % 10);
+                const double depth = 1e-4 * static_cast<double>(1 + random() % 10);
+                blocks.lower(s, depth);
+                field.height[blocks.sample(s)] -= depth;
             }
-            recording.add_step(field, changed, k + 1.0);
+            recording.add_step(blocks, blocks.changes(), k + 1.0);
             remember();
         }
-        recording.end(field);
+        recording.end(blocks);
     }
     void remember() { truth.emplace_back(field.height.begin(), field.height.end()); }
     const std::vector<float>& at(std::size_t frame) const {

@@ -5,12 +5,15 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/height_field.h"
 #include "contact/coverage.h"
 #include "contact/displaced.h"
+#include "contact/placed_block.h"
+#include "heightfield/sample_blocks.h"
 
 namespace beltgrinding {
 
@@ -30,17 +33,28 @@ class GapMap {
     /// mm beyond the wheel's side faces up to which samples are kept for what bulges out there.
     GapMap(const ContactWheel& wheel, double spacing, double beside = 0.0);
 
-    /// Maps the samples `hits` for the wheel at `work_from_contact`. Samples that face away, that
-    /// were missed by the stock's rays or that lie beyond the gap `reach` (mm) are left out.
-    void update(const HeightField& field, std::span<const std::uint32_t> hits,
-                const Frame& work_from_contact, double reach);
+    /// Maps the samples of the blocks `hits` (ascending) for the wheel at `work_from_contact`,
+    /// which faces the work by the part of it beyond `ahead` mm from its axis. Samples that face
+    /// away, that were missed by the stock's rays or that lie beyond the gap `reach` (mm) are left
+    /// out.
+    ///
+    /// Edges of what is mapped are looked at near cells with a gap up to `pressable` mm only:
+    /// `holds_for` tells whether that was enough, `look_at_all_edges` does the rest.
+    void update(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
+                const Frame& work_from_contact, double reach, double ahead = 0.0,
+                double pressable = kNone);
+    /// No cell that an edge not looked at has to do with bears pressure (MPa, by cell).
+    bool holds_for(const Eigen::ArrayXd& pressure) const;
+    void look_at_all_edges(const SampleBlocks& blocks);
 
     /// Grid of the last update; its length follows the samples in reach.
     const ContactGrid& grid() const { return grid_; }
     const Eigen::ArrayXd& gap() const { return gap_; }  ///< mm; +inf: no surface
     /// As `Coverage::share`.
     const Eigen::ArrayXd& coverage() const { return coverage_.share; }
-    bool empty() const { return footprints_.empty(); }
+    bool empty() const { return samples_ == 0; }
+    /// Samples that were mapped.
+    std::size_t samples() const { return samples_; }
     /// Smallest gap, mm; +inf when empty.
     double lowest() const { return gap_.size() > 0 ? gap_.minCoeff() : kNone; }
 
@@ -49,44 +63,54 @@ class GapMap {
     /// mm3/s of `rate`, mm/s per cell, and of `beside`, mm/s as `DisplacedPressure::beside`.
     double volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside) const;
 
-    /// Lowers `field.height` by the removal of `rate` (mm/s per cell), and of `beside` (mm/s, as
+    /// Lowers heights by the removal of `rate` (mm/s per cell), and of `beside` (mm/s, as
     /// `DisplacedPressure::beside`), over `duration` s: the rate
     /// is interpolated at each sample, then scaled so that the samples' volume equals the cells'
     /// (`volume_rate` x duration) to rounding. No sample falls below the envelope of
     /// the undeformed wheel, moved by `approach` (mm, along the contact frame's z) from where the
     /// map was taken; what that keeps back is taken from the others, as far as they stand above it.
-    /// Appends the samples it lowered to `changed`. Returns the volume, mm3.
-    double remove(HeightField& field, const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside,
-                  double duration, double approach, std::vector<std::uint32_t>& changed);
+    /// Returns the volume, mm3. `blocks`: those of the last update.
+    double remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside,
+                  double duration, double approach);
 
     /// Lowers every sample that reaches into the wheel's envelope onto it, along its own normal: a
-    /// rigid tool. Appends them to `changed`. Returns the volume, mm3.
-    double cut(HeightField& field, std::vector<std::uint32_t>& changed) const;
+    /// rigid tool. Returns the volume, mm3.
+    double cut(SampleBlocks& blocks) const;
 
-    /// Adds what `rate` and `beside` (as in `remove`) take from each sample in `duration` s to
-    /// `amounts` (mm, one per sample of the field), without touching the field: as little as the
-    /// last `remove` took where the envelope kept some back.
-    void spread(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside, double duration,
-                Eigen::Ref<Eigen::ArrayXd> amounts) const;
-
-    /// The same sample by sample, as much of the cells' volume as the last `remove` took: calls
-    /// visit(sample, mm).
+    /// What `rate` and `beside` (as in `remove`) take from each sample in `duration` s, without
+    /// touching it: as little as the last `remove` took where the envelope kept some back, and not
+    /// scaled. Calls visit(position, mm) for those that are not 0.
     template <class Visit>
     void for_samples(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside, double duration,
                      Visit visit) const {
+        tabulate(rate, duration);
+        float values[kBlockLanes];
+        for (std::size_t k = 0; k < placed_count_; ++k) {
+            const PlacedBlock& placed = placed_[k];
+            if (!interpolate_signed(placed, table_.data(), values)) continue;
+            const float* taken = taken_of(k);
+            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+                if (values[lane] == 0.0f) continue;
+                const double share = taken != nullptr ? taken[lane] : 1.0;
+                visit(std::size_t{placed.block} * kBlockLanes + lane, share * values[lane]);
+            }
+        }
         sum_rates(rate, beside, sums_);
         for (std::size_t k = 0; k < footprints_.size(); ++k) {
             const Footprint& f = footprints_[k];
-            if (sums_[k] != 0.0) visit(f.sample, scale_ * f.taken * sums_[k] * duration);
+            if (sums_[k] != 0.0) visit(f.position, f.taken * sums_[k] * duration);
         }
     }
+    /// What the last `remove` scaled the samples' volume by.
+    double scale() const { return scale_; }
 
-    /// Raises `largest` (one per sample of the field) to the pressure at each sample, where that is
-    /// more.
+    /// Raises `largest` (one per position, of whole blocks) to the pressure at each sample, where
+    /// that is more.
     void raise(const DisplacedPressure& pressure, std::span<float> largest) const;
 
-    /// The sample of the nearest layer that lies nearest to (s, y), mm; none if the map is empty.
-    std::optional<std::uint32_t> sample_near(double s, double y) const;
+    /// Position of the sample of the nearest layer that lies nearest to (s, y), mm; none if the map
+    /// is empty.
+    std::optional<std::size_t> sample_near(double s, double y) const;
 
     /// Mean slopes of the design surface's gap along s and y, over the samples within `reach` mm of
     /// (s, y); NaN where there is none. By the samples' own normals: grinding does not change them.
@@ -95,9 +119,11 @@ class GapMap {
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-    /// A sample on the grid, shared by four cells.
+    /// A sample on the grid, shared by four cells, that is placed by itself: near an edge or a
+    /// step, at the wheel's side faces, or with a ray that is not its normal.
     struct Footprint {
         double gap;  // mm, at (s, y); once on the grid, carried to the first cell's centre
+        std::size_t position;
         std::uint32_t sample;
         int cell;                // the first of the four: lower s, lower y
         float s, y;              // mm
@@ -137,9 +163,22 @@ class GapMap {
     };
     /// What `values` (two per column, as `DisplacedPressure::beside`) are at the patch.
     double beside_at(const BesidePatch& patch, const Eigen::ArrayXd& values) const;
-    /// mm that each sample is lowered by in 1 s, if nothing holds it.
+    /// mm that each footprint is lowered by in 1 s, if nothing holds it.
     void sum_rates(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside,
                    std::vector<double>& sums) const;
+    /// `table_` of `values` (one per cell), times `factor`.
+    void tabulate(const Eigen::ArrayXd& values, double factor) const;
+    /// By lane; null: all of it.
+    const float* taken_of(std::size_t placed) const {
+        return has_taken_[placed] != 0 ? &taken_[placed * kBlockLanes] : nullptr;
+    }
+    void place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits);
+    /// Places a sample by itself, if the wheel can press it.
+    void place_alone(const SampleBlocks& blocks, std::size_t position);
+    /// The rest of `update`, once all samples are placed.
+    void map(const SampleBlocks& blocks, double pressable);
+    /// Regular samples near edges are placed by themselves from here on.
+    void part_edges(const SampleBlocks& blocks);
     /// Keeps the footprint's patch if that reaches beyond the side faces.
     void note_beside(const Patch& patch);
     /// Once for each field.
@@ -152,6 +191,8 @@ class GapMap {
     Patch patch_of(const Footprint& f, const HeightField& field) const;
     /// Finds the four cells.
     void put_on_grid(Footprint& f) const;
+    /// Of the regular lane of a placed block, mm: where it lies.
+    Eigen::Vector2d place_of(const PlacedBlock& placed, std::uint32_t lane) const;
     /// The one of the four that the sample lies in.
     int own_cell(const Footprint& f) const;
     /// Calls visit(cell, weight, gap carried to its centre) for each of the four.
@@ -162,9 +203,11 @@ class GapMap {
     template <class Visit>
     void for_patch(const EdgePatch& patch, Visit visit) const;
     void fit_grid(double half_length);
+    /// For `map` to fill.
+    void clear_grid();
     /// Cells beside which there is nothing, or another layer, are `kEdge`; those up to two further
-    /// are `kNearEdge`.
-    void mark_edges();
+    /// are `kNearEdge`. Only where cells with gaps up to `pressable` may have to do with it.
+    void mark_edges(double pressable);
     /// Edge cells are covered as far as patches of their nearest layer lie on them, the others
     /// wholly.
     void cover(const HeightField& field);
@@ -178,8 +221,9 @@ class GapMap {
     double at(const Footprint& f, const Eigen::ArrayXd& values) const;
     /// How far of `wanted` mm the sample may be lowered until it lies on the envelope of the wheel,
     /// moved by `approach` mm along z.
-    double down_to_envelope(const HeightField& field, const Footprint& f, double approach,
+    double down_to_envelope(const SampleBlocks& blocks, const Footprint& f, double approach,
                             double wanted) const;
+    double lower_regular(SampleBlocks& blocks, double factor);
 
     ContactWheel wheel_;
     double steepest_flank_ = 0.0;  // of the wheel's profile, mm per mm of width
@@ -200,10 +244,26 @@ class GapMap {
     std::vector<BesidePatch> beside_patches_;
     Eigen::ArrayXd reach_;  // mm, of what bulges; empty: nothing does
     const HeightField* borders_of_ = nullptr;
-    std::size_t borders_size_ = 0;         // samples that it had
-    double scale_ = 1.0;                   // of the last `remove`, so that volumes are equal
-    std::vector<double> lowering_, room_;  // mm, by footprint
-    mutable std::vector<double> sums_;     // mm/s, by footprint
+    std::size_t borders_size_ = 0;  // samples that it had
+    double scale_ = 1.0;            // of the last `remove`, so that volumes are equal
+
+    std::vector<PlacedBlock> placed_;  // `placed_count_` of them are in use
+    std::size_t placed_count_ = 0, samples_ = 0;
+    std::vector<ProfileStretch> profile_;
+    double reach_gap_ = 0.0, ahead_ = 0.0;        // mm
+    std::vector<std::uint8_t> pressable_;         // by cell; empty: all edges were looked at
+    std::vector<std::uint8_t> beside_pressable_;  // by cell: the same, or one beside it
+    std::vector<float> limit_;             // mm, by cell: what lies deeper is another layer's
+    mutable std::vector<Bilinear> table_;  // by cell
+    std::vector<float> lowering_;          // mm, of regular lanes
+    std::vector<double> volumes_;          // mm3 of that, by placed block
+    std::vector<float> taken_;             // share of what the rate asked for, of regular lanes
+    std::vector<std::uint8_t> has_taken_;  // by placed block; else all of it
+    std::vector<std::uint8_t> active_;     // by placed block: something is taken
+    std::vector<std::uint64_t> free_;      // by placed block: lanes that nothing holds
+    std::vector<std::pair<std::size_t, double>> limited_;  // of `lowering_`: room, mm
+    std::vector<double> asked_, room_;                     // mm, by footprint
+    mutable std::vector<double> sums_;                     // mm/s, by footprint
 };
 
 /// `ContactProblem::drop` of a wheel.

@@ -69,9 +69,9 @@ inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
 /// A file's bytes, opened for reading. Nothing of them leads out of them: see `check_inside`.
 class InputFile {
   public:
-    /// Checks that the file has the format `known`, which its attribute `format_name` tells.
-    /// `image` is copied.
-    InputFile(std::string_view image, const char* format_name, int known);
+    /// Checks that the file has the format `known`, or one from `oldest` on if that is not 0, which
+    /// its attribute `format_name` tells. `image` is copied.
+    InputFile(std::string_view image, const char* format_name, int known, int oldest = 0);
     operator hid_t() const { return file_; }
     hsize_t bytes() const { return bytes_; }
 

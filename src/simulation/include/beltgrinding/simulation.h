@@ -130,7 +130,6 @@ struct PhaseTimes {
     double gap = 0.0;       ///< mapping the surface on the wheel's grid
     double contact = 0.0;   ///< solving
     double removal = 0.0;   ///< lowering the samples
-    double refit = 0.0;     ///< of the tree where heights have changed
     double trace = 0.0;     ///< noting what removed
     double events = 0.0;    ///< watching for them
 
@@ -174,7 +173,7 @@ struct SimulationResult {
     double lost_volume() const { return std::max(integrated_rate - removed_volume, 0.0); }
 };
 
-/// Grinds `field` along `path`: localise, gap, contact, removal, refit, pose by pose. Only
+/// Grinds `field` along `path`: localise, gap, contact, removal, pose by pose. Only
 /// `field.height` and `field.trace` change; a trace goes on with what is there. On cancel or error
 /// the field is left as it was before the call.
 /// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "beltgrinding/height_field.h"
+#include "heightfield/sample_blocks.h"
 
 namespace beltgrinding {
 
@@ -24,8 +25,17 @@ class ChangeLog {
     std::size_t changes(std::size_t block) const { return end(block).height - begin(block).height; }
     std::size_t bytes() const;
     void shrink_to_fit();
-    /// Appends a block: samples in ascending order, and the heights of these.
-    void append(std::span<const std::uint32_t> samples, std::span<const float> heights);
+    /// Begins a block, which `add` fills by ascending samples.
+    void begin_block() { open_run_ = runs_.size(); }
+    void add(std::uint32_t sample, float height) {
+        if (runs_.size() > open_run_ && runs_.back().first + runs_.back().count == sample) {
+            ++runs_.back().count;
+        } else {
+            runs_.push_back({sample, 1});
+        }
+        height_.push_back(height);
+    }
+    void end_block() { ends_.push_back({runs_.size(), height_.size()}); }
     /// Calls visit(sample, height) for the changes of a block, in ascending order.
     template <class Visit>
     void visit(std::size_t block, Visit&& visit) const {
@@ -48,6 +58,7 @@ class ChangeLog {
     std::vector<Run> runs_;
     std::vector<float> height_;
     std::vector<End> ends_;
+    std::size_t open_run_ = 0;
 };
 
 /// What a simulation did to the heights, step by step, to be played forwards and backwards. It
@@ -66,12 +77,14 @@ class Recording {
     explicit Recording(std::size_t max_bytes = kMaxBytes);
 
     /// Begins a path of `duration` s at the end of the ones before: their time goes on. Throws
-    /// InputError if the field has not the samples of the path before.
-    void begin(const HeightField& field, double duration);
-    /// Adds a step that ends at `time` s since its path's begin; `changed` ascending.
-    void add_step(const HeightField& field, std::span<const std::uint32_t> changed, double time);
+    /// InputError if the field has not the samples of the path before. `order`: the field's samples
+    /// by position, as `SampleBlocks::samples`; what is kept are positions.
+    void begin(const HeightField& field, double duration, std::span<const std::uint32_t> order);
+    /// Adds a step that ends at `time` s since its path's begin and changed `changes`, ascending.
+    void add_step(const SampleBlocks& blocks, std::span<const SampleBlocks::Change> changes,
+                  double time);
     /// Ends the path.
-    void end(const HeightField& field);
+    void end(const SampleBlocks& blocks);
     /// Forgets all; `simulate` does so when it is cancelled or fails.
     void clear();
 
@@ -103,7 +116,10 @@ class Recording {
 
   private:
     friend struct RecordingFile;
-    void close_frame(const HeightField& field);
+    void close_frame(const SampleBlocks& blocks);
+    std::uint32_t sample_at(std::uint32_t position) const {
+        return order_.empty() ? position : order_[position];
+    }
     void count_frame(std::size_t frame);
     void close_key_frame(std::size_t frame);
     void halve();
@@ -112,8 +128,9 @@ class Recording {
     void visit(std::size_t from, std::size_t to, Visit&& visit) const;
 
     std::size_t max_bytes_;
-    std::vector<float> start_;
-    ChangeLog log_, keys_;
+    std::vector<float> start_;            // by sample
+    std::vector<std::uint32_t> order_;    // samples by position; empty: as they are numbered
+    ChangeLog log_, keys_;                // by position
     std::vector<std::uint32_t> key_end_;  // frame of each key frame
     std::size_t open_changes_ = 0;        // since the last key frame
     std::vector<double> times_;
@@ -121,7 +138,8 @@ class Recording {
     std::size_t stride_ = 1;
     double duration_ = 0.0, offset_ = 0.0;
     // of the frame that is being filled
-    std::vector<std::uint32_t> pending_;
+    std::vector<std::uint64_t> pending_;  // lanes by block
+    std::vector<std::uint32_t> pending_blocks_;
     std::size_t pending_steps_ = 0, total_steps_ = 0;
     double pending_time_ = 0.0;
 };

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+
+namespace beltgrinding {
+
+// What a step does with most samples, eight at a time. Each lane does the same operations in the
+// same order whatever the processor has, so that all give the same bits; no header of these loops
+// may bring in inline functions that other units have as well.
+
+constexpr int kBlockLanes = 64;
+
+/// A block of samples as the wheel sees it. Only lanes in `regular` have values: those of samples
+/// on whole cells, of one layer, under the wheel's width. The cells are the four that a sample lies
+/// between.
+struct alignas(64) PlacedBlock {
+    float gap[kBlockLanes];                // mm, carried to the first cell's centre
+    float u[kBlockLanes], v[kBlockLanes];  // weights of the cells of higher s, of higher y
+    float slope_s[kBlockLanes], slope_y[kBlockLanes];  // mm by a cell
+    float own_gap[kBlockLanes];                        // mm, radial, at the sample itself
+    float facing[kBlockLanes];       // cosine of the wheel's radius there against the contact's z
+    float weight[kBlockLanes];       // mm2: area times the cosine of its normal against that radius
+    std::int32_t cell[kBlockLanes];  // the first; before `number_cells` its column from the middle
+    std::int32_t row[kBlockLanes];
+    std::uint64_t regular, special;  // lanes; special ones are to be placed one by one
+    float farthest;                  // mm, largest |s| of the regular ones
+    std::uint32_t block;
+};
+
+/// A stretch of the wheel's profile: drop = at + slope * y, mm, up to y = `end`.
+struct ProfileStretch {
+    float end, at, slope;
+};
+
+/// The wheel over the work; lengths in mm.
+struct Placing {
+    float rotation[9];  // contact_from_work, by rows
+    float radius, half_width;
+    float reach;        // gaps beyond are left out
+    float width_limit;  // |y| beyond is left out
+    float side_limit;   // |y| beyond is special
+    float ahead;        // from the wheel's axis: no part of the segment beyond is left out
+    float depth;        // of the segments below the design
+    float crown;        // radius; 0: none
+    const ProfileStretch* profile;
+    int stretches;
+    float ds, dy;
+    float middle_row;  // of y = 0, in cells
+    int last_row;      // that is the first of two
+};
+
+/// A block's samples (arrays of 64) and where its origin is in the contact's frame.
+struct SampleArrays {
+    const double* height;
+    const float *x, *y, *z, *nx, *ny, *nz, *area;
+    float origin[3];
+};
+
+/// Fills `out` but for `block`.
+void place_block(const Placing& placing, const SampleArrays& in, PlacedBlock& out);
+
+/// Makes cells of columns and rows, `columns` in a row, the middle one being number `middle`.
+void number_cells(PlacedBlock& placed, int columns, int middle);
+
+/// Lowers `nearest` and raises `farthest` (mm, by cell) to the gaps of the samples in each cell.
+/// `above`: cells to the next row, 0 if there is one row.
+void range_cells(const PlacedBlock& placed, int above, double* nearest, double* farthest);
+
+/// Adds to the weighted gaps and weights of the four cells of each sample, where it lies no deeper
+/// than `limit` (mm, by cell).
+void average_cells(const PlacedBlock& placed, int above, const float* limit, double* gap,
+                   double* weight);
+
+/// What is true at (u, v) between four cells: a + b u + c v + d u v.
+struct Bilinear {
+    float a, b, c, d;
+};
+
+/// Values of the regular lanes by the table of their first cells, never below 0; 0 in the others.
+/// False if all are 0.
+bool interpolate(const PlacedBlock& placed, const Bilinear* table, float* values);
+/// The same for values of any sign.
+bool interpolate_signed(const PlacedBlock& placed, const Bilinear* table, float* values);
+/// Raises `largest` to the interpolated values.
+void raise_to(const PlacedBlock& placed, const Bilinear* table, float* largest);
+
+/// Sum of values times areas.
+double volume_of(const float* values, const float* area);
+
+/// Which lanes may be lowered as asked (mm) without reaching the wheel's envelope.
+struct Standing {
+    std::uint64_t free;    // by `room` times as much at least
+    std::uint64_t onto;    // not at all: on the envelope, or out of it
+    std::uint64_t unsure;  // to be looked at one by one
+};
+/// `approach` and `bent`: mm, of the envelope; `room`: times the lowering.
+Standing stand_off(const PlacedBlock& placed, const float* lowering, float approach, float bent,
+                   float room);
+
+/// Lowers `height` (mm) by `factor` times `lowering` in `lanes`. Gives the block's lowest and
+/// highest height, and the volume taken, mm3.
+struct Lowered {
+    double lowest, highest, volume;
+};
+Lowered lower_block(double* height, const float* lowering, const float* area, double factor,
+                    std::uint64_t lanes);
+
+}  // namespace beltgrinding

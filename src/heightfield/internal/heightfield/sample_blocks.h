@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "beltgrinding/height_field.h"
+#include "heightfield/kdop_tree.h"
+
+namespace beltgrinding {
+
+/// A height field as a simulation works on it: samples in blocks of 64 neighbours, each a structure
+/// of arrays (single precision, from an origin of the block's own, but for the heights), under a
+/// k-DOP tree. The place of a sample here is its *position*: 64 times the block's number and its
+/// *lane*. The field itself stays as it is until the heights are stored back.
+class SampleBlocks {
+  public:
+    static constexpr std::uint32_t kLanes = SegmentTree::kLeafSize;
+
+    struct alignas(64) Block {
+        std::array<double, kLanes> height;  // mm
+        std::array<float, kLanes> x, y, z;  // mm, of the design point, from `origin`
+        /// Of the face; 0 where nothing is to be touched: the stock's rays missed, or no sample.
+        std::array<float, kLanes> nx, ny, nz;
+        std::array<float, kLanes> area;  // mm2
+        std::uint64_t leaning = 0;       // lanes whose rays are not their normals
+        Vec3 origin = Vec3::Zero();      // mm, work frame
+    };
+    /// What is lowered in a block, one bit a lane.
+    struct Change {
+        std::uint32_t block;
+        std::uint64_t lanes;
+    };
+
+    /// `field` must outlive it and stay as it is.
+    explicit SampleBlocks(const HeightField& field, const RunContext& context = {});
+
+    const HeightField& field() const { return field_; }
+    std::uint32_t count() const { return static_cast<std::uint32_t>(blocks_.size()); }
+    const Block& block(std::uint32_t number) const { return blocks_[number]; }
+    /// Its heights may be lowered; `lowered` must be told.
+    Block& block(std::uint32_t number) { return blocks_[number]; }
+    /// Samples of all positions.
+    std::span<const std::uint32_t> samples() const { return tree_.order(); }
+    std::uint32_t sample(std::size_t position) const { return samples()[position]; }
+    double height(std::size_t position) const {
+        return blocks_[position / kLanes].height[position % kLanes];
+    }
+    /// Current top of a segment, mm, work frame.
+    Vec3 top(std::size_t position) const {
+        const std::uint32_t s = sample(position);
+        return field_.point[s] + height(position) * field_.ray(s).cast<double>();
+    }
+
+    /// Replaces `found` by all blocks that may have a segment in the reach, ascending.
+    void near(const WheelReach& reach, std::vector<std::uint32_t>& found) const {
+        tree_.query(reach, found);
+    }
+    /// False if no segment of the block has both its top within the reach's cylinder and a point on
+    /// its side of `min_along`. Closer than the tree: a block is looked at as a disc.
+    bool may_meet(std::uint32_t block, const WheelReach& reach) const;
+
+    /// Heights of `lanes` were lowered; those of the whole block lie from `lowest` to `highest` mm.
+    void lowered(std::uint32_t block, std::uint64_t lanes, double lowest, double highest);
+    /// mm: no sample of the block is lower; up to 1e-5 mm below the lowest.
+    double lowest(std::uint32_t block) const { return bounds_[block].lowest; }
+    /// Lowers one by `depth` mm.
+    void lower(std::size_t position, double depth);
+    /// What was lowered since the last `clear_changes`, by ascending blocks.
+    std::span<const Change> changes();
+    void clear_changes();
+
+    /// The current heights, by sample.
+    std::vector<double> heights() const;
+    /// Bytes beside those of the field.
+    std::size_t bytes() const;
+
+  private:
+    /// The tops of a block lie round a disc: `centre` + h `normal`, h from `lowest` to `highest`.
+    struct Bound {
+        Vec3 centre, normal;      // mm; unit
+        float radius, thickness;  // mm, of the design points: square to `normal` and along it
+        float spread;             // largest difference of a ray from `normal`
+        float lowest, highest;    // mm
+        float bottom;             // mm: what the tree reaches down to at least
+    };
+    Bound bound_of(std::uint32_t block) const;
+    /// Its bound has been lowered.
+    void note(std::uint32_t block, std::uint64_t lanes);
+
+    const HeightField& field_;
+    SegmentTree tree_;
+    std::vector<Block> blocks_;
+    std::vector<Bound> bounds_;
+    std::vector<std::uint64_t> changed_;  // by block
+    std::vector<Change> changes_;
+};
+
+/// Calls visit(position) for all that was lowered, ascending.
+template <class Visit>
+void for_changed(std::span<const SampleBlocks::Change> changes, Visit visit) {
+    for (const SampleBlocks::Change& change : changes) {
+        const std::size_t first = std::size_t{change.block} * SampleBlocks::kLanes;
+        for (std::uint64_t lanes = change.lanes; lanes != 0; lanes &= lanes - 1)
+            visit(first + static_cast<std::size_t>(std::countr_zero(lanes)));
+    }
+}
+
+/// Keeps the blocks near a wheel that moves on, so that the tree is asked every few mm only.
+class NearBlocks {
+  public:
+    /// Replaces `found` by all blocks that `may_meet` the reach, ascending.
+    void find(const SampleBlocks& blocks, const WheelReach& reach,
+              std::vector<std::uint32_t>& found);
+
+  private:
+    WheelReach listed_;
+    bool any_ = false;
+    std::vector<std::uint32_t> near_;
+};
+
+}  // namespace beltgrinding

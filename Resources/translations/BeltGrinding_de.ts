@@ -4,6 +4,18 @@
 <context>
     <name>App::Property</name>
     <message>
+        <source>full: as sampling, belt_machine and simulation say; coarse, for searching: samples 0.6 of contact_spacing_mm apart or farther, contact_tolerance 0.01 or looser; its figures are named coarse and are no verdict</source>
+        <translation>full: wie sampling, belt_machine und simulation sagen; coarse, zum Suchen: Stützpunkte 0,6 von contact_spacing_mm oder weiter auseinander, contact_tolerance 0,01 oder gröber; die Zahlen heißen grob und sind kein Urteil</translation>
+    </message>
+    <message>
+        <source>of the simulations from which feeds are planned; coarse: faster, and rougher (resolution.mode of a job); the figures told before and after are those of the full resolution</source>
+        <translation>der Simulationen, aus denen Vorschübe geplant werden; coarse: schneller und gröber (resolution.mode eines Auftrags); die Zahlen vorher und nachher sind die der vollen Auflösung</translation>
+    </message>
+    <message>
+        <source>full, or coarse: for searching, and no verdict</source>
+        <translation>full, oder coarse: zum Suchen, und kein Urteil</translation>
+    </message>
+    <message>
         <source>5 % of the area lie below</source>
         <translation>5 % der Fläche liegen darunter</translation>
     </message>
@@ -1462,6 +1474,26 @@
 </context>
 <context>
     <name>BeltGrinding</name>
+    <message>
+        <source>{} (coarse)</source>
+        <translation>{} (grob)</translation>
+    </message>
+    <message>
+        <source>Coarse resolution: for searching, no verdict.</source>
+        <translation>Grobe Auflösung: zum Suchen, kein Urteil.</translation>
+    </message>
+    <message>
+        <source>Resolution of the search</source>
+        <translation>Auflösung der Suche</translation>
+    </message>
+    <message>
+        <source>full</source>
+        <translation>voll</translation>
+    </message>
+    <message>
+        <source>coarse</source>
+        <translation>grob</translation>
+    </message>
     <message>
         <source>(none)</source>
         <translation>(keine)</translation>

@@ -117,9 +117,9 @@ Frame ArmMotion::work_from_first(double place) const {
     return base_from_work.inverse() * base_from_first(place);
 }
 
-double ArmMotion::time(double place) const {
-    const auto [before, after, share] = between(place, travel_.moments());
-    const auto& way = travel_.arm().way;
+double arm_time(const ArmInCell& arm, double place) {
+    const auto& way = arm.way;
+    const auto [before, after, share] = between(place, way.size());
     return way[before].time + share * (way[after].time - way[before].time);
 }
 

@@ -31,6 +31,9 @@ class ArmTravel {
     std::array<std::vector<double>, 6> turned_;  ///< rad, sums up to each moment
 };
 
+/// s since the program's begin at a place of the arm's way.
+double arm_time(const ArmInCell& arm, double place);
+
 /// A link of the arm against a body that stands still or is carried by the robot; the link is the
 /// second.
 class ArmMotion : public PairMotion {
@@ -44,7 +47,6 @@ class ArmMotion : public PairMotion {
     double way(double begin, double end) const override;
     Frame first_from_second(double place) const override;
     Frame work_from_first(double place) const override;
-    double time(double place) const override;
     std::uint32_t pose(double place) const override;
 
   private:

@@ -33,7 +33,7 @@ Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
             arguments};
 }
 
-/// What was found of a pair, on the path's time and in the work frame.
+/// What was found of a pair, on the path's places and in the work frame.
 class Report {
   public:
     Report(const ToolPath& path, const CollisionOptions& options)
@@ -48,8 +48,11 @@ class Report {
         const PairMotion& motion = pair.motion();
         const auto least = std::min_element(looks.begin(), looks.end(), nearer);
         const auto [on_first, on_second] = pair.points(*least);
-        result.pairs.push_back({first, second, least->distance, motion.pose(least->place),
-                                motion.time(least->place), on_first, on_second});
+        const bool of_arm = bodies[second].carrier == Carrier::kLink;
+        result.pairs.push_back(
+            {first, second, least->distance, motion.pose(least->place), 0.0, on_first, on_second});
+        result.pair_places.push_back(
+            {of_arm, least->place, least->place, least->place, result.pairs.size()});
         const std::array<const CollisionBody*, 2> both = {&bodies[first], &bodies[second]};
         for (auto at = looks.begin(); at != looks.end();) {
             if (at->distance >= options_.clearance && at->distance > 0.0) {
@@ -59,7 +62,11 @@ class Report {
             const auto end = std::find_if(at, looks.end(), [&](const CollisionPair::Look& look) {
                 return look.distance >= options_.clearance && look.distance > 0.0;
             });
-            result.events.push_back(event(pair, at, end, both));
+            CollisionPlaces places;
+            places.of_arm = of_arm;
+            places.number = result.events.size();
+            result.events.push_back(event(pair, at, end, both, places));
+            result.event_places.push_back(places);
             at = end;
         }
     }
@@ -67,9 +74,10 @@ class Report {
   private:
     using Looks = CollisionPair::Looks::const_iterator;
 
-    /// Of a stretch nearer than the clearance: from the first touch to the last, or the whole.
+    /// Of a stretch nearer than the clearance: from the first touch to the last, or the whole;
+    /// without its times.
     Event event(const CollisionPair& pair, Looks begin, Looks end,
-                const std::array<const CollisionBody*, 2>& bodies) const {
+                const std::array<const CollisionBody*, 2>& bodies, CollisionPlaces& places) const {
         const auto touches = [](const CollisionPair::Look& look) { return look.distance <= 0.0; };
         const auto first = std::find_if(begin, end, touches);
         const bool collides = first != end;
@@ -90,10 +98,9 @@ class Report {
         event.severity = kind.severity;
         event.unit = kind.unit;
         event.pose = motion.pose(worst->place);
-        event.line = path_.poses()[event.pose].line;
-        event.time = motion.time(begin->place);
-        event.duration = motion.time(last->place) - event.time;
-        event.worst_time = motion.time(worst->place);
+        places.begin = begin->place;
+        places.last = last->place;
+        places.worst = worst->place;
         event.value = worst->distance;
         event.limit = collides ? 0.0 : options_.clearance;
         const auto [on_first, on_second] = pair.points(*worst);
@@ -227,10 +234,42 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         report.add(*pairs[k], numbers[k].first, numbers[k].second, bodies, result);
     }
-    std::stable_sort(result.events.begin(), result.events.end(),
-                     [](const Event& a, const Event& b) { return a.time < b.time; });
+    tell_times(result, path, arm);
     context.report(1.0);
     return result;
+}
+
+void tell_times(CollisionResult& result, const ToolPath& path, const ArmInCell* arm) {
+    if (path.poses().size() < 2) return;
+    const PathTravel travel(path);
+    const auto time = [&](bool of_arm, double place) {
+        return of_arm ? arm_time(*arm, place) : travel.time(place);
+    };
+    for (std::size_t i = 0; i < result.pairs.size(); ++i) {
+        const CollisionPlaces& places = result.pair_places[i];
+        result.pairs[i].time = time(places.of_arm, places.worst);
+    }
+    std::vector<std::size_t> order(result.events.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        Event& event = result.events[i];
+        const CollisionPlaces& places = result.event_places[i];
+        order[places.number] = i;
+        event.time = time(places.of_arm, places.begin);
+        event.duration = time(places.of_arm, places.last) - event.time;
+        event.worst_time = time(places.of_arm, places.worst);
+        event.line = path.poses()[event.pose].line;
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return result.events[a].time < result.events[b].time;
+    });
+    std::vector<Event> events;
+    std::vector<CollisionPlaces> places;
+    for (const std::size_t i : order) {
+        events.push_back(std::move(result.events[i]));
+        places.push_back(result.event_places[i]);
+    }
+    result.events = std::move(events);
+    result.event_places = std::move(places);
 }
 
 }  // namespace beltgrinding

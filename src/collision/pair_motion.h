@@ -24,7 +24,6 @@ class PairMotion {
     virtual double way(double begin, double end) const = 0;
     virtual Frame first_from_second(double place) const = 0;
     virtual Frame work_from_first(double place) const = 0;
-    virtual double time(double place) const = 0;         ///< s since the program's begin
     virtual std::uint32_t pose(double place) const = 0;  ///< that the motion leads to, from 0
 
     /// The place where half of the way is done.

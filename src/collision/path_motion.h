@@ -45,7 +45,6 @@ class PathMotion : public PairMotion {
     double way(double begin, double end) const override;
     Frame first_from_second(double place) const override;
     Frame work_from_first(double place) const override;
-    double time(double place) const override { return travel_.time(place); }
     std::uint32_t pose(double place) const override { return travel_.pose(place); }
 
   private:

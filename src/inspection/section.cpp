@@ -38,13 +38,16 @@ Crossing crossing(std::uint32_t a, std::uint32_t b, const std::vector<double>& d
 /// as above it or, with `touching_below`, as below.
 std::vector<Segment> segments(const HeightField& field, const std::vector<double>& distance,
                               bool touching_below) {
-    const auto above = [&](std::uint32_t i) {
-        return touching_below ? distance[i] > 0.0 : distance[i] >= 0.0;
-    };
+    std::vector<char> above(distance.size());
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        above[i] = touching_below ? distance[i] > 0.0 : distance[i] >= 0.0;
+    }
     std::vector<Segment> result;
     for (const Triangle& t : field.triangles) {
         // Counter-clockwise triangles: above lies on the left of plane normal x normal.
-        const auto through = triangle_crossing({above(t[0]), above(t[1]), above(t[2])});
+        if (above[t[0]] == above[t[1]] && above[t[1]] == above[t[2]]) continue;
+        const auto through =
+            triangle_crossing({above[t[0]] != 0, above[t[1]] != 0, above[t[2]] != 0});
         if (!through) continue;
         Segment s;
         s.face = field.face[t[0]];

@@ -122,18 +122,17 @@ class FaceProfiles {
         : face_(face), feed_(feed), grid_(face.field.point, numbers(), reach()) {}
 
     /// Profiles through samples spread over the face.
-    std::vector<Profile> profiles(bool along) const {
+    std::vector<Profile> profiles(bool along, const RunContext& context) const {
         std::vector<std::uint32_t> ground;
         for (std::uint32_t i = 0; i < face_.field.size(); ++i) {
             if (feed_at(i)) ground.push_back(i);
         }
-        std::vector<Profile> found;
         const std::size_t count = std::min(kProfiles, ground.size());
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t at = (2 * k + 1) * ground.size() / (2 * count);
-            Profile profile = through(ground[at], along);
-            if (profile.s.size() > 1) found.push_back(std::move(profile));
-        }
+        std::vector<Profile> found(count);
+        parallel_blocks(count, 1, context, [&](std::size_t k, std::size_t) {
+            found[k] = through(ground[(2 * k + 1) * ground.size() / (2 * count)], along);
+        });
+        std::erase_if(found, [](const Profile& profile) { return profile.s.size() < 2; });
         return found;
     }
 
@@ -300,12 +299,12 @@ std::optional<WavinessFigures> figures(const std::vector<Profile>& profiles,
     return result;
 }
 
-FaceWaviness of_face(const Face& face, const Feed& feed) {
+FaceWaviness of_face(const Face& face, const Feed& feed, const RunContext& context) {
     FaceWaviness result;
     result.face = face.field.face.front();
     const double spacing = face.field.spacing;
     const FaceProfiles all(face, feed);
-    const std::vector<Profile> across = all.profiles(false);
+    const std::vector<Profile> across = all.profiles(false, context);
     std::vector<double> widths;
     for (const Profile& profile : across) append_widths(profile, feed, spacing, widths);
     if (widths.size() < kLeastPasses) {
@@ -322,7 +321,7 @@ FaceWaviness of_face(const Face& face, const Feed& feed) {
     result.short_cutoff = std::max(kShortCutoff * result.pass_distance, kLeastSpacings * spacing);
     result.long_cutoff = kLongCutoff * result.pass_distance;
     result.across = figures(across, result, spacing);
-    result.along = figures(all.profiles(true), result, spacing);
+    result.along = figures(all.profiles(true, context), result, spacing);
     if (!result.across || !result.along) result.reason = "too_short";
     return result;
 }
@@ -375,7 +374,7 @@ std::vector<FaceWaviness> waviness(const HeightField& field, const std::vector<M
     const std::vector<Face> faces = split(field);
     result.resize(faces.size());
     parallel_blocks(faces.size(), 1, context, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) result[k] = of_face(faces[k], feed);
+        for (std::size_t k = begin; k < end; ++k) result[k] = of_face(faces[k], feed, context);
     });
     return result;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "collision/collision_check.h"
 #include "dict.h"
 
@@ -15,9 +17,16 @@ Carrier carrier_from(const std::string& name) {
                      {{"name", name}});
 }
 
-py::dict collisions(const ToolPath& path, const py::list& given, double clearance,
-                    double resolution, const ArmInCell* arm, const RunContext* context) {
+/// What a check has found, for any path that goes the same way.
+struct CollisionFindings {
+    CollisionResult result;
+    std::vector<std::string> names;  ///< of the bodies
+};
+
+CollisionFindings find(const ToolPath& path, const py::list& given, double clearance,
+                       double resolution, const ArmInCell* arm, const RunContext* context) {
     std::vector<CollisionBody> bodies;
+    CollisionFindings found;
     for (const auto& one : given) {
         py::dict d = copy_of(one.cast<py::dict>());
         CollisionBody body;
@@ -27,28 +36,42 @@ py::dict collisions(const ToolPath& path, const py::list& given, double clearanc
         body.margin = take(d, "margin", 0.0);
         body.link = take(d, "link", std::size_t{0});
         refuse_rest(d, "body");
+        found.names.push_back(body.name);
         bodies.push_back(std::move(body));
     }
-    CollisionResult result;
-    {
-        const py::gil_scoped_release release;
-        result = check_collisions(path, bodies, {clearance, resolution},
-                                  context != nullptr ? *context : RunContext(), arm);
+    const py::gil_scoped_release release;
+    found.result = check_collisions(path, bodies, {clearance, resolution},
+                                    context != nullptr ? *context : RunContext(), arm);
+    return found;
+}
+
+py::dict told(const CollisionFindings& found, const ToolPath& path, const ArmInCell* arm) {
+    const auto of_arm = [](const CollisionPlaces& places) { return places.of_arm; };
+    if ((arm == nullptr || arm->way.empty()) &&
+        std::any_of(found.result.pair_places.begin(), found.result.pair_places.end(), of_arm)) {
+        throw InputError("call.collision_arm", "the arm along the path is missing");
     }
+    CollisionResult result = found.result;
+    tell_times(result, path, arm);
     py::list pairs;
     for (const PairClearance& pair : result.pairs) {
         py::dict d;
-        d["bodies"] = py::make_tuple(bodies[pair.first].name, bodies[pair.second].name);
+        d["bodies"] = py::make_tuple(found.names[pair.first], found.names[pair.second]);
         d["distance"] = pair.distance;
         d["pose"] = pair.pose;
         d["time"] = pair.time;
         d["points"] = py::make_tuple(pair.on_first, pair.on_second);
         pairs.append(d);
     }
-    py::dict found;
-    found["events"] = events_to_list(result.events);
-    found["pairs"] = pairs;
-    return found;
+    py::dict all;
+    all["events"] = events_to_list(result.events);
+    all["pairs"] = pairs;
+    return all;
+}
+
+py::dict collisions(const ToolPath& path, const py::list& given, double clearance,
+                    double resolution, const ArmInCell* arm, const RunContext* context) {
+    return told(find(path, given, clearance, resolution, arm, context), path, arm);
 }
 
 }  // namespace
@@ -64,6 +87,20 @@ void bind_collision(py::module_& m) {
         "frame, mm), margin (mm). arm: what RobotArm.reach gave as arm, for links. "
         "dict(events; pairs: dicts of bodies, distance mm, pose, time s, points in the work "
         "frame).");
+    py::class_<CollisionFindings>(m, "CollisionFindings",
+                                  "What check_collisions found along a way, at whatever feeds.")
+        .def("__len__",
+             [](const CollisionFindings& found) {
+                 return found.result.events.size() + found.result.pairs.size();
+             })
+        .def("told", &told, py::arg("path"), py::arg("arm") = nullptr,
+             "The dict of check_collisions for a ToolPath that goes the same way as the one that "
+             "was "
+             "checked, and the arm along it.");
+    m.def("find_collisions", &find, py::arg("path"), py::arg("bodies"),
+          py::arg("clearance") = CollisionOptions().clearance,
+          py::arg("resolution") = CollisionOptions().resolution, py::arg("arm") = nullptr,
+          py::arg("context") = nullptr, "check_collisions, as CollisionFindings.");
 }
 
 }  // namespace beltgrinding::python

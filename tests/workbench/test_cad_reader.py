@@ -16,6 +16,7 @@ from support.freecad import ROOT, SHARED
 
 sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
+from beltgrinding.base import kept  # noqa: E402
 from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
 from beltgrinding.job import load, workpiece  # noqa: E402
 from beltgrinding.simulation.run import run  # noqa: E402
@@ -23,6 +24,13 @@ from beltgrinding.simulation.run import run  # noqa: E402
 PROGRAM = "BELTGRINDING_CAD_READER"
 LIMIT = "BELTGRINDING_CAD_TIME_LIMIT_S"
 real_parts = pytest.mark.skipif(not SHARED.is_dir(), reason=f"no shared data at {SHARED}")
+
+
+@pytest.fixture(autouse=True)
+def nothing_kept():
+    """What was read before would be taken without the reader."""
+    with kept.instead(kept.Kept(0)):
+        yield
 
 
 @pytest.fixture(scope="module")

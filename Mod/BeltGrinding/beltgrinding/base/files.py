@@ -55,14 +55,16 @@ def _remove_parts(folder):
                         os.unlink(entry.path)
 
 
-def write_new(path, data):
-    """Writes bytes to a file that is not there yet, onto the disk. Raises OSError."""
+def write_new(path, data, onto_disk=True):
+    """Writes bytes to a file that is not there yet; ``onto_disk``: so that they outlast a power failure. Raises
+    OSError."""
     number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
     with open(number, "wb", buffering=0) as file:  # a file system may fail as late as on closing
         left = memoryview(data)
         while left:
             left = left[file.write(left) :]
-        os.fsync(number)
+        if onto_disk:
+            os.fsync(number)
 
 
 @contextlib.contextmanager

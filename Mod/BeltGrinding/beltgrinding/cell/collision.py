@@ -5,16 +5,18 @@ them. The part is its whole shape with its stock; the wheel is what lies behind 
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 
-from ..base import frames
+from ..base import frames, kept
 from ..engine import InputError, core
+from ..job import workpiece
 from ..job.bodies import PART, STOCK, WHEEL
 from ..job.poses import program_name
 from ..presets import robot as robots, robot_shape
+from . import tool_path
 
+FINDING_BYTES = 4000  # in memory, about
 DEFLECTION = 0.1  # mm, chord error of bodies, part and wheel, up to a size of a metre
 LARGE = 1e-4  # of its size: the chord error of what is larger
 LONGEST = 1e7  # s of a program, some months
@@ -22,7 +24,7 @@ LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
 def check(job, shape, paths, warnings, context=None, reached=()):
-    """What ``core.check_collisions`` finds for each core.ToolPath of a validated job. ``shape``: the
+    """What ``core.check_collisions`` finds for each core.ToolPath of a validated job, kept for the next on the same way. ``shape``: the
     design's core.Shape; ``reached``: ``reach.job_reach`` of them, for the robot's own arm; [] if the job
     does not want it. Raises InputError, Cancelled.
     """
@@ -59,8 +61,30 @@ def check(job, shape, paths, warnings, context=None, reached=()):
                 seconds=path.duration(),
             )
         arm = reached[i]["arm"] if reached else None
-        results.append(core.check_collisions(path, found, clearance, arm=arm, context=part))
+        results.append(_met(job, path, found, clearance, arm, part).told(path, arm))
     return results
+
+
+def _met(job, path, found, clearance, arm, context):
+    """core.CollisionFindings."""
+
+    def look():
+        return core.find_collisions(path, found, clearance, arm=arm, context=context)
+
+    _, way = tool_path.digests(path)
+    if way is None:
+        return look()
+    robot, steps = job["robot"], job["simulation"]
+    followed = None
+    if arm is not None:  # which decides what the joints do on the way, whatever time they take
+        followed = robot, robots.model_of(robot), steps["max_travel_mm"], steps["max_angle_deg"]
+    met = [{**body, "mesh": [body["mesh"].vertices, body["mesh"].triangles]} for body in found]
+    return kept.get(
+        "collisions",
+        lambda: (way, met, clearance, followed),
+        look,
+        lambda met: FINDING_BYTES * len(met),
+    )
 
 
 def bodies(job, shape, warnings, context=None):
@@ -94,28 +118,43 @@ def arm_bodies(robot):
 
 def read_body(body, name, warnings, context=None):
     """core.TriangleMesh of a job's body or stock, in its frame. Raises InputError."""
-    from ..job.workpiece import MESH_SUFFIXES, read_shape
-
     try:
         placement = frames.from_data(body.get("placement"))
     except InputError as error:
         raise error.within("cell.placement", "{body}: placement: ", body=name) from None
-    if "file" in body and Path(body["file"]).suffix.lower() in MESH_SUFFIXES:
-        return core.read_mesh(body["file"], body["unit_mm"], placement, context)
-    shape = read_shape(body, name, context)
-    warnings += [
-        core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=text)
-        for text in shape.warnings()
-    ]
-    mesh = _triangulate(shape, context)
-    points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
-    return core.TriangleMesh(points.astype(np.float32), mesh.triangles)
+
+    def read():
+        if workpiece.is_mesh(body):
+            return core.read_mesh(body["file"], body["unit_mm"], placement, context), []
+        shape = workpiece.read_shape(body, name, context)
+        told = [
+            core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=text)
+            for text in shape.warnings()
+        ]
+        mesh = _triangulate(shape, context)
+        points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
+        return core.TriangleMesh(points.astype(np.float32), mesh.triangles), told
+
+    def parts():
+        return workpiece.made_from(body), name, placement
+
+    mesh, told = kept.get("body", parts, read, lambda found: _mesh_bytes(found[0]))
+    warnings += told
+    return mesh
+
+
+def _mesh_bytes(mesh):
+    return mesh.vertices.nbytes + mesh.triangles.nbytes
 
 
 def _triangulate(shape, context):
-    low, high = shape.extents()
-    size = float(np.linalg.norm(np.subtract(high, low)))
-    return core.triangulate(shape, max(DEFLECTION, LARGE * size), context)
+    def make():
+        low, high = shape.extents()
+        size = float(np.linalg.norm(np.subtract(high, low)))
+        return core.triangulate(shape, max(DEFLECTION, LARGE * size), context)
+
+    name = kept.name(shape)
+    return make() if name is None else kept.get("triangles", lambda: name, make, _mesh_bytes)
 
 
 def wheel_body(wheel, inset):

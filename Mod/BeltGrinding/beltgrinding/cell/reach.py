@@ -1,15 +1,19 @@
 """What a robot's joints meet along a program. Joint angles are in degrees; frames are 4 x 4 in mm."""
 
+import copy
 import csv
 import io
 import math
 
 import numpy as np
 
+from ..base import kept
 from ..engine import InputError
-from ..presets.robot import arm_of, checked, given, name, robot_frame
+from ..presets.robot import arm_of, checked, given, model_of, name, robot_frame
 from ..presets.robot_model import JOINTS
+from . import tool_path
 
+MOMENT_BYTES, EVENT_BYTES = 200, 4000  # in memory, about
 EVENTS = (
     "out_of_reach",
     "joint_limit",
@@ -51,14 +55,25 @@ def reach(path, robot, max_travel_mm=1.0, max_angle_deg=1.0, context=None):
 
 
 def job_reach(job, paths, context=None):
-    """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot."""
+    """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot. Kept for the next of the
+    same ways and times."""
     if not given(job["robot"]):
         return []
-    steps = job["simulation"]
-    return [
-        reach(path, job["robot"], steps["max_travel_mm"], steps["max_angle_deg"], context)
-        for path in paths
-    ]
+    return [_kept_reach(path, job["robot"], job["simulation"], context) for path in paths]
+
+
+def _kept_reach(path, robot, steps, context):
+    wanted = robot, steps["max_travel_mm"], steps["max_angle_deg"]
+    timed, _ = tool_path.digests(path)
+    if timed is None:
+        return reach(path, *wanted, context)
+    found = kept.get(
+        "reach",
+        lambda: (timed, wanted, model_of(robot)),
+        lambda: reach(path, *wanted, context),
+        lambda found: MOMENT_BYTES * len(found["arm"]) + EVENT_BYTES * len(found["events"]),
+    )
+    return {**found, "events": copy.deepcopy(found["events"])}
 
 
 def summary(robot, found):

@@ -1,11 +1,15 @@
 """The way of the wheel over the work that a job's program commands."""
 
+import weakref
+
+from ..base import kept
 from ..engine import InputError, core
 from ..job.engine_input import time_law
 from ..job.poses import program_arrays, program_name
 from ..job.workpiece import frame_of
 from ..presets import robot as robots
 
+_made_from = weakref.WeakKeyDictionary()  # of every core.ToolPath: what it was made from
 CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
@@ -25,9 +29,28 @@ def tool_path(job, index, warnings, count=None, gaps=None):
         gaps.append(left_out)
     arrays = {name: values[:count] for name, values in arrays.items()}
     cell = {name: frame_of(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
+    given = {
+        **arrays,
+        **cell,
+        "holding": job["cell"]["holding"],
+        "time_law": time_law(job["simulation"]),
+    }
     try:
-        return core.ToolPath(
-            **arrays, holding=job["cell"]["holding"], **cell, time_law=time_law(job["simulation"])
-        )
+        path = core.ToolPath(**given)
     except InputError as error:
         raise error.within("job.in_program", "{program}: ", program=where) from None
+    _made_from[path] = given
+    return path
+
+
+def digests(path):
+    """(digest of all that a core.ToolPath was made from but its forces, the same of what its way depends on,
+    whatever time it takes), for ``kept``; None, None for a path that ``tool_path`` has not made."""
+    given = _made_from.get(path)
+    if given is None:
+        return None, None
+    timed = {name: value for name, value in given.items() if name != "forces"}
+    # At constant feed the tool goes straight from pose to pose; else speeds decide how corners are rounded.
+    straight = given["time_law"]["timing"] == "constant_feed"
+    way = {name: value for name, value in timed.items() if not straight or name != "feeds"}
+    return kept.digest(timed), kept.digest(way)

@@ -51,8 +51,9 @@ def _report(result, arguments, said):
     arguments.messages.print_warnings(summary["warnings"][said:])
     deviation = summary["deviation_mm"]
     chosen = ", chosen" if summary["spacing_chosen"] else ""
+    coarse = "coarse: " if summary["resolution"] == "coarse" else ""
     print_text(
-        f"{summary['samples']} samples ({summary['spacing_mm']:.3g} mm apart{chosen}), "
+        f"{coarse}{summary['samples']} samples ({summary['spacing_mm']:.3g} mm apart{chosen}), "
         f"{summary['steps']} steps, "
         f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
         f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "

@@ -64,6 +64,7 @@ def _plan(arguments):
 
 def line(one):
     kind = f"in {one['levels']} levels: " if "levels" in one else ""
+    kind += "coarse: " if one.get("resolution") == "coarse" else ""
     return (
         f"{kind}{100 * one['in_tolerance']:.1f} % of the area in tolerance, "
         f"{100 * one['above']:.1f} % too much left, {100 * one['below']:.1f} % cut too deep, "

@@ -9,6 +9,7 @@ import numpy as np
 from ..base.messages import fact_data
 from ..cell import motions as ways
 from ..engine import InputError, core
+from ..job import resolution
 from ..job.poses import program_name
 from . import edge_profile
 from .verdict_text import text
@@ -82,6 +83,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
     kinds = [event["kind"] for event in events]
     return {
         "format": FORMAT,
+        "resolution": resolution.mode(job),
         "overall": next(word for word in ("fail", "unknown", "pass") if word in verdicts),
         "tolerance_mm": list(rest),
         **whole,

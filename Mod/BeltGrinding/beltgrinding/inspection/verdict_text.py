@@ -7,7 +7,9 @@ def text(verdict):
     """A few lines that say it all."""
     failed = [one for one in verdict["zones"] if one["verdict"] != "pass"]
     bad = [one["face"] for one in verdict["faces"] if one["verdict"] == "fail"]
+    coarse = " (coarse resolution: for searching, no verdict)"
     lines = [f"verdict: {verdict['overall'].upper()}"]
+    lines[0] += coarse if verdict.get("resolution") == "coarse" else ""
     if bad:
         lines[0] += f", {len(bad)} of {len(verdict['faces'])} faces are not in tolerance"
     for zone in failed:

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from ..base import kept
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from . import contact_extents, engine_input
@@ -24,6 +25,7 @@ CHORD = 0.1  # of the tolerance's band: between the surface and the chord from s
 LEAST_CHORD = 0.5  # more is warned of
 SHARE = 0.98  # of the area: what is more curved, or narrower, is a fillet or a sliver
 TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or larger
+SMALL = 1000  # bytes of a few figures
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 EDGE = 1e-3  # of the area: less that is sharper than the contact's cells is no edge
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
@@ -51,6 +53,24 @@ def look(job, shape, faces, context=None):
     face from 1, length, breadth mm: the contact's extents on a place as curved as a quarter of the area,
     plane mm: the larger one on a plane; None for a rigid tool).
     """
+    name = kept.name(shape)
+    if name is None:
+        seen = _look_at_faces(shape, faces, context)
+    else:
+        look = lambda: _look_at_faces(shape, faces, context)
+        seen = kept.get("look", lambda: (name, list(faces)), look, lambda _: SMALL)
+    length, breadth = _contact(job, seen["convex"]) or (None, None)
+    plane = _contact(job, 0.0)
+    return {
+        **{key: value for key, value in seen.items() if key != "convex"},
+        "length": length,
+        "breadth": breadth,
+        "plane": max(plane) if plane else None,
+    }
+
+
+def _look_at_faces(shape, faces, context):
+    """What of ``look`` the faces alone decide; and convex: 1/mm, the curvature at which the contact is looked at."""
     area = _area(shape, faces)
     spacing = math.sqrt(area / LOOK)
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
@@ -60,18 +80,13 @@ def look(job, shape, faces, context=None):
     order = sorted(widths, key=lambda face: -widths[face][0])
     counted = np.searchsorted(np.cumsum([widths[face][1] for face in order]), SHARE * area)
     narrow = order[min(counted, len(order) - 1)]
-    convex = weighted_quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)
-    length, breadth = _contact(job, convex) or (None, None)
-    plane = _contact(job, 0.0)
     return {
+        "convex": float(weighted_quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)),
         "area": area,
         "size": float(np.ptp(field.points, axis=0).max()),
         "radius": 1.0 / most if most * FLAT > 1.0 else math.inf,
         "width": widths[narrow][0],
         "narrow": narrow + 1,
-        "length": length,
-        "breadth": breadth,
-        "plane": max(plane) if plane else None,
     }
 
 
@@ -191,6 +206,14 @@ def warnings(job, seen, spacing):
     return found
 
 
+def doubted_by(job):
+    """All of a job besides its faces and their sampling that ``edge_doubts`` reads, if it is asked at all."""
+    machine = job["belt_machine"]
+    if not by_curvature(job):
+        return None
+    return machine["contact_spacing_mm"], machine["compliance"]["model"]
+
+
 def edge_doubts(job, field):
     """Facts of convex places of a job's core.HeightField that are sharper than the contact's cells are wide:
     what is ground there is not resolved."""
@@ -270,6 +293,11 @@ def _contact(job, curvature):
     wheel, compliance, _, options = engine_input.engine_arguments(job)
     if compliance["model"] == "geometric":
         return None
+    given = wheel, compliance, options["force"], options["contact_spacing"], curvature
+    return kept.get("contact", lambda: given, lambda: _extents(*given), lambda _: SMALL)
+
+
+def _extents(wheel, compliance, force, spacing, curvature):
     found = []
     curved = curvature * FLAT > 1.0
     for angle in (0.0, 90.0) if curved else (0.0,):
@@ -277,11 +305,7 @@ def _contact(job, curvature):
         if curved:
             workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
         try:
-            found.append(
-                contact_extents.single(
-                    wheel, workpiece, compliance, options["force"], options["contact_spacing"]
-                )
-            )
+            found.append(contact_extents.single(wheel, workpiece, compliance, force, spacing))
         except ValueError:  # an InputError, or a wheel beyond all bounds: the run tells
             continue
     if not found:

@@ -1,13 +1,17 @@
 """The workpiece of a job: its design, the height field of its faces, the stock on it."""
 
+import os
 from pathlib import Path
 
-from ..base import frames
+from ..base import frames, kept
 from ..base.files import at_key
 from ..engine import InputError, core
-from . import spacing
+from . import inputs, spacing
 
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
+SHAPE_BYTES = 12  # in memory, of a byte of a B-rep's file or text, about; of a mesh's file more
+MESH_SHAPE_BYTES = 40
+SMALL = 10_000  # bytes, of what has no size to speak of
 
 
 class OwnBrep(str):
@@ -17,13 +21,49 @@ class OwnBrep(str):
 
 def read_design(design, context=None):
     """The design's core.Shape, its loose faces flipped as the job says; a mesh becomes a faceted B-rep.
-    Raises InputError, Cancelled."""
-    if "file" in design and Path(design["file"]).suffix.lower() in MESH_SUFFIXES:
-        mesh = core.read_mesh(design["file"], design["unit_mm"], context=context)
-        shape = core.shape_from_mesh(mesh, context)
-    else:
-        shape = read_shape(design, "design", context)
-    return flipped(shape, design)
+    Kept for the next who reads the same. Raises InputError, Cancelled."""
+    meshed = is_mesh(design)
+
+    def read():
+        if meshed:
+            mesh = core.read_mesh(design["file"], design["unit_mm"], context=context)
+            shape = core.shape_from_mesh(mesh, context)
+        else:
+            shape = read_shape(design, "design", context)
+        return kept.named(flipped(shape, design), parts())
+
+    def parts():
+        return made_from(design), design.get("flip_normals"), design.get("flip_faces")
+
+    return kept.get("design", parts, read, lambda _: _shape_bytes(design))
+
+
+def is_mesh(data):
+    """Whether what a job gives as "brep" or as "file" is a mesh's file."""
+    return "file" in data and Path(data["file"]).suffix.lower() in MESH_SUFFIXES
+
+
+def made_from(data):
+    """All that ``read_shape`` and core.read_mesh read of what a job gives as "brep" or as "file", for ``kept``."""
+    if "brep" in data:
+        return [type(data["brep"]).__name__, data["brep"], data.get("unit_mm")]
+    return [inputs.file_digest("", data["file"]), data.get("unit_mm")]
+
+
+def _shape_bytes(data):
+    """About what a core.Shape of a job's "brep" or "file" holds."""
+    if "brep" in data:
+        return SHAPE_BYTES * len(data["brep"])
+    each = MESH_SHAPE_BYTES if is_mesh(data) else SHAPE_BYTES
+    return each * os.path.getsize(data["file"])
+
+
+def shape_warnings(shape):
+    """What the user should know of a core.Shape, as Facts."""
+    name = kept.name(shape)
+    if name is None:
+        return shape.warnings()
+    return kept.get("warnings", lambda: name, shape.warnings, lambda _: SMALL)
 
 
 def flipped(shape, design):
@@ -63,24 +103,70 @@ def check_faces(job, shape):
 
 
 def make_field(job, shape, warnings, context):
-    """The height field of the job's faces, without stock."""
+    """The height field of the job's faces, without stock; the caller's own. Raises InputError, Cancelled."""
     faces = check_faces(job, shape)
     if job["sampling"]["spacing_mm"] == 0:
         job, _ = spacing.settled(job, shape, warnings, context)
+    field, told = _sampled(job, shape, faces, context)
+    warnings += told
+    return field.copy()
+
+
+def _sampled(job, shape, faces, context):
+    """(core.HeightField that must not be changed, its warnings)."""
     sampling = job["sampling"]
-    field, report = core.sample_faces(
-        shape,
-        [face - 1 for face in faces],
-        sampling["spacing_mm"],
-        sampling["depth_mm"],
-        context=context,
-        precision=sampling["precision_mm"],
-        edge_spacing=sampling["edge_spacing_mm"],
-    )
-    warnings += report["warnings"]
-    if spacing.by_curvature(job):
-        warnings += spacing.edge_doubts(job, field)
-    return field
+    name = kept.name(shape)
+
+    def sample():
+        field, report = core.sample_faces(
+            shape,
+            [face - 1 for face in faces],
+            sampling["spacing_mm"],
+            sampling["depth_mm"],
+            context=context,
+            precision=sampling["precision_mm"],
+            edge_spacing=sampling["edge_spacing_mm"],
+        )
+        doubts = spacing.edge_doubts(job, field) if spacing.by_curvature(job) else []
+        return field, report["warnings"] + doubts
+
+    if name is None:
+        return sample()
+    return kept.get("field", lambda: _field_parts(job, name, faces), sample, _field_bytes)
+
+
+def _field_parts(job, name, faces):
+    return name, faces, job["sampling"], spacing.doubted_by(job)
+
+
+def _field_bytes(found):
+    return found[0].bytes
+
+
+def make_stocked_field(job, shape, warnings, context, sampled=lambda: None):
+    """``make_field`` with the job's stock on it; the caller's own. ``sampled()``: is called between the two.
+    Raises InputError, Cancelled."""
+    stock, name = job["stock"], kept.name(shape)
+    if stock["kind"] == "allowance" or name is None or job["sampling"]["spacing_mm"] == 0:
+        field = make_field(job, shape, warnings, context.part(0.0, 0.75))
+        sampled()
+        apply_stock(field, stock, warnings, context.part(0.75, 1.0))
+        return field
+
+    def make():
+        told = []
+        field = make_field(job, shape, told, context.part(0.0, 0.75))
+        sampled()
+        apply_stock(field, stock, told, context.part(0.75, 1.0))
+        return field, told
+
+    def parts():
+        return _field_parts(job, name, check_faces(job, shape)), stock, made_from(stock)
+
+    field, told = kept.get("stock", parts, make, _field_bytes)
+    sampled()
+    warnings += told
+    return field.copy()
 
 
 def apply_stock(field, stock, warnings, context):

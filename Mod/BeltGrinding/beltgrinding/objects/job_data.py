@@ -46,6 +46,7 @@ KEYS = (
     Key("WearFirstScale", "Float", "Wear", "law.wear.first_scale"),
     Key("WearExponent", "Float", "Wear", "law.wear.exponent"),
     Key("WearCurve", "VectorList", "Wear", "law.wear.curve"),
+    Key("Resolution", "Enumeration", "Steps", "resolution.mode"),
     Key("MaxTravel", "Length", "Steps", "simulation.max_travel_mm"),
     Key("MaxAngle", "Angle", "Steps", "simulation.max_angle_deg"),
     Key("OrientationJump", "Angle", "Steps", "simulation.orientation_jump_deg"),

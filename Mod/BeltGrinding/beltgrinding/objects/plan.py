@@ -36,6 +36,7 @@ KEYS = (
     Key("Levels", "Integer", "Limits", "plan.levels"),
     Key("Keep", "JSON", "Limits", "plan.keep"),
     Key("Rounds", "Integer", "Rounds", "plan.rounds"),
+    Key("SearchResolution", "Enumeration", "Rounds", "plan.search_resolution"),
     Key("LeastGain", "Float", "Rounds", "plan.least_gain"),
     Key("MostChange", "Float", "Rounds", "plan.most_change"),
     Key("Smoothing", "Float", "Rounds", "plan.smoothing"),
@@ -198,6 +199,7 @@ def store(obj, job, found):
     tried = {} if found.ground is None else {"tried": found.ground.tried}
     obj.Data = json.dumps({**summary, **tried})
     obj.Rates = [
+        f"{'coarse: ' if one.get('resolution') == 'coarse' else ''}"
         f"{100.0 * one['in_tolerance']:.1f} %, rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s"
         for one in plan.rounds
     ]

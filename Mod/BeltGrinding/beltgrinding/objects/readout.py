@@ -4,6 +4,7 @@ import numpy as np
 
 from ..engine import InputError, core
 from .job_data import face_name
+from .simulation import is_coarse
 
 REACH = 2.0  # spacings from the nearest sample; farther away is beside the field
 IN_TOLERANCE, ABOVE, BELOW, MISSED = "in tolerance", "too much left", "cut too deep", "no stock met"
@@ -45,7 +46,7 @@ class Reader:
     def sample(self, index):
         """The reading of sample ``index``, a dict: sample, deviation (mm; None where no stock was
         met), verdict, removed and stock (mm, along the normal), uncertainty (1 sd in mm, None if not
-        known), segment (its lower and upper end along the normal, mm), face ("Object.FaceN"), point
+        known), coarse (it is a coarse run's), segment (its lower and upper end along the normal, mm), face ("Object.FaceN"), point
         (on the design), top (on the ground surface), normal; mm, work frame."""
         self.update()
         field, obj = self.field, self.obj
@@ -59,6 +60,7 @@ class Reader:
             verdict = BELOW if height < obj.ToleranceLower.Value else IN_TOLERANCE
         return {
             "sample": index,
+            "coarse": obj.Simulation is not None and is_coarse(obj.Simulation),
             "deviation": None if missed else height,
             "verdict": verdict,
             "removed": stock - height,

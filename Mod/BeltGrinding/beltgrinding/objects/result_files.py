@@ -46,7 +46,7 @@ class Written:
         self.paths = {name: _path(self.folder.name, name) for name in contents}
         for name, data in contents.items():
             with _written(self.folder.name):
-                write_new(self.paths[name], data)
+                write_new(self.paths[name], data, onto_disk=False)  # FreeCAD copies it
         self.sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..cell import events as event_lists
 from ..engine import InputError, core
+from ..job import resolution
 from ..job.poses import program_name
 from ..simulation import result_folder
 from . import part_scan, report_data, result_files
@@ -23,6 +24,7 @@ OUTPUTS = (
     Output("WallTime", "Float", "Result", "what the simulation took, s"),
     Output("Samples", "Integer", "Result", "of the height field"),
     Output("SampleSpacing", "Length", "Result", "distance between neighbouring samples"),
+    Output("Resolution", "String", "Result", "full, or coarse: for searching, and no verdict"),
     Output("Steps", "Integer", "Result", "of the simulation"),
     Output("MissedRays", "Integer", "Result", "samples over which no stock was found"),
     Output(
@@ -132,6 +134,7 @@ def _store(obj, result, files):
     obj.ProcessTime, obj.WallTime = s["process_time_s"], round(sum(s["wall_time_s"].values()), 6)
     obj.Samples, obj.Steps = s["samples"], s["steps"]
     obj.SampleSpacing = result.field.spacing
+    obj.Resolution = s.get("resolution", resolution.FULL)
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
     obj.Events = [describe(event, result.job) for event in result.events]
     obj.Warnings = s["warnings"]
@@ -163,9 +166,10 @@ def _store_verdict(obj, result):
 
 def _prepare_recording(obj, result):
     """The property exists only where there is a recording: FreeCAD empties none of its kind."""
-    if "Recording" in obj.PropertiesList:
+    there = "Recording" in obj.PropertiesList
+    if there and result.recording is None:
         obj.removeProperty("Recording")
-    if result.recording is None:
+    if there or result.recording is None:
         return
     text = "what changed in every step, for playback"
     obj.addProperty("App::PropertyFileIncluded", "Recording", "Result", text)
@@ -182,6 +186,11 @@ def _without_bulk(job):
     bodies = [{k: v for k, v in b.items() if k not in bulk} for b in job["cell"].get("bodies", [])]
     job["cell"] = {**job["cell"], "bodies": bodies}
     return job
+
+
+def is_coarse(simulation):
+    """Whether a Simulation's figures are those of a coarse run; not of one of an older version."""
+    return getattr(simulation, "Resolution", "") == resolution.COARSE
 
 
 def describe(event, job):

@@ -16,7 +16,7 @@ import numpy as np
 from ..base import schemas
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
-from ..job import spacing
+from ..job import resolution, spacing
 from ..job.workpiece import check_faces, read_design
 from ..simulation import convergence, run as runs
 from . import least_time, levels, limits, reasons, sure
@@ -90,7 +90,9 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
     _refuse(job, settings)
     sure.refuse(job, settings)
     limits.refuse(settings)
-    commands = Commands(settled(job, context), settings, sources)
+    whole_job = resolution.with_mode(settled(job, context), resolution.FULL)
+    searched = resolution.with_mode(whole_job, settings["search_resolution"])
+    commands = Commands(searched, settings, sources)
     old = commands.feed()
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)
@@ -140,12 +142,16 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
         best = least_time.faster(commands, best, settings, rounds, told, context)
     if settings["levels"]:
         best = _in_levels(commands, best, settings, rounds, told, context)
+    first = rounds[0]
+    if settings["search_resolution"] != resolution.FULL:
+        commands = Commands(whole_job, settings, sources)
+        before, first, best = _in_full(commands, best, old, settings, rounds, told, context)
     best = _below_pressure(commands, best, settings, rounds, told, context)
-    better = _better(best["figures"], rounds[0], settings) or (
-        settings["goal"] == "time" and least_time.saves(best["figures"], rounds[0], settings)
+    better = _better(best["figures"], first, settings) or (
+        settings["goal"] == "time" and least_time.saves(best["figures"], first, settings)
     )
     if not better:
-        best = _tried(rounds[0], old, np.ones(len(commands)), before, commands.with_feeds(old))
+        best = _tried(first, old, np.ones(len(commands)), before, commands.with_feeds(old))
     why = reasons.find(
         best["result"], commands, best["feeds"], best["factors"], settings, context.part(1.0, 1.0)
     )
@@ -266,6 +272,21 @@ def _in_levels(commands, best, settings, rounds, told, context):
     if told is not None:
         told(one)
     return _tried(one, feeds, best["factors"], result, tried)
+
+
+def _in_full(commands, best, old, settings, rounds, told, context):
+    """(result of the old feeds, its figures, the best feeds) by simulations at full resolution, after a coarse search."""
+    found = []
+    for feeds, factors in ((old, np.ones(len(commands))), (best["feeds"], best["factors"])):
+        begun = time.perf_counter()
+        tried = commands.with_feeds(feeds, factors)
+        result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
+        one = {**figures(result, settings), "seconds": time.perf_counter() - begun}
+        rounds.append(one)
+        if told is not None:
+            told(one)
+        found.append(_tried(one, feeds, factors, result, tried))
+    return found[0]["result"], found[0]["figures"], found[1]
 
 
 def _below_pressure(commands, best, settings, rounds, told, context):

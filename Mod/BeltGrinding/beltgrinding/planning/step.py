@@ -29,6 +29,7 @@ def figures(result, settings):
     """What is told of a simulation: shares of the area, by the tolerance of each zone, and ``sure.figures``."""
     summary = result.summary
     found = {
+        "resolution": summary["resolution"],
         "in_tolerance": summary["in_tolerance_area_share"],
         "above": summary["above_tolerance_area_share"],
         "below": summary["below_tolerance_area_share"],

@@ -87,12 +87,15 @@ def head(content, words, scale):
 
 
 def state(content, words):
-    """("pass", "fail" or "open", the same in words)."""
-    return {
+    """("pass", "fail" or "open", the same in words); of a coarse run it says so."""
+    kind, text = {
         True: ("pass", words("In tolerance")),
         False: ("fail", words("Not in tolerance")),
         None: ("open", words("Cannot be told")),
     }[passed(content)]
+    if content.result.summary.get("resolution") == "coarse":
+        text = words("{verdict} (coarse resolution, for searching)", verdict=text)
+    return kind, text
 
 
 def in_tolerance(content, words, scale):

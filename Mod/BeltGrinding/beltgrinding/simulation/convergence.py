@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.messages import fact_data
 from ..engine import InputError, core
-from ..job import spacing
+from ..job import resolution, spacing
 from ..job.workpiece import check_faces, read_design
 from . import run as runs
 from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
@@ -47,6 +47,12 @@ def converge(job, context=None):
     Takes about ten times as long as the job. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
+    if resolution.mode(job) != resolution.FULL:
+        raise InputError(
+            "simulation.coarse_check",
+            "{key}: a coarse job's settings are not checked; set it to full",
+            key="resolution.mode",
+        )
     if job["sampling"]["spacing_mm"] == 0:
         shape = read_design(job["design"], context.part(0.0, 0.0))
         check_faces(job, shape)

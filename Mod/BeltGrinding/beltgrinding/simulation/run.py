@@ -4,16 +4,17 @@ import time
 
 import numpy as np
 
+from ..base import kept
 from ..base.messages import fact_data
 from ..cell import collision, events as event_lists, gaps, motions, reach
 from ..cell.tool_path import tool_path
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
-from ..job import inputs, law as laws, spacing
+from ..job import inputs, law as laws, resolution, spacing
 from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
-from ..job.workpiece import apply_stock, check_faces, make_field, read_design
+from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
 from . import idle
 from .result import Result
 
@@ -51,6 +52,7 @@ def run(job, context=None, recording=None, early=None, influence=False, shifts=F
         result.shifts = by_law if shifts else None
         return result
     except MemoryError:
+        kept.forget()
         raise _out_of_memory(phases.seconds) from None
     except InputError as error:
         if not warnings:
@@ -89,8 +91,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
-    wheel, compliance, law, options = engine_arguments(job)
-    core.check_wheel(wheel)
+    core.check_wheel(engine_arguments(job)[0])
     left_out = []
     paths = [tool_path(job, i, warnings, gaps=left_out) for i in range(len(job["programs"]))]
     unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
@@ -100,13 +101,14 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))
     phases.end("reach")
     shape = read_design(job["design"], context)
-    warnings += shape.warnings()
+    warnings += shape_warnings(shape)
     phases.end("read")
     check_faces(job, shape)
     job, chosen = spacing.settled(job, shape, warnings, context.part(0.0, 0.0))
-    field = make_field(job, shape, warnings, context.part(0.0, 0.2))
-    phases.end("sample")
-    apply_stock(field, job["stock"], warnings, context.part(0.2, 0.27))
+    job = resolution.applied(job, warnings)
+    wheel, compliance, law, options = engine_arguments(job)
+    sampled = lambda: phases.end("sample")
+    field = make_stocked_field(job, shape, warnings, context.part(0.0, 0.27), sampled)
     phases.end("stock")
     met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3), reached)
     phases.end("collisions")
@@ -161,6 +163,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     summary.update(
         spacing_mm=job["sampling"]["spacing_mm"],
         spacing_chosen=chosen,
+        resolution=resolution.mode(job),
         steps=len(steps["time"]),
         process_time_s=process_time,
         lost_volume_mm3=lost,

@@ -53,9 +53,21 @@ struct PairClearance {
     Vec3 on_second = Vec3::Zero();
 };
 
+/// Where on the way something was found: places of a `PairMotion`, which no feed changes as long as
+/// the way itself is the same.
+struct CollisionPlaces {
+    bool of_arm = false;     ///< on the arm's way, not on the path
+    double begin = 0.0;      ///< where the event began
+    double last = 0.0;       ///< where it ended
+    double worst = 0.0;      ///< where the bodies are nearest
+    std::size_t number = 0;  ///< in the order in which the pairs are reported
+};
+
 struct CollisionResult {
-    std::vector<Event> events;         ///< collision, near_miss; in order of time
-    std::vector<PairClearance> pairs;  ///< every pair that moves against each other
+    std::vector<Event> events;                  ///< collision, near_miss; in order of time
+    std::vector<PairClearance> pairs;           ///< every pair that moves against each other
+    std::vector<CollisionPlaces> event_places;  ///< of `events`, in their order
+    std::vector<CollisionPlaces> pair_places;   ///< of `pairs`, in their order
 };
 
 /// Follows the bodies along the path, rapid motions too, as the path goes between its poses (a
@@ -78,5 +90,10 @@ struct CollisionResult {
 CollisionResult check_collisions(const ToolPath& path, const std::vector<CollisionBody>& bodies,
                                  const CollisionOptions& options, const RunContext& context = {},
                                  const ArmInCell* arm = nullptr);
+
+/// The result of a check for a path with the same way but other feeds: times, and with them the
+/// order of the events, as `check_collisions` would find them there. `arm`: as it goes along that
+/// path, with the same number of moments.
+void tell_times(CollisionResult& result, const ToolPath& path, const ArmInCell* arm = nullptr);
 
 }  // namespace beltgrinding

@@ -4,6 +4,7 @@ import gc
 import threading
 import time
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 from ...engine import Cancelled, RunContext
 from ...objects import api, deviation, job_data, job_inputs, simulation as results
@@ -11,6 +12,7 @@ from ...simulation import run as runs
 from .compat import QtCore, translate
 
 POLL = 50  # ms
+END_POLL = 8  # ms, between looks at whether a run has ended
 MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 # All works until the window has seen their end. Else the thread may be the last that holds one and free it with
 # its timer, which only the window's thread may do; and who is told of the end may let go of the object whose
@@ -108,16 +110,20 @@ class Runner(Background):
         self.start = time.monotonic()
         self.recorded, self.then = recording, then
         self.shown = then is not None or job_data.child(job, deviation.Deviation) is not None
+        self.told = 0.0  # when the progress was
         super().__init__(self.work, self._finish)
+        self.timer.setInterval(END_POLL)
 
     def work(self, context):
         """(``job.Result``, its files as the document keeps them); in the thread."""
         result = self.grind(context)
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
-        if self.shown:
-            deviation.prepare(result.field, result.job["inspection"]["tolerance_mm"])
-        return result, results.files_of(result)
+        with ThreadPoolExecutor(1) as beside:
+            files = beside.submit(results.files_of, result)
+            if self.shown:
+                deviation.prepare(result.field, result.job["inspection"]["tolerance_mm"])
+            return result, files.result()
 
     def grind(self, context):
         """The ``job.Result``; in the thread."""
@@ -138,7 +144,9 @@ class Runner(Background):
     def _poll(self):
         if self.job() is None:
             self.context.cancel()
-        if self.thread.is_alive():
+        now = time.monotonic()
+        if self.thread.is_alive() and now - self.told > 0.001 * POLL:
+            self.told = now
             self.progress(self.context.progress)
         super()._poll()
 

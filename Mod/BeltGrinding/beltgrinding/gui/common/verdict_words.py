@@ -4,7 +4,14 @@ from .compat import translate
 
 
 def headline(found):
-    """The verdict in one line."""
+    """The verdict in one line; that of a coarse run says so."""
+    text = _word(found)
+    if found.get("resolution") == "coarse":
+        text = translate("BeltGrinding", "{} (coarse)").format(text)
+    return text
+
+
+def _word(found):
     if found["overall"] == "pass":
         return translate("BeltGrinding", "In tolerance")
     if found["overall"] == "unknown":

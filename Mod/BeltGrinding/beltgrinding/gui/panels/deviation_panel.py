@@ -2,6 +2,7 @@
 
 from ...engine import InputError
 from ...objects import preferences
+from ...objects.simulation import is_coarse
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..scene.probe import Probe
@@ -76,9 +77,7 @@ class DeviationPanel(Panel):
             self.tell(error_text(error), True)
             return
         obj.Proxy.update(obj)
-        self.tell(
-            translate("BeltGrinding", "Out of date: simulate again.") if obj.OutOfDate else "", True
-        )
+        self.tell(_doubt(obj), True)
 
         def mm(value, sign="+"):
             return preferences.length_text(value.Value, 1, sign)
@@ -124,3 +123,12 @@ class DeviationPanel(Panel):
 
     def check(self):
         check_tolerance(self.obj.getParentGroup())
+
+
+def _doubt(obj):
+    """What must be known of a Deviation's figures; "" for sound ones."""
+    if obj.OutOfDate:
+        return translate("BeltGrinding", "Out of date: simulate again.")
+    if is_coarse(obj.Simulation):
+        return translate("BeltGrinding", "Coarse resolution: for searching, no verdict.")
+    return ""

@@ -157,6 +157,8 @@ def _round(number, one):
     name = str(number) if number else translate("BeltGrinding", "now")
     if "levels" in one:
         name = translate("BeltGrinding", "{} feeds").format(one["levels"])
+    if one.get("resolution") == "coarse":
+        name = translate("BeltGrinding", "{} (coarse)").format(name)
     unit = preferences.deviation_unit()
     rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
     return name, share, rms, f"{one['process_time_s']:.1f}"

@@ -139,6 +139,13 @@ class PlanPanel(RunPanel):
     def _rounds(self):
         box = Form(self.obj, "")
         box.add("Rounds", translate("BeltGrinding", "Rounds, at most"))
+        resolutions = {
+            "full": translate("BeltGrinding", "full"),
+            "coarse": translate("BeltGrinding", "coarse"),
+        }
+        box.add(
+            "SearchResolution", translate("BeltGrinding", "Resolution of the search"), resolutions
+        )
         box.add("MostChange", translate("BeltGrinding", "Most change a round"))
         box.add("LeastGain", translate("BeltGrinding", "Least gain of a round"))
         box.add("Smoothing", translate("BeltGrinding", "Smoothing"))

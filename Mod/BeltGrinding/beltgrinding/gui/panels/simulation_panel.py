@@ -9,7 +9,7 @@ from ...objects import api, job_data, report_data
 from ...objects.deviation import Deviation
 from ...objects.job_data import child
 from ...objects.robot_path import RobotPath
-from ...objects.simulation import Simulation
+from ...objects.simulation import Simulation, is_coarse
 from ...objects.verdict import limits_changed
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
@@ -78,6 +78,10 @@ class SimulationPanel(RunPanel):
         judged = json.loads(simulation.VerdictData or "{}").get("verdict")
         if judged and not simulation.OutOfDate and not limits_changed(self.job, simulation):
             text = f"{headline(judged)}\n{shares(judged)}"
+        elif is_coarse(simulation):
+            text += "\n" + translate(
+                "BeltGrinding", "Coarse resolution: for searching, no verdict."
+            )
         self._say(text, simulation.OutOfDate)
         self.figures.setText(
             translate(

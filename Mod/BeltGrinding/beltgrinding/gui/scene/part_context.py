@@ -16,6 +16,7 @@ KEPT = 8  # tessellations
 _designs = []  # (what names it, shapes of the objects, design), the last one
 _rest = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
 _edge_lines = []  # (shape, (points, counts)), the last one
+_spread = []  # (shape, points of ``points_of_part``), the last one
 _tessellated = []  # (shape, deflection, (points, triangles)), the last one first
 SPREAD = 600  # points over a part
 REST = "BeltGrindingRest"  # name of the node of the faces that are not ground
@@ -100,9 +101,17 @@ def points_of_part(job):
     if job is None:
         return np.zeros((0, 3))
     try:
-        points, triangles = tessellated(design_of(job)[0])
+        shape = design_of(job)[0]
+        if _spread and _spread[0][0].isSame(shape):
+            return _spread[0][1]
+        points, triangles = tessellated(shape)
     except InputError:
         return np.zeros((0, 3))
+    _spread[:] = [(shape, _spread_over(points, triangles))]
+    return _spread[0][1]
+
+
+def _spread_over(points, triangles):
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     if not areas.sum() > 0.0:

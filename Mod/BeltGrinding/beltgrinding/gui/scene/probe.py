@@ -125,6 +125,8 @@ def describe(reading):
         readings.MISSED: translate("BeltGrinding", "no stock was met here"),
     }
     verdict = verdicts[reading["verdict"]]
+    if reading["coarse"]:
+        verdict = translate("BeltGrinding", "{} (coarse)").format(verdict)
     x, y, z = reading["point"]
     place = f"({x:.3f}, {y:.3f}, {z:.3f}) mm"
     sample = translate("BeltGrinding", "sample") + f" {reading['sample']}"

@@ -1,0 +1,136 @@
+"""What was prepared before, kept for the next that needs the same.
+
+A stage (a part that was read, faces that were sampled, stock that was measured by rays) is known by the digest of
+all that it is made from: of files by what they hold, not by their names and times. Where that is the same, the
+kept value is what making it again would give.
+"""
+
+import contextlib
+import hashlib
+import json
+import os
+import threading
+import weakref
+from collections import OrderedDict
+
+import numpy as np
+
+SHARE = 0.125  # of the machine's memory
+MOST = 2e9  # bytes, all together
+LIMIT = "BELTGRINDING_KEPT_LIMIT_MB"  # of the environment; 0: nothing is kept
+
+
+def digest(*parts):
+    """SHA-256, hex digits, of plain data with bytes and arrays in it. Raises TypeError for anything else."""
+    text = json.dumps(parts, sort_keys=True, separators=(",", ":"), default=_special)
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def _special(value):
+    if isinstance(value, np.ndarray):
+        held = hashlib.sha256(np.ascontiguousarray(value)).hexdigest()
+        return {"array": [str(value.dtype), list(value.shape), held]}
+    if isinstance(value, bytes):
+        return {"bytes": hashlib.sha256(value).hexdigest()}
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, (os.PathLike, range)):
+        return [type(value).__name__, str(value)]
+    raise TypeError(f"no digest of a {type(value).__name__}")
+
+
+class Kept:
+    """Values by stage and digest, the least recently used of which go when all hold more than ``most`` bytes. May
+    be used by several threads. What is kept is handed out to all who ask, and must not be changed.
+    """
+
+    def __init__(self, most=None):
+        self.most = _most() if most is None else most
+        self.bytes = 0
+        self.hits, self.made = {}, {}  # by stage
+        self._values = OrderedDict()  # by (stage, digest): (value, bytes)
+        self._lock = threading.Lock()
+
+    def get(self, stage, parts, make, size):
+        """The value of ``stage`` for ``parts()``, all that it is made from as ``digest`` takes it; by ``make()`` where
+        it is not kept. ``size(value)``: bytes. What ``make`` raises is not kept, nor what was made while
+        ``parts()`` changed, as when a file is written to."""
+        key = stage, digest(parts())
+        with self._lock:
+            found = self._values.get(key)
+            if found is not None:
+                self._values.move_to_end(key)
+                self.hits[stage] = self.hits.get(stage, 0) + 1
+                return found[0]
+        value = make()
+        taken = int(size(value))
+        with self._lock:
+            self.made[stage] = self.made.get(stage, 0) + 1
+        if taken <= self.most and key == (stage, digest(parts())):
+            self._put(key, value, taken)
+        return value
+
+    def _put(self, key, value, taken):
+        with self._lock:
+            before = self._values.pop(key, None)
+            self.bytes += taken - (before[1] if before else 0)
+            self._values[key] = value, taken
+            while self.bytes > self.most:
+                _, (_, freed) = self._values.popitem(last=False)
+                self.bytes -= freed
+
+    def forget(self):
+        """Frees all."""
+        with self._lock:
+            self._values.clear()
+            self.bytes = 0
+
+
+def _most():
+    """Bytes that the environment, or else the machine, allows."""
+    given = os.environ.get(LIMIT, "")
+    try:
+        return max(0.0, float(given)) * 1e6
+    except ValueError:
+        pass
+    try:
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (ValueError, OSError, AttributeError):
+        memory = MOST
+    return min(MOST, SHARE * memory)
+
+
+_stages = Kept()  # of this process
+_names = weakref.WeakKeyDictionary()  # digests of what objects were made from
+
+
+def get(stage, parts, make, size):
+    """As ``Kept.get``, of this process."""
+    return _stages.get(stage, parts, make, size)
+
+
+def forget():
+    """Frees all that this process keeps."""
+    _stages.forget()
+
+
+@contextlib.contextmanager
+def instead(stages):
+    """Has this process keep its stages in another ``Kept`` meanwhile."""
+    global _stages
+    before, _stages = _stages, stages
+    try:
+        yield stages
+    finally:
+        _stages = before
+
+
+def named(value, *parts):
+    """``value``, which never changes, known from now on by the digest of what it was made from."""
+    _names[value] = digest(*parts)
+    return value
+
+
+def name(value):
+    """The digest of what a value was made from; None where nobody has told."""
+    return _names.get(value)

@@ -1,0 +1,51 @@
+"""The coarse mode of a job, for searching: fewer samples on the same contact cells, and looser contacts.
+
+What it changes is small against the tolerance off the edges, and large at them: its figures carry its name, and no
+verdict is given by it alone.
+"""
+
+from ..engine import core
+
+FULL, COARSE = "full", "coarse"
+SAMPLES = (
+    0.6  # of the contact's cells, apart: two thirds is the most that leaves the cells as they are
+)
+TOLERANCE = 1e-2  # of the contact
+
+
+def mode(job):
+    """ "full" or "coarse"; of a job that an older version wrote: full."""
+    return job.get("resolution", {}).get("mode", FULL)
+
+
+def with_mode(job, mode):
+    """The job in another mode."""
+    return {**job, "resolution": {**job.get("resolution", {}), "mode": mode}}
+
+
+def applied(job, warnings):
+    """The job, whose spacing is settled, as its mode has it run; that it is coarse is added to ``warnings``."""
+    if mode(job) == FULL:
+        return job
+    sampling, machine = job["sampling"], job["belt_machine"]
+    spacing = max(sampling["spacing_mm"], SAMPLES * machine["contact_spacing_mm"])
+    factor = spacing / sampling["spacing_mm"]
+    sampling = {
+        **sampling,
+        "spacing_mm": spacing,
+        "edge_spacing_mm": factor * sampling["edge_spacing_mm"],
+        "precision_mm": factor**2 * sampling["precision_mm"],  # chords bulge by the square of it
+    }
+    tolerance = max(machine["contact_tolerance"], TOLERANCE)
+    warnings.append(
+        core.Fact(
+            "job.coarse_resolution",
+            "coarse resolution, for searching: samples {spacing:.3g} mm apart, contacts to {tolerance:.2g}; the figures "
+            "are no verdict. For one set {key} to full",
+            spacing=spacing,
+            tolerance=tolerance,
+            key="resolution.mode",
+        )
+    )
+    machine = {**machine, "contact_tolerance": tolerance}
+    return {**job, "sampling": sampling, "belt_machine": machine}

@@ -1,0 +1,537 @@
+"""What is kept from run to run, and that no run ever takes a stage of other inputs: every key of a job is changed,
+and the run that may take kept stages is compared with one that has none, to the last bit."""
+
+import copy
+import json
+import os
+import threading
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from beltgrinding.base import kept
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import load as jobs
+from beltgrinding.job.workpiece import OwnBrep
+from beltgrinding.presets import library
+from beltgrinding.simulation import run as runs
+from test_job import DOWN
+
+ROBOT, DH_ROBOT = (library.find("robots", name)["model"] for name in ("kuka_kr16_2", "ur10e"))
+
+
+def thick():
+    """A solid stock around the part."""
+    return box(20.0, 12.0, 7.0)
+
+
+@lru_cache(maxsize=None)
+def box(length=20.0, width=12.0, height=5.0):
+    """(B-rep's text of a solid below z = 0, the number of its face on top)."""
+    corners = np.array(np.meshgrid([0, length], [0, width], [-height, 0])).T.reshape(-1, 3)
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    faces = [[q[0], q[k], q[k + 1]] for q in quads for k in (1, 2)]
+    mesh = core.TriangleMesh(corners.astype(np.float32), np.array(faces, np.uint32))
+    shape = core.shape_from_mesh(mesh)
+    for face in range(shape.face_count):
+        if core.sample_faces(shape, [face], 4.0)[0].normals[0][2] > 0.9:
+            return shape.write_brep(), face + 1
+    raise AssertionError("no face on top")
+
+
+def write_slab(path, height, length=24.0, width=16.0):
+    """A mesh of stock over the part, higher at one end, as a PLY."""
+    corners = [(-2, -2, height), (length, -2, height), (length, width, height + 0.1)]
+    corners.append((-2, width, height))
+    head = ["ply", "format ascii 1.0", "element vertex 4"]
+    head += [f"property float {axis}" for axis in "xyz"]
+    head += ["element face 2", "property list uchar int vertex_indices", "end_header"]
+    rows = [" ".join(map(str, corner)) for corner in corners]
+    path.write_text("\n".join([*head, *rows, "3 0 1 2", "3 0 2 3", ""]))
+
+
+AXES = "UNITS/MM\nGOTO/4,6,0.1,0,0,1\nGOTO/10,6,0.1,0,0,1\nGOTO/16,6,0.1,0,0,1\nFINI\n"
+
+
+def table(depth):
+    rows = ["x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s"]
+    rows += [f"{x},6,{depth},0,1,0,0,40" for x in (4, 10, 16)]
+    return "\n".join(rows) + "\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Files of all kinds that jobs read."""
+    found = tmp_path_factory.mktemp("kept")
+    for name, size in (("plate", (20.0, 12.0)), ("other", (20.0, 13.0)), ("body", (3.0, 3.0))):
+        (found / f"{name}.brep").write_text(box(*size)[0])
+    for name, height in (("stock", 0.15), ("thick", 0.25)):
+        write_slab(found / f"{name}.ply", height)
+    (found / "axes.apt").write_text(AXES)
+    (found / "pass.csv").write_text(table(0.1))
+    (found / "deep.csv").write_text(table(-0.1))
+    return found
+
+
+def own_part():
+    return {"brep": OwnBrep(box()[0]), "faces": [box()[1]]}
+
+
+def pose(x, z=0.1, **more):
+    return {"x_mm": x, "y_mm": 6, "z_mm": z, **DOWN, "feed_mm_s": 40, **more}
+
+
+def allowance_job(folder):
+    """A part on the table, a tool in the robot's hand; feeds and forces pose by pose, and a body nearby."""
+    body = {"name": "post", "brep": OwnBrep(box(3.0, 3.0)[0]), "frame": "part"}
+    return {
+        "design": own_part(),
+        "sampling": {"spacing_mm": 1.0},
+        "stock": {"allowance_mm": 0.2},
+        "belt_machine": {
+            "wheel": {"radius_mm": 30, "width_mm": 8},
+            "force_N": 20,
+            "compliance": {"model": "elastic_foundation"},
+        },
+        "cell": {
+            "bodies": [{**body, "placement": {"position_mm": [21, 5, 2]}}],
+            "base_from_work": {"position_mm": [0, 0, 0]},
+            "check_collisions": False,
+        },
+        "programs": [
+            {"poses": [pose(2, 3, rapid=True), pose(5), pose(10, force_N=15), pose(16)]},
+            {"file": str(folder / "pass.csv")},
+        ],
+        "inspection": {
+            "zones": [{"name": "rim", "faces": [box()[1]], "tolerance_mm": [-0.1, 0.1]}]
+        },
+    }
+
+
+def robot_job(folder):
+    """The same with a robot, whose arm is followed, and files."""
+    job = allowance_job(folder)
+    del job["programs"][1:]
+    job["robot"] = {"model": copy.deepcopy(ROBOT)}
+    job["robot"]["base_from_robot"] = {"position_mm": [-900, 0, -600]}
+    job["design"] = {"file": str(folder / "plate.brep"), "faces": [box()[1]]}
+    job["cell"]["check_collisions"] = True
+    body = job["cell"]["bodies"][0]
+    del body["brep"]
+    body["file"] = str(folder / "body.brep")
+    return job
+
+
+def mesh_job(folder):
+    """The part in the robot's hand, with stock from a mesh, and belts that wear."""
+    half = {"position_mm": [500, 0, 400], "quaternion_wxyz": [0, 1, 0, 0]}
+    poses = []
+    for x in (4, 9, 15):
+        poses.append({"x_mm": 500 - x, "y_mm": -6.0, "z_mm": 400 - 0.1})
+        poses[-1].update({"qw": 1, "qx": 0, "qy": 0, "qz": 0, "feed_mm_s": 30, "zone_mm": 0.5})
+    return {
+        "design": own_part(),
+        "sampling": {"spacing_mm": 1.0, "precision_mm": 0.2, "edge_spacing_mm": 0.5},
+        "stock": {
+            "kind": "mesh",
+            "file": str(folder / "stock.ply"),
+            "placement": {"position_mm": [0, 0, 0]},
+        },
+        "belt_machine": {
+            "wheel": {"radius_mm": 30, "width_mm": 8},
+            "control": "position",
+            "robot_stiffness_N_per_mm": 100.0,
+            "compliance": {
+                "model": "elastic_foundation",
+                "layers": [
+                    {"thickness_mm": 5, "youngs_modulus_MPa": 4, "poissons_ratio": 0.4},
+                ],
+            },
+        },
+        "law": {"model": "local", "wear": {"model": "exponential", "scale": 5000.0}},
+        "cell": {
+            "holding": "part_in_hand",
+            "base_from_contact": half,
+            "check_collisions": False,
+        },
+        "programs": [{"poses": poses}],
+        "simulation": {"timing": "trapezoidal"},
+    }
+
+
+BASES = {"allowance": allowance_job, "mesh": mesh_job, "robot": robot_job}
+SLOW = "robot"  # where bodies are followed: only for keys that begin so
+FOLLOWED = ("robot.", "cell.bodies", "cell.c", "cell.w")
+
+# Values of keys that no rule makes; functions of the folder of files. What changes with them: ALONG.
+VALUES = {
+    "design.file": lambda folder: str(folder / "other.brep"),
+    "design.brep": lambda _: OwnBrep(box(20.0, 13.0)[0]),
+    "design.faces": lambda _: [],
+    "design.flip_faces": lambda _: [1],
+    "stock.file": lambda folder: str(folder / "thick.ply"),
+    "stock.brep": lambda _: OwnBrep(thick()[0]),
+    "stock.kind": lambda _: "mesh",
+    "belt_machine.compliance.surrogate_file": lambda folder: str(folder / "none.npz"),
+    "belt_machine.wheel.crown_radius_mm": lambda _: 60.0,
+    "programs.0.poses.0.qw": lambda _: 0.99874922,
+    "programs.0.poses.0.qx": lambda _: 0.05,
+    "programs.0.poses.0.qy": lambda _: 0.05,
+    "programs.0.poses.0.qz": lambda _: 0.05,
+    "programs.0.roll": lambda _: "along",
+    "law.calibration.parameters": lambda _: ["coefficient_mm2_per_N"],
+    "law.calibration.covariance": lambda _: [[1e-12]],
+    "law.calibration.fit": lambda _: {"grinds": 7},
+    "cell.bodies.0.name": lambda _: "pillar",
+    "cell.bodies.0.file": lambda folder: str(folder / "other.brep"),
+    "cell.bodies.0.brep": lambda _: OwnBrep(box(4.0, 4.0)[0]),
+    "robot.preset": lambda _: "kuka_kr16_2",
+    "robot.start_joints_deg": lambda _: [0.0, -80.0, 90.0, 0.0, 40.0, 0.0],
+    "robot.link_radii_mm": lambda _: [90.0] * 7,
+    "programs.0.file": lambda folder: str(folder / "deep.csv"),
+    "programs.0.name": lambda _: "another",
+    "programs.0.values": lambda _: {},
+    "inspection.zones.0.name": lambda _: "another",
+    "inspection.zones.0.faces": lambda _: [],
+}
+NUMBERS = {  # of arrays
+    "quaternion_wxyz": [0.99875026, 0.0, 0.0, 0.04997917],
+    "profile_mm": [[-4.0, 0.2], [0.0, 0.0], [4.0, 0.1]],
+    "curve": [[0.1, 1.0], [1.0, 0.5]],
+}
+ALONG = {  # keys that must come or go with a key
+    "design.file": {"design.brep": None},
+    "design.brep": {"design.file": None},
+    "stock.kind": {"stock.file": "thick.ply"},
+    "stock.brep": {"stock.kind": "solid", "stock.file": None, "stock.placement": None},
+    "stock.file": {"stock.kind": "mesh"},
+    "cell.bodies.0.brep": {"cell.bodies.0.file": None},
+    "cell.bodies.0.file": {"cell.bodies.0.brep": None},
+    "robot.preset": {"robot.model": {}},
+    "programs.0.file": {"programs.0.poses": None},
+    "programs.0.values": {"programs.0.poses": None, "programs.0.file": "pass.csv"},
+    "programs.0.roll": {"programs.0.poses": None, "programs.0.file": "axes.apt"},
+    "programs.0.roll_direction": {
+        "programs.0.poses": None,
+        "programs.0.file": "axes.apt",
+        "programs.0.roll": "fixed",
+    },
+    **{
+        f"programs.0.poses.0.{name}": {"programs.0.poses.0.qw": 0.99874922}
+        for name in ("qx", "qy", "qz")
+    },
+    "programs.0.poses.0.qw": {"programs.0.poses.0.qx": 0.05},
+    **{
+        f"robot.model.joints.0.{name}": {"robot.model": DH_ROBOT}
+        for name in ("a_mm", "alpha_deg", "d_mm", "theta_deg", "direction")
+    },
+    "law.calibration.parameters": {"law.calibration.covariance": [[1e-12]]},
+    "law.calibration.covariance": {"law.calibration.parameters": ["coefficient_mm2_per_N"]},
+}
+
+
+def resolved(rule):
+    while "$ref" in rule:
+        rest = {key: value for key, value in rule.items() if key != "$ref"}
+        rule = {**jobs.schema()["definitions"][rule["$ref"].split("/")[-1]], **rest}
+    return rule
+
+
+def leaves(rule, path=()):
+    """(key, rule) of all that a job may give."""
+    rule = resolved(rule)
+    items = resolved(rule.get("items", {}))
+    if "properties" in rule:
+        for name, inner in rule["properties"].items():
+            yield from leaves(inner, (*path, name))
+    elif rule.get("type") == "array" and "properties" in items:
+        yield from leaves(items, (*path, "0"))
+    else:
+        yield ".".join(path), rule
+
+
+REFUSED = {  # the whole run is an error
+    "belt_machine.compliance.surrogate_file",  # there is no such file
+    "design.flip_faces",  # of a solid
+}
+
+
+LEAVES = dict(leaves(jobs.schema()))
+del LEAVES["schema"]  # there is one version
+
+
+def put(job, key, value):
+    """Sets a key of a job, or takes it away; of a list, in the middle entry."""
+    *way, last = key.split(".")
+    for name in way:
+        if name == "0":
+            if not job:
+                job.append({})
+            job = job[min(2, len(job) - 1)]
+        else:
+            job = job.setdefault(name, [] if name in LISTS else {})
+    if value is None:
+        job.pop(last, None)
+    else:
+        job[last] = value
+
+
+LISTS = {key.split(".")[i - 1] for key in LEAVES for i, n in enumerate(key.split(".")) if n == "0"}
+
+
+def look(job, key):
+    for name in key.split("."):
+        if name == "0":
+            job = job[min(2, len(job) - 1)] if job else None
+        else:
+            job = job.get(name) if job is not None else None
+    return job
+
+
+def others(key, rule, before, folder):
+    """Values that differ from that before."""
+    if key in VALUES:
+        return [VALUES[key](folder)]
+    if before is None:
+        before = rule.get("default")
+    if "enum" in rule:
+        return [value for value in rule["enum"] if value != before]
+    kind = rule["type"]
+    if kind == "boolean":
+        return [not before]
+    if kind == "integer":
+        return [(before or 0) + 1]
+    if kind == "number":
+        value = 1.25 * before if before else 0.37
+        return [min(value, rule.get("maximum", value)) if value != before else 0.9 * value]
+    if kind == "array":
+        for name, value in NUMBERS.items():
+            if key.endswith(name):
+                return [value]
+        if resolved(rule["items"])["type"] == "number" and "minItems" in rule:
+            before = before or [0.0] * rule["minItems"]
+            return [[before[0] - 0.03, *before[1:-1], before[-1] + 0.04]]
+    raise AssertionError(f"{key} is new: say in VALUES what else it may be")
+
+
+def outcome(job):
+    """All that a run gives, as bytes and text; of one that fails its error."""
+    recording = core.Recording()
+    try:
+        job = jobs.validate(job)
+        result = runs.run(job, None, recording, influence=True, shifts=True)
+    except InputError as error:
+        return [error.code, str(error)]
+    field = result.field
+    arrays = [field.points, field.normals, field.rays, field.areas, field.stock_height]
+    arrays += [field.height, field.height_sd, field.faces, field.flags, field.triangles]
+    arrays += [field.spacing, field.depth, *field.trace.values(), *result.steps.values()]
+    arrays += [*result.motions.values(), result.shifts]
+    summary = {key: value for key, value in result.summary.items() if key != "wall_time_s"}
+    told = [summary, result.events, result.verdict]
+    return [
+        json.dumps(told),
+        recording.hdf5("{}"),
+        *(np.asarray(array).tobytes() for array in arrays),
+    ]
+
+
+@pytest.fixture(scope="module")
+def warm(folder):
+    """Stages that have run both jobs, by name, and what they gave."""
+    stages = kept.Kept()
+    with kept.instead(stages):
+        found = {name: outcome(make(folder)) for name, make in BASES.items()}
+        again = {name: outcome(make(folder)) for name, make in BASES.items()}
+    assert all(len(one) > 2 for one in found.values()), found
+    assert found == again and set(stages.made) == set(STAGES)
+    return stages, found
+
+
+# What the two jobs together prepare.
+STAGES = ("design", "warnings", "look", "contact", "field", "stock", "triangles", "body", "reach")
+STAGES += ("collisions",)
+
+
+def changed(name, key, value, folder):
+    job = BASES[name](folder)
+    for other, given in ALONG.get(key, {}).items():
+        is_file = other.endswith(".file") and given is not None
+        put(job, other, str(folder / given) if is_file else copy.deepcopy(given))
+    turn = {"quaternion_wxyz": "abc_deg", "abc_deg": "quaternion_wxyz"}.get(key.split(".")[-1])
+    if turn:
+        put(job, key.rpartition(".")[0] + "." + turn, None)
+    put(job, key, value)
+    return job
+
+
+@pytest.mark.parametrize("key", LEAVES)
+def test_a_changed_key_never_takes_what_was_made_of_the_old_one(key, warm, folder):
+    stages, before = warm
+    runs_through = 0
+    for name, make in BASES.items():
+        if name == SLOW and not key.startswith(FOLLOWED):
+            continue
+        for value in others(key, LEAVES[key], look(make(folder), key), folder):
+            job = changed(name, key, value, folder)
+            with kept.instead(stages):
+                quick = outcome(copy.deepcopy(job))
+            with kept.instead(kept.Kept()):
+                whole = outcome(job)
+            assert quick == whole, (name, key, value)
+            runs_through += len(whole) > 2 and whole != before[name]
+    assert runs_through or key in REFUSED, f"{key}: no change of it runs"
+
+
+def test_forces_and_feeds_keep_all_that_is_prepared(folder):
+    with kept.instead(kept.Kept()) as stages:
+        outcome(robot_job(folder))
+        made = dict(stages.made)
+        job = robot_job(folder)
+        job["belt_machine"]["force_N"] = 25
+        job["programs"][0]["poses"][2]["force_N"] = 18
+        outcome(job)
+        contacts = stages.made["contact"]
+        assert contacts > made["contact"]  # which depends on the force
+        assert {**stages.made, "contact": 0} == {**made, "contact": 0}
+        for one in job["programs"]:
+            one["feed_mm_s"] = 33
+        outcome(job)
+        assert stages.made["contact"] == contacts
+        assert stages.made["reach"] == made["reach"] + 1  # joints turn at other speeds
+        assert {**stages.made, "contact": 0, "reach": 0} == {**made, "contact": 0, "reach": 0}
+    with kept.instead(kept.Kept()) as stages:  # in rounded corners, speeds decide the way
+        job = mesh_job(folder)
+        job["cell"]["check_collisions"] = True
+        outcome(job)
+        made = dict(stages.made)
+        job["programs"][0]["feed_mm_s"] = 20
+        outcome(job)
+        assert stages.made["collisions"] > made["collisions"]
+        assert stages.made["stock"] == made["stock"] == 1
+
+
+FILES = {  # of a job, and another that takes its place under its name
+    "plate.brep": ("robot", "other.brep"),
+    "body.brep": ("robot", "other.brep"),
+    "pass.csv": ("allowance", "deep.csv"),
+    "stock.ply": ("mesh", "thick.ply"),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_is_known_by_what_it_holds(name, folder):
+    base, other = FILES[name]
+    path, text = folder / name, (folder / name).read_bytes()
+    status = os.stat(path)
+    with kept.instead(kept.Kept()):
+        before = outcome(BASES[base](folder))
+        try:
+            path.write_bytes((folder / other).read_bytes())
+            os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
+            quick = outcome(BASES[base](folder))
+            with kept.instead(kept.Kept()):
+                whole = outcome(BASES[base](folder))
+        finally:
+            path.write_bytes(text)
+        assert quick == whole != before
+        assert outcome(BASES[base](folder)) == before
+
+
+def test_the_comparison_sees_a_stage_of_other_inputs(folder, monkeypatch):
+    """Were a stage known by its name alone, the changed run would differ from the whole one."""
+    monkeypatch.setattr(kept, "digest", lambda *_: "")
+    with kept.instead(kept.Kept()):
+        outcome(allowance_job(folder))
+        job = allowance_job(folder)
+        job["sampling"]["depth_mm"] = 1.5
+        stale = outcome(copy.deepcopy(job))
+        monkeypatch.undo()
+    with kept.instead(kept.Kept()):
+        assert stale != outcome(job)
+
+
+def test_a_result_is_the_caller_s_own(folder):
+    with kept.instead(kept.Kept()):
+        first = runs.run(jobs.validate(mesh_job(folder)))
+        before = np.array(first.field.stock_height)
+        first.field.set_height(np.full(first.field.size, -1.0))
+        first.events.append({})
+        again = runs.run(jobs.validate(mesh_job(folder)))
+    assert (again.field.stock_height == before).all() and again.field.height.max() > 0
+    assert {} not in again.events
+
+
+def test_what_was_used_longest_ago_goes_first():
+    stages = kept.Kept(100)
+    made = []
+
+    def value(name, size=40):
+        return stages.get("one", lambda: name, lambda: made.append(name) or name, lambda _: size)
+
+    for name in "abab":
+        assert value(name) == name
+    assert made == ["a", "b"] and stages.bytes == 80
+    value("a")
+    value("c")  # drops b
+    value("a")
+    value("b")
+    assert made == ["a", "b", "c", "b"] and stages.bytes == 80
+    value("large", 101)
+    value("large", 101)
+    assert made[-2:] == ["large", "large"] and stages.bytes == 80
+    stages.forget()
+    assert stages.bytes == 0 and value("a") == "a" and made[-1] == "a"
+
+
+def test_what_changes_while_it_is_made_and_what_fails_is_not_kept(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+    stages = kept.Kept()
+
+    def read():
+        text = path.read_text()
+        path.write_text("new")
+        return text
+
+    assert stages.get("file", path.read_bytes, read, len) == "old"
+    assert stages.get("file", path.read_bytes, path.read_text, len) == "new"
+    path.write_text("old")
+    assert stages.get("file", path.read_bytes, path.read_text, len) == "old"
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError):
+            stages.get("none", lambda: 1, lambda: 1 / 0, lambda _: 1)
+
+
+def test_the_environment_limits_what_is_kept(monkeypatch):
+    monkeypatch.setenv(kept.LIMIT, "3")
+    assert kept.Kept().most == 3e6
+    monkeypatch.setenv(kept.LIMIT, "0")
+    stages = kept.Kept()
+    assert stages.get("one", lambda: 1, lambda: "a", lambda _: 1) == "a" and stages.bytes == 0
+    monkeypatch.setenv(kept.LIMIT, "much")
+    assert 0 < kept.Kept().most <= kept.MOST
+
+
+def test_digests_tell_values_apart():
+    values = [1, 1.5, "1", [1], [[1]], {"a": 1}, None, True, b"1", np.arange(4), np.arange(4.0)]
+    values += [np.arange(4).reshape(2, 2), "", [], {}, [1, 2], ["1", "2"], range(2), range(3), 0.0]
+    assert len({kept.digest(value) for value in values}) == len(values)
+    assert kept.digest(np.arange(8)[::2]) == kept.digest(np.array([0, 2, 4, 6]))
+    with pytest.raises(TypeError):
+        kept.digest(object())
+
+
+def test_threads_share_what_is_kept(folder):
+    found = []
+    with kept.instead(kept.Kept()):
+        threads = [
+            threading.Thread(target=lambda: found.append(outcome(mesh_job(folder))))
+            for _ in range(3)
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert len(found) == 3 and found[0] == found[1] == found[2]

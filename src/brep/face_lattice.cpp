@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 
 namespace beltgrinding {
@@ -65,7 +66,7 @@ void FaceLattice::lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid,
         }
     }
     budget.take(nodes);
-    s_ = std::make_unique_for_overwrite<double[]>(nodes);
+    s_ = make_large<double>(nodes);
     state_.assign(nodes, 0);
 }
 

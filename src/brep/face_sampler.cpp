@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "delaunay.h"
@@ -76,9 +77,9 @@ class FaceSampler {
     void place_samples(FaceLattice& lattice, const SurfaceMetric& metric) {
         lattice_base_ = static_cast<std::uint32_t>(boundary_.samples.size());
         const std::size_t n = lattice_base_ + lattice.size();
-        point_.resize(n);
-        normal_.resize(n);
-        cross_ = std::make_unique_for_overwrite<double[]>(n);
+        resize_large(point_, n);
+        resize_large(normal_, n);
+        cross_ = make_large<double>(n);
         flags_.assign(n, 0);
         const auto put = [&](std::size_t i, const Vec3& point, const Vec3& cross, bool singular) {
             point_[i] = point;
@@ -155,7 +156,7 @@ class FaceSampler {
     void add_cells() {
         const auto& rows = lattice_->rows();
         const std::size_t n = point_.size();
-        area_ = std::make_unique_for_overwrite<double[]>(n);
+        area_ = make_large<double>(n);
         std::fill_n(area_.get(), lattice_base_, 0.0);
         std::vector<std::size_t> first(rows.size() + 1, 0);  // triangle of each row's cells
         parallel_blocks(rows.size(), kRowBlock, context_, [&](std::size_t begin, std::size_t end) {
@@ -163,7 +164,7 @@ class FaceSampler {
                 for_cells(j, [&](std::uint32_t, std::uint32_t) { first[j + 1] += 2; });
         });
         for (std::size_t j = 0; j < rows.size(); ++j) first[j + 1] += first[j];
-        triangles_.reserve(first.back() + kBandTriangles * boundary_.samples.size());
+        reserve_large(triangles_, first.back() + kBandTriangles * boundary_.samples.size());
         triangles_.resize(first.back());
         parallel_blocks(rows.size(), kRowBlock, context_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t j = begin; j < end; ++j) fill_row(j, first[j]);
@@ -424,7 +425,7 @@ class FaceSampler {
                 "brep.empty_trim",
                 "its trimming edges enclose nothing; repair the shape or leave the face out");
         const double scale = request_.area / total;
-        out.area.resize(count);
+        resize_large(out.area, count);
         for (std::uint32_t i = 0; i < point_.size(); ++i) {
             const std::uint32_t k = index[i];  // never above i: in place
             if (k == FaceLattice::kNone) continue;

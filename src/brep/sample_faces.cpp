@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/large_memory.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
@@ -83,14 +84,15 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
         field.area = std::move(s.area);
         field.flags = std::move(s.flags);
         field.triangles = std::move(s.triangles);
+        reserve_large(field.face, n);
         field.face.assign(n, static_cast<std::uint32_t>(jobs[0].face));
     } else {
-        field.point.resize(n);
-        field.normal.resize(n);
-        field.area.resize(n);
-        field.face.resize(n);
+        resize_large(field.point, n);
+        resize_large(field.normal, n);
+        resize_large(field.area, n);
+        resize_large(field.face, n);
         field.flags.resize(n);
-        field.triangles.resize(first_triangle.back());
+        resize_large(field.triangles, first_triangle.back());
         parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 FaceSamples& s = jobs[i].samples;
@@ -109,8 +111,8 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
             }
         });
     }
-    field.stock_height.assign(n, 0.0f);
-    field.height.assign(n, 0.0);
+    resize_large(field.stock_height, n);
+    resize_large(field.height, n);
 }
 
 Fact not_sampled(const Shape::Impl& impl, std::size_t face) {

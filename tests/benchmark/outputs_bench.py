@@ -24,8 +24,6 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-
 import beltgrinding
 from beltgrinding.engine import core
 from beltgrinding.inspection import closed_mesh, verdict
@@ -34,51 +32,9 @@ from beltgrinding.job.tolerances import colour_scale
 from beltgrinding.reporting import report
 from beltgrinding.reporting.language import Language
 from beltgrinding.simulation.result import Result
+from ground_plate import plate_job
 
-SIDE, THICKNESS, SPACING = 500.0, 10.0, 0.5  # mm
-ALLOWANCE = 0.2  # mm
-LANES = 20
 TIMES = 3
-DOWN = {"qw": 0.0, "qx": 1.0, "qy": 0.0, "qz": 0.0}
-CORNERS = [[x, y, z] for z in (-THICKNESS, 0.0) for y in (0.0, SIDE) for x in (0.0, SIDE)]
-SIDES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6))
-
-
-def plate():
-    triangles = [half for a, b, c, d in SIDES for half in ((a, b, c), (a, c, d))]
-    mesh = core.TriangleMesh(np.array(CORNERS, np.float32), np.array(triangles, np.uint32))
-    return core.shape_from_mesh(mesh)
-
-
-def top(shape):
-    """Its number from 1."""
-    for face in range(shape.face_count):
-        field, _ = core.sample_faces(shape, [face], SIDE / 4)
-        if field.points[:, 2].min() > -1e-6:
-            return face + 1
-    raise AssertionError("the plate has no top")
-
-
-def job(samples):
-    shape, poses = plate(), []
-    for k in range(LANES):
-        ends = (5.0, SIDE - 5.0)[:: 1 if k % 2 == 0 else -1]
-        y = SIDE * (k + 0.5) / LANES
-        poses += [
-            {"x_mm": x, "y_mm": y, "z_mm": ALLOWANCE, **DOWN, "feed_mm_s": 50.0} for x in ends
-        ]
-    return {
-        "design": {"brep": shape.write_brep(), "faces": [top(shape)]},
-        "sampling": {"spacing_mm": SIDE / samples**0.5},
-        "stock": {"allowance_mm": ALLOWANCE},
-        "belt_machine": {
-            "wheel": {"radius_mm": 100, "width_mm": 22},
-            "compliance": {"model": "elastic_foundation"},
-            "force_N": 60,
-        },
-        "simulation": {"max_travel_mm": 5.0},
-        "programs": [{"poses": poses}],
-    }
 
 
 def works(result, folder):
@@ -119,7 +75,7 @@ def main():
     parser.add_argument("--profile", help="a figure whose functions are told")
     arguments = parser.parse_args()
     start = time.perf_counter()
-    result = beltgrinding.run(job(arguments.samples))
+    result = beltgrinding.run(plate_job(arguments.samples))
     run = time.perf_counter() - start
     figures = {}
     with tempfile.TemporaryDirectory() as folder:

@@ -64,6 +64,7 @@ def one(samples, lanes, side):
     start = time.perf_counter()
     result.write(folder)
     found["write_s"] = time.perf_counter() - start
+    found["write_peak"] = status("VmHWM") - bare
     found["file"] = sum(path.stat().st_size for path in folder.iterdir())
     start = time.perf_counter()
     Result.read(folder)
@@ -106,6 +107,7 @@ def figures(least, few, many):
         "field_bytes_a_sample": (slope(few, many, "field"), "B"),
         "ground_field_bytes_a_sample": (slope(few, many, "ground_field"), "B"),
         "peak_bytes_a_sample": (slope(few, many, "peak"), "B"),
+        "write_peak_bytes_a_sample": (slope(few, many, "write_peak"), "B"),
         "files_bytes_a_sample": (slope(few, many, "file"), "B"),
         "sampling_ns_a_sample": (1e9 * slope(few, many, "sample_s"), "ns"),
         "write_ns_a_sample": (1e9 * slope(few, many, "write_s"), "ns"),
@@ -115,7 +117,7 @@ def figures(least, few, many):
     for phase in ("build", "verdict"):
         if phase in many["phases_s"]:
             made[f"{phase}_ns_a_sample"] = (1e9 * slope(few, many, "phases_s", phase), "ns")
-    peak = made["peak_bytes_a_sample"][0]
+    peak = made["write_peak_bytes_a_sample"][0]
     most = WORKER_BYTES / peak
     side = most**0.5 * HUGE_SPACING  # mm, of a square of them
     halo = (

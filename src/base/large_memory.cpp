@@ -15,10 +15,9 @@ constexpr std::size_t kWorthwhile = 2 * kPage;
 void expect_large_use([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     if (bytes < kWorthwhile) return;
-    const auto at = reinterpret_cast<std::uintptr_t>(memory);
-    const std::uintptr_t begin = (at + kPage - 1) / kPage * kPage;
-    const std::uintptr_t end = (at + bytes) / kPage * kPage;
-    if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+    const std::uintptr_t skipped = -reinterpret_cast<std::uintptr_t>(memory) % kPage;
+    const std::size_t length = (bytes - skipped) / kPage * kPage;  // a page at least
+    (void)madvise(static_cast<char*>(memory) + skipped, length, MADV_HUGEPAGE);
 #endif
 }
 

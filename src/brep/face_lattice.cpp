@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 
 namespace beltgrinding {
@@ -10,7 +11,6 @@ namespace {
 
 constexpr double kClearance = 0.5;     // of the spacing: nearer nodes leave the border its place
 constexpr double kKeepColumns = 0.06;  // spacing may be that far off before a row's count changes
-constexpr std::size_t kRowBlock = 8;
 constexpr int kReach = 2;  // rows and columns around a chord in which nodes may be too near
 
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -22,27 +22,16 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-FaceLattice::FaceLattice(const FaceSurface& surface, const SurfaceMetric& metric,
-                         const PlaneGrid& grid, const Boundary& boundary, double spacing,
-                         std::size_t row_count, SampleBudget& budget, const RunContext& context) {
+FaceLattice::FaceLattice(const SurfaceMetric& metric, const PlaneGrid& grid,
+                         const Boundary& boundary, double spacing, std::size_t row_count,
+                         SampleBudget& budget) {
     lay_rows(metric, grid, boundary, spacing, row_count, budget);
-    parallel_blocks(rows_.size(), kRowBlock, context, [&](std::size_t begin, std::size_t end) {
-        const GeomAdaptor_Surface evaluator = surface.evaluator();
-        for (std::size_t j = begin; j < end; ++j) {
-            const Row& row = rows_[j];
-            if (row.runs.empty()) continue;
-            const SurfaceMetric::Row lengths = metric.row(row.t);
-            for (const Run& run : row.runs) {
-                for (int k = run.begin; k < run.end; ++k) {
-                    const std::uint32_t node =
-                        run.first + static_cast<std::uint32_t>(k - run.begin);
-                    s_[node] = metric.s_of(lengths, double(k) / row.n);
-                    points_[node] = surface.at(evaluator, s_[node], row.t);
-                }
-            }
-        }
-    });
-    clear_border(metric, grid, boundary, spacing);
+}
+
+void FaceLattice::settle(const FaceSurface& surface, const SurfaceMetric& metric,
+                         const PlaneGrid& grid, const Boundary& boundary, double spacing,
+                         const Vec3* point, const RunContext& context) {
+    clear_border(surface, metric, grid, boundary, spacing, point);
     find_whole_cells(context);
 }
 
@@ -77,8 +66,7 @@ void FaceLattice::lay_rows(const SurfaceMetric& metric, const PlaneGrid& grid,
         }
     }
     budget.take(nodes);
-    points_.resize(nodes);
-    s_.resize(nodes);
+    s_ = make_large<double>(nodes);
     state_.assign(nodes, 0);
 }
 
@@ -92,11 +80,13 @@ std::uint32_t FaceLattice::find(std::size_t row, int column) const {
     return run.first + static_cast<std::uint32_t>(column - run.begin);
 }
 
-void FaceLattice::clear_border(const SurfaceMetric& metric, const PlaneGrid& grid,
-                               const Boundary& boundary, double spacing) {
+void FaceLattice::clear_border(const FaceSurface& surface, const SurfaceMetric& metric,
+                               const PlaneGrid& grid, const Boundary& boundary, double spacing,
+                               const Vec3* point) {
+    const GeomAdaptor_Surface evaluator = surface.evaluator();
     const auto distance = [&](std::uint32_t node, double t, const Vec3& a, const Vec3& b) {
-        const SurfacePoint& at = points_[node];
-        if (!metric.stretched()) return segment_distance(at.point, a, b);
+        if (!metric.stretched()) return segment_distance(point[node], a, b);
+        const SurfacePoint at = surface.at(evaluator, s_[node], t);
         const auto stretched = [&](const Vec3& p) {
             return metric.stretched(p - at.point, at, s_[node], t);
         };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "delaunay.h"
@@ -19,7 +21,9 @@ namespace {
 constexpr double kSingularJacobian = 1e-6;  // of the face's mean: no normal can be told
 constexpr double kUnevenJacobian = 1.5;     // ratio within a triangle: its mean says little
 constexpr int kImprovePasses = 6;
-constexpr std::size_t kMergeBlock = 1 << 14;
+constexpr std::size_t kRowBlock = 8;
+constexpr std::size_t kBandTriangles = 4;  // about, for each sample of the border
+constexpr std::size_t kTriangleBlock = 1 << 16;
 
 /// Builds one face step by step; each step reads what the ones before it made.
 class FaceSampler {
@@ -30,6 +34,7 @@ class FaceSampler {
     FaceSamples run() {
         const TrimCurves trim = collect_trim_curves(request_.face);
         surface_.surface = BRep_Tool::Surface(request_.face);
+        surface_.spline = SplineSurface::of(surface_.surface);
         surface_.s0 = trim.u0, surface_.s1 = trim.u1;
         surface_.t0 = trim.v0, surface_.t1 = trim.v1;
         if (!(trim.u1 > trim.u0) || !(trim.v1 > trim.v0))
@@ -53,11 +58,13 @@ class FaceSampler {
         const auto rows =
             static_cast<std::size_t>(std::max(1.0, std::round(metric.height() / request_.spacing)));
         SampleBudget unlimited;
-        FaceLattice lattice(surface_, metric, grid_, boundary_, request_.spacing, rows,
-                            request_.budget != nullptr ? *request_.budget : unlimited, context_);
+        FaceLattice lattice(metric, grid_, boundary_, request_.spacing, rows,
+                            request_.budget != nullptr ? *request_.budget : unlimited);
         lattice_ = &lattice;
         sign_ = (surface_.swap != request_.reverse) ? -1.0 : 1.0;
-        gather_samples();
+        place_samples(lattice, metric);
+        lattice.settle(surface_, metric, grid_, boundary_, request_.spacing,
+                       point_.data() + lattice_base_, context_);
         add_cells();
         add_band();
         fill_singular_normals(point_, flags_, triangles_, normal_);
@@ -67,13 +74,12 @@ class FaceSampler {
   private:
     std::uint32_t lattice_sample(std::uint32_t node) const { return lattice_base_ + node; }
 
-    void gather_samples() {
+    void place_samples(FaceLattice& lattice, const SurfaceMetric& metric) {
         lattice_base_ = static_cast<std::uint32_t>(boundary_.samples.size());
-        const std::size_t n = lattice_base_ + lattice_->size();
-        point_.resize(n);
-        cross_.resize(n);
-        normal_.resize(n);
-        area_.assign(n, 0.0);
+        const std::size_t n = lattice_base_ + lattice.size();
+        resize_large(point_, n);
+        resize_large(normal_, n);
+        cross_ = make_large<double>(n);
         flags_.assign(n, 0);
         const auto put = [&](std::size_t i, const Vec3& point, const Vec3& cross, bool singular) {
             point_[i] = point;
@@ -95,13 +101,9 @@ class FaceSampler {
             put(i, s.point, s.cross, s.singular);
             if (s.on_boundary) flags_[i] |= kOnBoundary;
         }
-        parallel_blocks(lattice_->size(), kMergeBlock, context_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                const SurfacePoint& p = lattice_->at(static_cast<std::uint32_t>(i));
-                                put(lattice_base_ + i, p.point, p.ds.cross(p.dt), p.singular);
-                            }
-                        });
+        lattice.place(surface_, metric, context_, [&](std::uint32_t node, const SurfacePoint& p) {
+            put(lattice_base_ + node, p.point, p.ds.cross(p.dt), p.singular);
+        });
     }
 
     /// One triangle, counter-clockwise in (s, t), with its area in (s, t). The area on the surface
@@ -122,49 +124,92 @@ class FaceSampler {
 
     void put_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         if (a == b || b == c || c == a) return;  // a corner at a pole
-        if (sign_ < 0)
-            triangles_.push_back({a, c, b});
-        else
-            triangles_.push_back({a, b, c});
+        triangles_.push_back(sided(a, b, c));
     }
 
-    /// The cells that are whole, as two triangles each, cut along the shorter diagonal.
-    void add_cells() {
-        triangles_.reserve(2 * lattice_->size() + 4 * boundary_.samples.size());
+    Triangle sided(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        return sign_ < 0 ? Triangle{a, c, b} : Triangle{a, b, c};
+    }
+
+    /// The whole cells between the rows j and j + 1, from left to right: visit(its lower left
+    /// node, its upper left one).
+    template <class Visit>
+    void for_cells(std::size_t j, Visit visit) const {
         const auto& rows = lattice_->rows();
-        for (std::size_t j = 0; j + 1 < rows.size(); ++j) {
-            if (j % 64 == 0) context_.throw_if_cancelled();
-            const double dt = rows[j + 1].t - rows[j].t;
-            for (const auto& run : rows[j].runs) {
-                std::uint32_t ahead = FaceLattice::kNone;
-                for (int k = run.begin; k + 1 < run.end; ++k) {
-                    const std::uint32_t a = run.first + static_cast<std::uint32_t>(k - run.begin);
-                    if (!lattice_->whole(a)) {
-                        ahead = FaceLattice::kNone;
-                        continue;
-                    }
-                    ahead = ahead == FaceLattice::kNone ? lattice_->find(j + 1, k) : ahead + 1;
-                    const std::uint32_t d = ahead;
-                    const std::uint32_t sa = lattice_sample(a), sd = lattice_sample(d);
-                    // Nearly a parallelogram: a quarter for each corner.
-                    const double low = lattice_->s(a + 1) - lattice_->s(a);
-                    const double high = lattice_->s(d + 1) - lattice_->s(d);
-                    const double quarter = dt *
-                                           (low * (cross_[sa] + cross_[sa + 1]) +
-                                            high * (cross_[sd] + cross_[sd + 1])) /
-                                           16.0;
-                    for (const std::uint32_t i : {sa, sa + 1, sd, sd + 1}) area_[i] += quarter;
-                    if ((point_[sa] - point_[sd + 1]).squaredNorm() <=
-                        (point_[sa + 1] - point_[sd]).squaredNorm()) {
-                        put_triangle(sa, sa + 1, sd + 1);
-                        put_triangle(sa, sd + 1, sd);
-                    } else {
-                        put_triangle(sa, sa + 1, sd);
-                        put_triangle(sa + 1, sd + 1, sd);
-                    }
+        if (j + 1 >= rows.size()) return;
+        for (const auto& run : rows[j].runs) {
+            std::uint32_t ahead = FaceLattice::kNone;
+            for (int k = run.begin; k + 1 < run.end; ++k) {
+                const std::uint32_t a = run.first + static_cast<std::uint32_t>(k - run.begin);
+                if (!lattice_->whole(a)) {
+                    ahead = FaceLattice::kNone;
+                    continue;
                 }
+                ahead = ahead == FaceLattice::kNone ? lattice_->find(j + 1, k) : ahead + 1;
+                visit(a, ahead);
             }
         }
+    }
+
+    /// The cells that are whole, as two triangles each, cut along the shorter diagonal. Each thread
+    /// sums up the areas of its own rows' nodes, from the cells below and then from those above.
+    void add_cells() {
+        const auto& rows = lattice_->rows();
+        const std::size_t n = point_.size();
+        area_ = make_large<double>(n);
+        std::fill_n(area_.get(), lattice_base_, 0.0);
+        std::vector<std::size_t> first(rows.size() + 1, 0);  // triangle of each row's cells
+        parallel_blocks(rows.size(), kRowBlock, context_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j)
+                for_cells(j, [&](std::uint32_t, std::uint32_t) { first[j + 1] += 2; });
+        });
+        for (std::size_t j = 0; j < rows.size(); ++j) first[j + 1] += first[j];
+        reserve_large(triangles_, first.back() + kBandTriangles * boundary_.samples.size());
+        triangles_.resize(first.back());
+        parallel_blocks(rows.size(), kRowBlock, context_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j) fill_row(j, first[j]);
+        });
+    }
+
+    void fill_row(std::size_t j, std::size_t triangle) {
+        const auto& rows = lattice_->rows();
+        double* area = area_.get() + lattice_base_;
+        for (const auto& run : rows[j].runs)
+            std::fill(area + run.first, area + run.first + (run.end - run.begin), 0.0);
+        // Nearly a parallelogram: a quarter for each corner.
+        const auto quarter = [&](double dt, std::uint32_t a, std::uint32_t d) {
+            const double *low = cross_.get() + lattice_sample(a),
+                         *high = cross_.get() + lattice_sample(d);
+            return dt *
+                   ((lattice_->s(a + 1) - lattice_->s(a)) * (low[0] + low[1]) +
+                    (lattice_->s(d + 1) - lattice_->s(d)) * (high[0] + high[1])) /
+                   16.0;
+        };
+        if (j > 0) {
+            const double dt = rows[j].t - rows[j - 1].t;
+            for_cells(j - 1, [&](std::uint32_t a, std::uint32_t d) {
+                const double share = quarter(dt, a, d);
+                area[d] += share;
+                area[d + 1] += share;
+            });
+        }
+        if (j + 1 >= rows.size()) return;
+        const double dt = rows[j + 1].t - rows[j].t;
+        Triangle* out = triangles_.data() + triangle;
+        for_cells(j, [&](std::uint32_t a, std::uint32_t d) {
+            const double share = quarter(dt, a, d);
+            area[a] += share;
+            area[a + 1] += share;
+            const std::uint32_t sa = lattice_sample(a), sd = lattice_sample(d);
+            if ((point_[sa] - point_[sd + 1]).squaredNorm() <=
+                (point_[sa + 1] - point_[sd]).squaredNorm()) {
+                *out++ = sided(sa, sa + 1, sd + 1);
+                *out++ = sided(sa, sd + 1, sd);
+            } else {
+                *out++ = sided(sa, sa + 1, sd);
+                *out++ = sided(sa + 1, sd + 1, sd);
+            }
+        });
     }
 
     struct BandNode {
@@ -328,8 +373,8 @@ class FaceSampler {
     }
 
     /// u and v of all samples, in their order before those without area are dropped.
-    std::vector<std::array<double, 2>> parameters() const {
-        std::vector<std::array<double, 2>> result(point_.size());
+    std::vector<std::array<double, 2>> parameters(std::size_t samples) const {
+        std::vector<std::array<double, 2>> result(samples);
         const auto put = [&](std::size_t i, double s, double t) {
             result[i] = surface_.swap ? std::array{t, s} : std::array{s, t};
         };
@@ -379,28 +424,35 @@ class FaceSampler {
             throw InputError(
                 "brep.empty_trim",
                 "its trimming edges enclose nothing; repair the shape or leave the face out");
-        out.point.resize(count);
-        out.normal.resize(count);
-        out.area.resize(count);
-        out.flags.resize(count);
         const double scale = request_.area / total;
+        resize_large(out.area, count);
         for (std::uint32_t i = 0; i < point_.size(); ++i) {
-            const std::uint32_t k = index[i];
+            const std::uint32_t k = index[i];  // never above i: in place
             if (k == FaceLattice::kNone) continue;
-            out.point[k] = point_[i];
-            out.normal[k] = normal_[i];
+            point_[k] = point_[i];
+            normal_[k] = normal_[i];
             out.area[k] = static_cast<float>(area_[i] * scale);
-            out.flags[k] = flags_[i];
+            flags_[k] = flags_[i];
         }
+        const std::size_t all_samples = point_.size();
+        point_.resize(count);
+        normal_.resize(count);
+        flags_.resize(count);
+        out.point = std::move(point_);
+        out.normal = std::move(normal_);
+        out.flags = std::move(flags_);
         if (request_.parameters) {
-            const auto all = parameters();
+            const auto all = parameters(all_samples);
             out.parameters.resize(count);
-            for (std::uint32_t i = 0; i < point_.size(); ++i)
+            for (std::uint32_t i = 0; i < all_samples; ++i)
                 if (index[i] != FaceLattice::kNone) out.parameters[index[i]] = all[i];
             out.period = period();
         }
-        for (Triangle& t : triangles_)
-            for (std::uint32_t& v : t) v = index[v];
+        parallel_blocks(triangles_.size(), kTriangleBlock, context_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                for (std::uint32_t& v : triangles_[i]) v = index[v];
+                        });
         out.triangles = std::move(triangles_);
         return out;
     }
@@ -415,7 +467,7 @@ class FaceSampler {
     std::uint32_t lattice_base_ = 0;
     std::vector<Vec3> point_;
     std::vector<Vec3f> normal_;
-    std::vector<double> cross_, area_;  ///< Jacobian; area before scaling
+    std::unique_ptr<double[]> cross_, area_;  ///< Jacobian; area before scaling
     std::vector<std::uint8_t> flags_;
     std::vector<Triangle> triangles_;
 };

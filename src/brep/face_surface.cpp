@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace beltgrinding {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr std::size_t kFewestCells = 24;  // of the table, each way
 constexpr std::size_t kMostCells = 512;   // each way; 0.1 s of evaluation at worst
 constexpr double kCellsPerSample = 0.5;   // a finer table than the samples themselves is waste
 constexpr double kPoleFloor = 1e-6;       // of the longest row: keeps rows at poles monotone
+constexpr double kPoleLength = 1e-9;      // of the longest row: a pole's, whose length is rounding
 constexpr double kSingularStep = 1e-6;    // of the parameter range, to step off a singular point
 constexpr double kPreferEven = 0.9;       // v rows must be this much evener to be taken
 constexpr double kSmallestVariance = 1e-6;
@@ -19,6 +22,8 @@ constexpr double kTableTurn = 0.2;  // rad, of the normal within a cell of the t
 constexpr std::size_t kLines = 16;  // on which the surface's turning is looked at, each way
 constexpr int kHalvings = 10;
 constexpr double kGrading = 0.25;  // mm of spacing per mm of way
+
+constexpr std::size_t kTableRows = 8;  // of the table, a task
 
 Vec3 vec(const gp_XYZ& v) {
     return {v.X(), v.Y(), v.Z()};
@@ -76,9 +81,14 @@ double unevenness(const std::vector<double>& length, const std::vector<double>& 
     return weight > 0 ? sum / weight : 0.0;
 }
 
+SurfacePoint turned(const SplineSurface::Point& p, bool swap) {
+    return {p.point, swap ? p.v : p.u, swap ? p.u : p.v, false};
+}
+
 }  // namespace
 
 SurfacePoint FaceSurface::at(const GeomAdaptor_Surface& evaluator, double s, double t) const {
+    if (spline) return turned(spline->at(swap ? t : s, swap ? s : t), swap);
     gp_Pnt p;
     gp_Vec u, v;
     SurfacePoint result;
@@ -103,6 +113,20 @@ SurfacePoint FaceSurface::at(const GeomAdaptor_Surface& evaluator, double s, dou
     result.dt = vec(v.XYZ());
     if (swap) std::swap(result.ds, result.dt);
     return result;
+}
+
+SurfaceRow FaceSurface::row(const GeomAdaptor_Surface& evaluator, double t) const {
+    return {*this, evaluator, t};
+}
+
+SurfaceRow::SurfaceRow(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator, double t)
+    : surface_(&surface), evaluator_(&evaluator), t_(t) {
+    if (surface.spline) row_ = surface.spline->row(!surface.swap, t);
+}
+
+SurfacePoint SurfaceRow::at(double s) {
+    if (row_) return turned(row_->at(s), surface_->swap);
+    return surface_->at(*evaluator_, s, t_);
 }
 
 std::array<double, 2> FaceSurface::bend(const GeomAdaptor_Surface& evaluator, double s,
@@ -154,16 +178,21 @@ std::vector<double> FaceSurface::knots(bool along_s) const {
 struct SurfaceMetric::Table {
     std::vector<double> length, across, jacobian;
 
-    Table(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator,
-          const std::vector<double>& s, const std::vector<double>& t) {
-        for (const double at_t : t) {
-            for (const double at_s : s) {
-                const SurfacePoint p = surface.at(evaluator, at_s, at_t);
-                length.push_back(p.ds.norm());
-                across.push_back(p.dt.norm());
-                jacobian.push_back(p.ds.cross(p.dt).norm());
+    Table(const FaceSurface& surface, const std::vector<double>& s, const std::vector<double>& t)
+        : length(s.size() * t.size()), across(length.size()), jacobian(length.size()) {
+        parallel_blocks(t.size(), kTableRows, {}, [&](std::size_t begin, std::size_t end) {
+            const GeomAdaptor_Surface evaluator = surface.evaluator();
+            for (std::size_t j = begin; j < end; ++j) {
+                SurfaceRow row = surface.row(evaluator, t[j]);
+                for (std::size_t i = 0; i < s.size(); ++i) {
+                    const SurfacePoint p = row.at(s[i]);
+                    const std::size_t k = j * s.size() + i;
+                    length[k] = p.ds.norm();
+                    across[k] = p.dt.norm();
+                    jacobian[k] = p.ds.cross(p.dt).norm();
+                }
             }
-        }
+        });
     }
 
     /// As if s and t were swapped; `ns` columns.
@@ -204,7 +233,7 @@ SurfaceMetric::SurfaceMetric(FaceSurface& surface, const SampleDensity& density)
     s_ = refine(surface.knots(true), cells(length_s));
     t_ = refine(surface.knots(false), cells(length_t));
     const std::size_t ns = s_.size(), nt = t_.size();
-    Table table(surface, evaluator, s_, t_);
+    Table table(surface, s_, t_);
     const double uneven_s = unevenness(table.length, table.jacobian, nt, ns, ns, 1);
     const double uneven_t = unevenness(table.across, table.jacobian, ns, nt, 1, ns);
     if (uneven_t + kSmallestVariance < kPreferEven * uneven_s) {
@@ -214,7 +243,7 @@ SurfaceMetric::SurfaceMetric(FaceSurface& surface, const SampleDensity& density)
     }
     if (density.active()) {
         refine_where_bent(surface, evaluator);
-        table = Table(surface, evaluator, s_, t_);
+        table = Table(surface, s_, t_);
         stretch(surface, evaluator, density, table);
     }
     fill(table);
@@ -293,7 +322,7 @@ void SurfaceMetric::fill(const Table& table) {
     const auto& [length, across, jacobian] = table;
     const std::size_t columns = s_.size(), rows = t_.size();
     cumulative_.resize(columns * rows);
-    std::vector<double> gap(rows);
+    std::vector<double> gap(rows), pole_gap(rows), plain(rows);  // plain: length, not stretched
     double area = 0;
     for (std::size_t j = 0; j < rows; ++j) {
         double sum = 0, row_area = 0, row_across = 0, stretched = 0;
@@ -311,15 +340,20 @@ void SurfaceMetric::fill(const Table& table) {
             cumulative_[k] = stretched;
         }
         const double range = s_.back() - s_.front();
-        gap[j] = sum > 0 ? row_area / sum : row_across / range;
-        if (gap[j] <= 0) gap[j] = row_across / range;
-        if (!stretch_t_.empty()) gap[j] *= stretch_t_[j];
+        plain[j] = sum;
+        pole_gap[j] = row_across / range;
+        gap[j] = sum > 0 ? row_area / sum : 0.0;
         max_length_ = std::max(max_length_, stretched);
         if (!std::isfinite(sum + row_area)) max_length_ = sum + row_area;
         const double weight =
             (j > 0 ? t_[j] - t_[j - 1] : 0.0) + (j + 1 < rows ? t_[j + 1] - t_[j] : 0.0);
         area += 0.5 * weight * row_area;
         mean_length_ += 0.5 * weight * stretched / (t_.back() - t_.front());
+    }
+    const double pole = kPoleLength * *std::max_element(plain.begin(), plain.end());
+    for (std::size_t j = 0; j < rows; ++j) {
+        if (!(plain[j] > pole) || gap[j] <= 0) gap[j] = pole_gap[j];
+        if (!stretch_t_.empty()) gap[j] *= stretch_t_[j];
     }
     mean_jacobian_ = area / ((t_.back() - t_.front()) * (s_.back() - s_.front()));
     const double floor = kPoleFloor * std::max(max_length_, 1e-300);
@@ -374,9 +408,14 @@ double SurfaceMetric::x_of(const Row& row, double s) const {
     return ((1 - w) * row.length[i] + w * row.length[i + 1]) / row.total();
 }
 
-double SurfaceMetric::s_of(const Row& row, double x) const {
-    const auto [i, w] = bracket(row.length.data(), row.length.size(), x * row.total());
-    return (1 - w) * s_[i] + w * s_[i + 1];
+double SurfaceMetric::s_of(const Row& row, double x, std::size_t& cell) const {
+    const double wanted = x * row.total();
+    const std::vector<double>& length = row.length;
+    if (!(length[cell] <= wanted)) cell = bracket(length.data(), length.size(), wanted).first;
+    while (cell + 2 < length.size() && length[cell + 1] <= wanted) ++cell;
+    const double width = length[cell + 1] - length[cell];
+    const double w = std::clamp(width > 0 ? (wanted - length[cell]) / width : 0.0, 0.0, 1.0);
+    return (1 - w) * s_[cell] + w * s_[cell + 1];
 }
 
 double SurfaceMetric::x_of(double s, double t) const {

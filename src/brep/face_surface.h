@@ -5,10 +5,13 @@
 #include <GeomAdaptor_Surface.hxx>
 #include <Geom_Surface.hxx>
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "beltgrinding/geometry.h"
 #include "sample_density.h"
+#include "spline_surface.h"
 
 namespace beltgrinding {
 
@@ -19,9 +22,12 @@ struct SurfacePoint {
     bool singular = false;  ///< the derivatives are undefined here and were taken beside it
 };
 
+class SurfaceRow;
+
 /// The surface over a rectangle of its parameters. s is u and t is v, or the reverse if `swap`.
 struct FaceSurface {
     Handle(Geom_Surface) surface;
+    std::shared_ptr<const SplineSurface> spline;  ///< the same, where it is one
     double s0 = 0, s1 = 0, t0 = 0, t1 = 0;
     bool swap = false;
 
@@ -34,10 +40,26 @@ struct FaceSurface {
     GeomAdaptor_Surface evaluator() const { return GeomAdaptor_Surface(surface); }
     /// Exact point and first derivatives. Throws Standard_Failure.
     SurfacePoint at(const GeomAdaptor_Surface& evaluator, double s, double t) const;
+    /// For many points of constant t, one after the other.
+    SurfaceRow row(const GeomAdaptor_Surface& evaluator, double t) const;
     /// Normal curvatures along s and along t, 1/mm, without sign; 0 where there are none.
     std::array<double, 2> bend(const GeomAdaptor_Surface& evaluator, double s, double t) const;
     /// Parameters along s (or t) between which the surface is smooth, the rectangle's own included.
     std::vector<double> knots(bool along_s) const;
+};
+
+/// Points of one row, for one thread; lives no longer than what it was made of.
+class SurfaceRow {
+  public:
+    SurfaceRow(const FaceSurface& surface, const GeomAdaptor_Surface& evaluator, double t);
+    /// As FaceSurface::at, to rounding.
+    SurfacePoint at(double s);
+
+  private:
+    const FaceSurface* surface_;
+    const GeomAdaptor_Surface* evaluator_;
+    double t_;
+    std::optional<SplineSurface::Row> row_;
 };
 
 /// The map from the rectangle to the sampler's plane: x in [0, 1] is the share of arc length along
@@ -67,7 +89,9 @@ class SurfaceMetric {
     };
     Row row(double t) const;
     double x_of(const Row& row, double s) const;
-    double s_of(const Row& row, double x) const;
+    /// `cell`: of the table, in which the last one lay, 0 at first; where `x` goes on from call to
+    /// call, nothing is searched.
+    double s_of(const Row& row, double x, std::size_t& cell) const;
     double x_of(double s, double t) const;
 
     /// Whether anything is stretched.

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/large_memory.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
@@ -76,30 +77,42 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
         first_triangle[i + 1] = first_triangle[i] + jobs[i].samples.triangles.size();
     }
     const std::size_t n = first.back();
-    field.point.resize(n);
-    field.normal.resize(n);
-    field.area.resize(n);
-    field.face.resize(n);
-    field.flags.resize(n);
-    field.stock_height.assign(n, 0.0f);
-    field.height.assign(n, 0.0);
-    field.triangles.resize(first_triangle.back());
-    parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            FaceSamples& s = jobs[i].samples;
-            const auto at = static_cast<std::ptrdiff_t>(first[i]);
-            std::copy(s.point.begin(), s.point.end(), field.point.begin() + at);
-            std::copy(s.normal.begin(), s.normal.end(), field.normal.begin() + at);
-            std::copy(s.area.begin(), s.area.end(), field.area.begin() + at);
-            std::copy(s.flags.begin(), s.flags.end(), field.flags.begin() + at);
-            std::fill_n(field.face.begin() + at, s.point.size(),
-                        static_cast<std::uint32_t>(jobs[i].face));
-            const auto base = static_cast<std::uint32_t>(first[i]);
-            Triangle* out = field.triangles.data() + first_triangle[i];
-            for (const Triangle& t : s.triangles) *out++ = {t[0] + base, t[1] + base, t[2] + base};
-            s = {};
-        }
-    });
+    if (jobs.size() == 1) {
+        FaceSamples& s = jobs[0].samples;
+        field.point = std::move(s.point);
+        field.normal = std::move(s.normal);
+        field.area = std::move(s.area);
+        field.flags = std::move(s.flags);
+        field.triangles = std::move(s.triangles);
+        reserve_large(field.face, n);
+        field.face.assign(n, static_cast<std::uint32_t>(jobs[0].face));
+    } else {
+        resize_large(field.point, n);
+        resize_large(field.normal, n);
+        resize_large(field.area, n);
+        resize_large(field.face, n);
+        field.flags.resize(n);
+        resize_large(field.triangles, first_triangle.back());
+        parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                FaceSamples& s = jobs[i].samples;
+                const auto at = static_cast<std::ptrdiff_t>(first[i]);
+                std::copy(s.point.begin(), s.point.end(), field.point.begin() + at);
+                std::copy(s.normal.begin(), s.normal.end(), field.normal.begin() + at);
+                std::copy(s.area.begin(), s.area.end(), field.area.begin() + at);
+                std::copy(s.flags.begin(), s.flags.end(), field.flags.begin() + at);
+                std::fill_n(field.face.begin() + at, s.point.size(),
+                            static_cast<std::uint32_t>(jobs[i].face));
+                const auto base = static_cast<std::uint32_t>(first[i]);
+                Triangle* out = field.triangles.data() + first_triangle[i];
+                for (const Triangle& t : s.triangles)
+                    *out++ = {t[0] + base, t[1] + base, t[2] + base};
+                s = {};
+            }
+        });
+    }
+    resize_large(field.stock_height, n);
+    resize_large(field.height, n);
 }
 
 Fact not_sampled(const Shape::Impl& impl, std::size_t face) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 
 namespace beltgrinding {
@@ -21,6 +22,8 @@ constexpr double kMostReach = 40.0;               // the same: a great depth mus
 constexpr double kSameSide = 0.5;                 // cosine between normals of one face's one side
 constexpr double kMostLean = 80.0 * kDegree;      // between ray and normal
 constexpr std::size_t kBlock = 4096;              // samples per task
+constexpr std::size_t kWayBlock = 256;            // ways per task
+constexpr std::size_t kTriangleBlock = 1 << 16;   // triangles per task
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// A way along a border, from sample to sample, the face to the left; and the normals that the face
@@ -47,17 +50,33 @@ class WayGrid {
   public:
     WayGrid(const HeightField& field, const std::vector<Way>& ways, double reach, double size)
         : size_(size) {
-        for (std::uint32_t w = 0; w < ways.size(); ++w) {
+        // first[w + 1]: how many cubes come to way w, then where its entries end.
+        std::vector<std::size_t> first(ways.size() + 1, 0);
+        const auto corners = [&](std::size_t w) {
             Box box(field.point[ways[w].from]);
             box.extend(field.point[ways[w].to]);
-            const Cube low = cube_of(box.min() - Vec3::Constant(reach));
-            const Cube high = cube_of(box.max() + Vec3::Constant(reach));
-            for (std::int64_t x = low.x(); x <= high.x(); ++x)
-                for (std::int64_t y = low.y(); y <= high.y(); ++y)
-                    for (std::int64_t z = low.z(); z <= high.z(); ++z)
-                        entries_.emplace_back(key(Cube(x, y, z)), w);
-        }
-        std::sort(entries_.begin(), entries_.end());
+            return std::pair(cube_of(box.min() - Vec3::Constant(reach)),
+                             cube_of(box.max() + Vec3::Constant(reach)));
+        };
+        parallel_blocks(ways.size(), kWayBlock, {}, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t w = begin; w < end; ++w) {
+                const auto [low, high] = corners(w);
+                first[w + 1] = static_cast<std::size_t>((high - low + Cube::Constant(1)).prod());
+            }
+        });
+        for (std::size_t w = 0; w < ways.size(); ++w) first[w + 1] += first[w];
+        resize_large(entries_, first.back());
+        parallel_blocks(ways.size(), kWayBlock, {}, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t w = begin; w < end; ++w) {
+                const auto [low, high] = corners(w);
+                auto* out = entries_.data() + first[w];
+                for (std::int64_t x = low.x(); x <= high.x(); ++x)
+                    for (std::int64_t y = low.y(); y <= high.y(); ++y)
+                        for (std::int64_t z = low.z(); z <= high.z(); ++z)
+                            *out++ = {key(Cube(x, y, z)), static_cast<std::uint32_t>(w)};
+            }
+        });
+        parallel_sort(entries_);
     }
 
     using Entries = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
@@ -95,13 +114,24 @@ class WayGrid {
 };
 
 std::vector<Way> ways_along_borders(const HeightField& field) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (const Triangle& t : field.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-            if ((field.flags[a] & field.flags[b] & kOnBoundary) != 0) found.emplace_back(a, b);
-        }
-    }
+    using Side = std::pair<std::uint32_t, std::uint32_t>;
+    const std::size_t blocks = (field.triangles.size() + kTriangleBlock - 1) / kTriangleBlock;
+    std::vector<std::vector<Side>> of_block(blocks);
+    parallel_blocks(field.triangles.size(), kTriangleBlock, {},
+                    [&](std::size_t begin, std::size_t end) {
+                        std::vector<Side>& found = of_block[begin / kTriangleBlock];
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const Triangle& t = field.triangles[i];
+                            for (std::size_t k = 0; k < 3; ++k) {
+                                const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+                                if ((field.flags[a] & field.flags[b] & kOnBoundary) != 0)
+                                    found.emplace_back(a, b);
+                            }
+                        }
+                    });
+    std::vector<Side> found;
+    for (const std::vector<Side>& some : of_block)
+        found.insert(found.end(), some.begin(), some.end());
     std::sort(found.begin(), found.end());
     std::vector<Way> ways;
     for (const auto& [a, b] : found)
@@ -119,9 +149,9 @@ std::vector<Way> sharp_ways(const HeightField& field) {
     const std::vector<Way> ways = ways_along_borders(field);
     const double together = kTogether * field.spacing;
     const WayGrid grid(field, ways, together, field.spacing);
-    WayGrid::Neighbourhood last;
     // The normal beyond `way` at `p`, which is on it; zero where the edge is not sharp.
-    const auto beyond = [&](const Way& way, std::uint32_t sample, std::uint32_t& face) {
+    const auto beyond = [&](const Way& way, std::uint32_t sample, WayGrid::Neighbourhood& last,
+                            std::uint32_t& face) {
         const Vec3 p = field.point[sample];
         const Vec3f normal = field.normal[sample];
         const Vec3f along = (field.point[way.to] - field.point[way.from]).cast<float>();
@@ -146,15 +176,23 @@ std::vector<Way> sharp_ways(const HeightField& field) {
         });
         return found;
     };
+    std::vector<Way> found = ways;
+    std::vector<char> is_sharp(ways.size(), 0);
+    parallel_blocks(ways.size(), kWayBlock, {}, [&](std::size_t begin, std::size_t end) {
+        WayGrid::Neighbourhood last;
+        for (std::size_t w = begin; w < end; ++w) {
+            Way& way = found[w];
+            std::uint32_t one = 0, other = 0;
+            way.at_from = beyond(way, way.from, last, one);
+            way.at_to = beyond(way, way.to, last, other);
+            if (way.at_from.isZero() || way.at_to.isZero() || one != other) continue;
+            way.beyond = one;
+            is_sharp[w] = 1;
+        }
+    });
     std::vector<Way> sharp;
-    for (Way way : ways) {
-        std::uint32_t one = 0, other = 0;
-        way.at_from = beyond(way, way.from, one);
-        way.at_to = beyond(way, way.to, other);
-        if (way.at_from.isZero() || way.at_to.isZero() || one != other) continue;
-        way.beyond = one;
-        sharp.push_back(way);
-    }
+    for (std::size_t w = 0; w < found.size(); ++w)
+        if (is_sharp[w] != 0) sharp.push_back(found[w]);
     return sharp;
 }
 

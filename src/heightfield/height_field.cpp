@@ -31,7 +31,7 @@ std::size_t HeightField::bytes() const {
            rays.capacity() * sizeof(Vec3f) + area.capacity() * sizeof(float) +
            stock_height.capacity() * sizeof(float) + height.capacity() * sizeof(double) +
            face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
-           height_sd.capacity() * sizeof(float) + trace.bytes() +
+           (height_sd.capacity() + measured.capacity()) * sizeof(float) + trace.bytes() +
            triangles.capacity() * sizeof(Triangle);
 }
 

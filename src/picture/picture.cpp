@@ -4,11 +4,14 @@
 #include "picture/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "rays/ray_scene.h"
@@ -20,6 +23,7 @@ constexpr std::size_t kMostPixels = 8192;  // a side
 constexpr std::size_t kRays = 2;           // a pixel, in both directions
 constexpr std::size_t kRowsOfTask = 8;     // pixels
 constexpr std::size_t kPointsOfTask = 16;  // of lines of sight
+constexpr std::size_t kWaysOfTask = 8;     // along which the farthest is sought
 constexpr float kAmbient = 0.5F;           // share of the light that comes from everywhere
 constexpr float kCreaseCosine = 0.82F;  // 35 degrees: beyond the facets of a smooth triangulation
 constexpr float kDepthJump = 6.0F;      // rays' distances that a surface leaps at an outline
@@ -93,15 +97,18 @@ struct Renderer::Scene {
     std::optional<RayScene> rays;
 
     void build();
-    Spot spot(const View& view, float x, float y) const;
+    /// What a row of rays meets, `y` rays down.
+    void row(const View& view, float y, std::span<Spot> spots) const;
+    Spot spot(const View& view, const RayScene::Hit& hit) const;
     View view_of(const Camera& camera, std::size_t width, std::size_t height) const;
 };
 
 void Renderer::Scene::build() {
     std::vector<TriangleMesh> meshes(surfaces.size());
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        reserve_large(meshes[k].triangles, surfaces[k].triangles.size());
         meshes[k].triangles = surfaces[k].triangles;
-        meshes[k].vertices.reserve(surfaces[k].vertices.size());
+        reserve_large(meshes[k].vertices, surfaces[k].vertices.size());
         for (const Vec3& v : surfaces[k].vertices)
             meshes[k].vertices.push_back((v - origin).cast<float>());
     }
@@ -141,10 +148,22 @@ View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size
     return view;
 }
 
-Spot Renderer::Scene::spot(const View& view, float x, float y) const {
-    const Vec3f from = view.origin + x * view.step * view.right + y * view.step * view.down;
-    const RayScene::Hit hit =
-        rays->first(from, view.into, 0.0F, std::numeric_limits<float>::infinity());
+void Renderer::Scene::row(const View& view, float y, std::span<Spot> spots) const {
+    std::array<Vec3f, RayScene::kTogether> from;
+    std::array<RayScene::Hit, RayScene::kTogether> hits;
+    for (std::size_t first = 0; first < spots.size(); first += from.size()) {
+        const std::size_t count = std::min(from.size(), spots.size() - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            const float x = static_cast<float>(first + i) + 0.5F;
+            from[i] = view.origin + x * view.step * view.right + y * view.step * view.down;
+        }
+        rays->first_together({from.data(), count}, view.into, 0.0F,
+                             std::numeric_limits<float>::infinity(), {hits.data(), count});
+        for (std::size_t i = 0; i < count; ++i) spots[first + i] = spot(view, hits[i]);
+    }
+}
+
+Spot Renderer::Scene::spot(const View& view, const RayScene::Hit& hit) const {
     Spot spot;
     if (hit.distance < 0.0F) return spot;
     const ColouredSurface& surface = surfaces[hit.mesh];
@@ -212,6 +231,35 @@ std::vector<std::uint8_t> Renderer::seen(const std::vector<Vec3>& points,
     return seen;
 }
 
+std::vector<Vec3> Renderer::farthest(const std::vector<Vec3>& directions) const {
+    std::vector<Vec3> found;
+    for (const ColouredSurface& surface : scene_->surfaces) {
+        const std::vector<Vec3>& vertices = surface.vertices;
+        if (vertices.empty()) continue;
+        std::vector<std::array<std::size_t, 2>> ends(directions.size());
+        parallel_blocks(directions.size(), kWaysOfTask, {},
+                        [&](std::size_t begin, std::size_t end) {
+                            const std::size_t count = end - begin;
+                            std::array<double, kWaysOfTask> low{}, high{};
+                            low.fill(std::numeric_limits<double>::infinity());
+                            high.fill(-std::numeric_limits<double>::infinity());
+                            for (std::size_t v = 0; v < vertices.size(); ++v) {
+                                for (std::size_t d = 0; d < count; ++d) {
+                                    const double along = directions[begin + d].dot(vertices[v]);
+                                    if (along < low[d]) low[d] = along, ends[begin + d][0] = v;
+                                    if (along > high[d]) high[d] = along, ends[begin + d][1] = v;
+                                }
+                            }
+                        });
+        std::vector<std::size_t> all;
+        for (const auto& two : ends) all.insert(all.end(), two.begin(), two.end());
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        for (const std::size_t v : all) found.push_back(vertices[v]);
+    }
+    return found;
+}
+
 Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t height,
                          const RunContext& context) const {
     const View view = scene_->view_of(camera, width, height);
@@ -223,10 +271,8 @@ Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t he
         std::vector<Spot> spots(rows * columns);
         for (std::size_t r = 0; r < rows; ++r) {
             if (context.cancelled()) return;
-            for (std::size_t c = 0; c < columns; ++c) {
-                spots[r * columns + c] = scene_->spot(view, static_cast<float>(c) + 0.5F,
-                                                      static_cast<float>(begin * kRays + r) + 0.5F);
-            }
+            scene_->row(view, static_cast<float>(begin * kRays + r) + 0.5F,
+                        {spots.data() + r * columns, columns});
         }
         for (std::size_t y = begin; y < end; ++y) {
             for (std::size_t x = 0; x < width; ++x) {

@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "arrays.h"
+#include "base/large_memory.h"
 #include "picture/picture.h"
 
 namespace beltgrinding::python {
@@ -17,7 +18,8 @@ std::vector<Row> rows_of(const Array<T>& array, const char* what) {
     if (array.ndim() != 2 || array.shape(1) != 3)
         throw InputError("call.picture_rows", "picture: {name} have the shape (n, 3)",
                          {{"name", what}});
-    std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
+    std::vector<Row> rows;
+    resize_large(rows, static_cast<std::size_t>(array.shape(0)));
     std::copy_n(array.data(), array.size(), reinterpret_cast<T*>(rows.data()));
     return rows;
 }
@@ -97,7 +99,24 @@ void bind_picture(py::module_& m) {
             },
             py::arg("points"), py::arg("directions"), py::arg("slack"),
             "Lines of sight, (n, m) uint8: 1 where nothing stands between points (n, 3) mm and a "
-            "camera far away in directions (m, 3); what lies within slack mm does not hide.");
+            "camera far away in directions (m, 3); what lies within slack mm does not hide.")
+        .def(
+            "farthest",
+            [](const Renderer& renderer, const Array<double>& directions) {
+                const auto ways = rows_of<Vec3, double>(directions, "directions");
+                std::vector<Vec3> found;
+                {
+                    const py::gil_scoped_release release;
+                    found = renderer.farthest(ways);
+                }
+                py::array_t<double> rows({static_cast<py::ssize_t>(found.size()), py::ssize_t{3}});
+                std::copy_n(reinterpret_cast<const double*>(found.data()), 3 * found.size(),
+                            rows.mutable_data());
+                return rows;
+            },
+            py::arg("directions"),
+            "(k, 3) mm: the vertices that lie farthest along each of directions (m, 3), and "
+            "against it.");
 }
 
 }  // namespace beltgrinding::python

@@ -6,6 +6,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -20,6 +22,14 @@ struct DeviceDeleter {
 struct SceneDeleter {
     void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 };
+
+RayScene::Hit met(float distance, const Vec3f& normal, const Vec3f& direction,
+                  std::uint32_t triangle, std::uint32_t mesh, float u, float v) {
+    const float along = normal.dot(direction);
+    const float length = normal.norm() * direction.norm();
+    const float cosine = length > 0.0F ? std::abs(along) / length : 0.0F;
+    return {distance, along > 0.0F, cosine, triangle, mesh, normal, u, v};
+}
 
 }  // namespace
 
@@ -92,12 +102,45 @@ RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float
     rtcIntersect1(impl_->scene.get(), &context, &ray);
 #endif
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const Vec3f normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-    const float along = normal.dot(direction);
-    const float length = normal.norm() * direction.norm();
-    const float cosine = length > 0.0F ? std::abs(along) / length : 0.0F;
-    return {ray.ray.tfar,   along > 0.0F, cosine,    ray.hit.primID,
-            ray.hit.geomID, normal,       ray.hit.u, ray.hit.v};
+    return met(ray.ray.tfar, Vec3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z), direction,
+               ray.hit.primID, ray.hit.geomID, ray.hit.u, ray.hit.v);
+}
+
+void RayScene::first_together(std::span<const Vec3f> origins, const Vec3f& direction, float near,
+                              float far, std::span<Hit> hits) const {
+    RTCRayHit16 rays{};
+    alignas(64) std::array<int, kTogether> valid{};
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        valid[i] = -1;
+        rays.ray.org_x[i] = origins[i].x();
+        rays.ray.org_y[i] = origins[i].y();
+        rays.ray.org_z[i] = origins[i].z();
+        rays.ray.dir_x[i] = direction.x();
+        rays.ray.dir_y[i] = direction.y();
+        rays.ray.dir_z[i] = direction.z();
+        rays.ray.tnear[i] = near;
+        rays.ray.tfar[i] = far;
+        rays.ray.mask[i] = ~0U;
+        rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), impl_->scene.get(), &rays, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), impl_->scene.get(), &context, &rays);
+#endif
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        hits[i] = {};
+        if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        hits[i] =
+            met(rays.ray.tfar[i], Vec3f(rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]),
+                direction, rays.hit.primID[i], rays.hit.geomID[i], rays.hit.u[i], rays.hit.v[i]);
+    }
 }
 
 }  // namespace beltgrinding

@@ -163,5 +163,14 @@ TEST(Renderer, SeesPastWhatDoesNotHideAPoint) {
     EXPECT_TRUE(renderer.seen({}, ways, 0.01).empty());
 }
 
+TEST(Renderer, KnowsItsFarthestVertices) {
+    const Renderer renderer({square(4.0, 0.0, 1.0, kRed), square(20.0, 0.0, 0.0, kBlue)});
+    const std::vector<Vec3> ways{{0, 0, 1}, {1, 1, 0}};
+    // Of each surface the first that is no nearer than another, and both ends of its diagonal.
+    const std::vector<Vec3> expected{{-2, -2, 1}, {2, 2, 1}, {-10, -10, 0}, {10, 10, 0}};
+    EXPECT_EQ(renderer.farthest(ways), expected);
+    EXPECT_TRUE(renderer.farthest({}).empty());
+}
+
 }  // namespace
 }  // namespace beltgrinding

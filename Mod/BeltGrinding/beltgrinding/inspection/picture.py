@@ -27,6 +27,7 @@ STEEP = 30.0  # degrees from an axis within which it cannot be up
 CLOSE_UP = 40  # samples from the lower to the upper border of a close-up, at least
 CLOSEST_SHARE = 0.3  # of the field's diagonal, at most
 FONT = "DejaVuSans-Bold.ttf"
+PNG_LEVEL = 4  # of 9: half the time of 6 for a twentieth more bytes
 HIDDEN = 2.0  # samples that a point may lie behind what the picture shows there
 
 
@@ -100,8 +101,9 @@ class Studio:
                     "colours": np.array([PART_COLOUR], dtype=np.uint32),
                 }
             )
-        self.corners = [_corners(self.points)] + [_corners(s["vertices"]) for s in surfaces[1:]]
         self.renderer = core.Renderer(surfaces, context)
+        self.corners = self.renderer.farthest(_ways())
+        self.lengths = field.points.max(axis=0) - field.points.min(axis=0)
 
     def view(
         self, target, direction, up, height, columns=WIDTH, rows=HEIGHT, near=np.inf, context=None
@@ -119,7 +121,7 @@ class Studio:
         """A ``View`` that just holds the part; without a size, of the part's own proportions."""
         direction, up = square(direction, up)
         axes = np.stack([np.cross(direction, up), up, direction])
-        seen = np.vstack(self.corners) @ axes.T
+        seen = self.corners @ axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         wide, tall = (high - low)[:2]
         if columns is None:
@@ -148,11 +150,11 @@ class Studio:
         normal = np.asarray(normal, dtype=float)
         low, high = self.renderer.extents
         most = MARGIN * float(np.linalg.norm(np.subtract(high, low)))
-        largest = CLOSEST_SHARE * float(np.linalg.norm(np.ptp(self.field.points, axis=0)))
+        largest = CLOSEST_SHARE * float(np.linalg.norm(self.lengths))
         height = min(max(min(2.0 * extent, largest), CLOSE_UP * self.field.spacing), most)
         slack = HIDDEN * self.field.spacing
         away, _ = sight.towards(self.renderer, *self._around(point, normal, extent), normal, slack)
-        up, near = _up_for(away, self.field), 2.0 * most
+        up, near = _up_for(away, self.lengths), 2.0 * most
         while True:
             size = CLOSE_WIDTH, CLOSE_HEIGHT
             view = self.view(point, -away, up, height, *size, near, context)
@@ -163,7 +165,8 @@ class Studio:
     def _around(self, point, normal, extent):
         """(points, normals) of a place: the point itself, and the samples around on its side."""
         reach = max(0.5 * extent, 2.0 * self.field.spacing)
-        near = np.flatnonzero(np.linalg.norm(self.field.points - point, axis=1) < reach)
+        near = np.flatnonzero(np.abs(self.field.points[:, 0] - point[0]) < reach)
+        near = near[np.linalg.norm(self.field.points[near] - point, axis=1) < reach]
         near = near[self.field.normals[near] @ normal > SAME_SIDE]
         near = near[sight.thinned(len(near), AROUND)]
         points = np.vstack([point, self.points[near]])
@@ -186,22 +189,18 @@ def smooth_normals(mesh):
     return (found / np.maximum(length, 1e-300)).astype(np.float32)
 
 
-def _corners(points):
-    """Points whose extents are those of ``points`` in any direction, or nearly so: the farthest ones
-    along directions all around.
+def _ways():
+    """(n, 3) directions all around: the points that are farthest along them have the extents of all in any
+    direction, or nearly so.
     """
     step = np.linspace(0.0, np.pi, 13)[:-1]
-    ways = [
-        [np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)]
-        for a in step
-        for b in np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13)
-    ]
-    found = np.unique([k for way in ways for k in _ends(points @ np.array(way))])
-    return points[found]
-
-
-def _ends(values):
-    return int(np.argmin(values)), int(np.argmax(values))
+    return np.array(
+        [
+            [np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)]
+            for a in step
+            for b in np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13)
+        ]
+    )
 
 
 def square(direction, up):
@@ -211,13 +210,12 @@ def square(direction, up):
     return direction, up / np.linalg.norm(up)
 
 
-def _up_for(out, field):
+def _up_for(out, lengths):
     """The axis of the part that is upright where one looks against ``out``: z if it can be, else the
-    one along which the field is longest.
+    one along which the field is longest. ``lengths``: the field's along the axes.
     """
     if abs(out[2]) < np.cos(np.radians(STEEP)):
         return np.array([0.0, 0.0, 1.0])
-    lengths = np.ptp(field.points, axis=0)
     return np.eye(3)[0 if lengths[0] < lengths[1] and abs(out[0]) < 0.7 else 1]
 
 
@@ -233,5 +231,5 @@ def png(pixels):
     """Bytes of a PNG file of (rows, columns, 3) uint8, which says by what it was made."""
     file, about = io.BytesIO(), PngInfo()
     about.add_text("Software", "BeltGrinding")
-    Image.fromarray(pixels).save(file, "PNG", pnginfo=about)
+    Image.fromarray(pixels).save(file, "PNG", pnginfo=about, compress_level=PNG_LEVEL)
     return file.getvalue()

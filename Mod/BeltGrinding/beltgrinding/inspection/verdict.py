@@ -4,6 +4,8 @@ Its form is Resources/schema/verdict.schema.json; docs/verification.md tells wha
 Faces are numbered from 1 as FreeCAD does; programs, poses and motions from 0 as in events.json.
 """
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 
 from ..base.messages import fact_data
@@ -37,9 +39,11 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
         unresolved = counted if unresolved is None else unresolved
     zones = job["inspection"].get("zones", [])
     rest = job["inspection"]["tolerance_mm"]
-    found = judge(job, field)
+    with ThreadPoolExecutor(1) as beside:  # each uses one processor, and holds up no other Python
+        waviness = beside.submit(_waviness, field, motions, context)
+        found = judge(job, field)
+        waves = {face["face"]: face for face in waviness.result()}
     traced = field.trace is not None
-    waves = {face["face"]: face for face in _waviness(field, motions, context)}
 
     faces = []
     for region in found["faces"]:

@@ -1,8 +1,10 @@
 """HTML and SVG from elements, in which no text of a user can become markup."""
 
 import base64
+import re
 from html import escape
 
+FORBIDDEN = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 VOID = {"meta", "link", "br", "img", "col", "input"}  # HTML: elements without an end
 
 
@@ -42,14 +44,7 @@ def join(children):
 def _text(value):
     """Without what no document may hold: control characters, halves of surrogate pairs."""
     text = f"{value:.2f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
-    return "".join(
-        c if c in "\t\n" or c >= " " and not "\x7f" <= c <= "\x9f" and not _outside(c) else "\ufffd"
-        for c in text
-    )
-
-
-def _outside(c):
-    return "\ud800" <= c <= "\udfff" or c in "\ufffe\uffff"
+    return FORBIDDEN.sub("\ufffd", text)
 
 
 def data_uri(data, kind):

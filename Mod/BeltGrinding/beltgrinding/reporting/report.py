@@ -47,7 +47,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     printer = _printer() if only_pdf or pdf is not None else None
     context = context or core.RunContext()
     content = load(result, title, notes, context)
-    plain, whole = render(content, words, context, not only_pdf)
+    plain, whole = render(content, words, context, not only_pdf, printer is not None)
     context.throw_if_cancelled()
     printed = None if printer is None else printer(plain)
     files = {output: printed if only_pdf else whole.encode()}
@@ -108,15 +108,15 @@ def _verdict(result, shape, notes):
         return None
 
 
-def render(content, words, context=None, turning=True):
+def render(content, words, context=None, turning=True, still=True):
     """(without, with) the 3D view: the HTML texts of a ``Content`` in the words of a ``Language``; not
-    ``turning``: twice without.
+    ``turning``: twice without; not ``still``: None in place of the first.
     """
     result = content.result
     scale = colour_scale(result.job)
     found = worst_spots.worst(result.field, scale[:2], content.verdict)
     drawn = pictures.draw(result.field, scale, content.shape, found, context)
-    plain = page.document(content, words, scale, found, drawn)
+    plain = page.document(content, words, scale, found, drawn) if still or not turning else None
     if not turning:
         return plain, plain
     lacking = view.missing(words)

@@ -5,6 +5,7 @@
 #include "beltgrinding/run_context.h"
 
 #ifdef __SANITIZE_THREAD__
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <thread>
@@ -13,6 +14,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/partitioner.h>
 #endif
 
@@ -71,6 +73,16 @@ void parallel_blocks(std::size_t count, std::size_t block, const RunContext& con
         tbb::simple_partitioner());
 #endif
     context.throw_if_cancelled();
+}
+
+/// Sorts what is never equal, so that the order is the same on any number of threads.
+template <class Values>
+void parallel_sort(Values& values) {
+#ifdef __SANITIZE_THREAD__
+    std::sort(values.begin(), values.end());
+#else
+    tbb::parallel_sort(values.begin(), values.end());
+#endif
 }
 
 /// Does both, side by side where a thread is free.

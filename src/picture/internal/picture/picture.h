@@ -63,6 +63,10 @@ class Renderer {
     std::vector<std::uint8_t> seen(const std::vector<Vec3>& points,
                                    const std::vector<Vec3>& directions, double slack) const;
 
+    /// Of all vertices those that lie farthest along each direction, and against it; each once, in
+    /// the surfaces' order.
+    std::vector<Vec3> farthest(const std::vector<Vec3>& directions) const;
+
   private:
     struct Scene;
     std::unique_ptr<Scene> scene_;

@@ -13,6 +13,7 @@ COLUMNS = 3
 MOST_IN_MATRIX = 6
 MOST_POINTS = 3000
 LETTERS = 9
+INK, RANGE = "#23272e", "#dfe3e8"
 VERDICT_COLOURS = {"pass": GREEN, "fail": RED, "unknown": GREY}
 LEGEND = 0.3  # inches
 CHOICES_SHOWN = 12  # letters of a text on an axis
@@ -21,26 +22,30 @@ CHOICES_SHOWN = 12  # letters of a text on an axis
 def tornado(effects, middle, figure, words, dpi=110):
     """``effects``: as ``effects.main_effects``, of which those that do most are drawn; ``middle``: the figure's mean over
     all runs; ``figure``: what it is called."""
-    shown = sorted(effects, key=lambda one: abs(one["swing"]))[-MOST_BARS:]
-    drawn = plotting.figure(7.2, 1.3 + 0.42 * len(shown))
+    shown = sorted(effects, key=lambda one: one["range"])[-MOST_BARS:]
+    drawn = plotting.figure(7.2, 1.3 + 0.46 * len(shown))
     axes = drawn.add_subplot()
     labels = []
     for row, one in enumerate(shown):
+        means = [level["mean"] for level in one["levels"]]
+        axes.barh(row, one["range"], left=min(means), color=RANGE, height=0.8)
         first, last = _ends(one)
-        for level, colour in ((first, ORANGE), (last, BLUE)):
-            axes.barh(row, level["mean"] - middle, left=middle, color=colour, height=0.62)
+        for level, colour, shift in ((first, ORANGE, 0.17), (last, BLUE, -0.17)):
+            axes.barh(row + shift, level["mean"] - middle, left=middle, color=colour, height=0.3)
             if level["low"] is not None:
-                axes.plot([level["low"], level["high"]], [row, row], color="#23272e", lw=1.0)
-        labels.append(f"{_short(one['variable'], 34)}\n{_span(first, words)} … {_span(last, words)}")
+                axes.plot([level["low"], level["high"]], [row + shift] * 2, color=INK, lw=1.0)
+        ends = f"{_span(first, words)}  →  {_span(last, words)}"
+        labels.append(f"{_short(one['variable'], 34)}\n{ends}")
     axes.set_yticks(range(len(shown)), labels, fontsize=LETTERS - 0.5)
-    axes.axvline(middle, color="#23272e", lw=1.0)
+    axes.axvline(middle, color=INK, lw=1.0)
     axes.set_xlabel(figure, fontsize=LETTERS)
+    entries = [(ORANGE, "first level"), (BLUE, "last level"), (RANGE, "all levels")]
     _legend(
         axes,
-        [(ORANGE, words("first level")), (BLUE, words("last level"))],
+        [(colour, words(text)) for colour, text in entries],
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
-        ncol=2,
+        ncol=3,
     )
     plotting.grid(axes, "x")
     _numbers(axes.xaxis, words)
@@ -59,7 +64,7 @@ def _ends(one):
 def _span(level, words):
     if level["from"] == level["to"]:
         return _value(level["from"], words)
-    return f"{_value(level['from'], words)}–{_value(level['to'], words)}"
+    return f"{_value(level['from'], words)} … {_value(level['to'], words)}"
 
 
 def _value(value, words):
@@ -72,8 +77,8 @@ def _short(text, most):
 
 def effects(found, middle, figure, words, dpi=110):
     """The mean of a figure over the levels of each variable, with its interval; arguments as ``tornado``."""
-    shown = sorted(found, key=lambda one: -abs(one["swing"]))[: 4 * COLUMNS]
-    columns = min(COLUMNS, len(shown))
+    shown = sorted(found, key=lambda one: -one["range"])[: 4 * COLUMNS]
+    columns = _columns(len(shown))
     rows = -(-len(shown) // columns)
     drawn = plotting.figure(0.6 + 2.6 * columns, 2.3 * rows + 0.2)
     first = None
@@ -110,7 +115,7 @@ def scatter(variables, values, verdicts, figure, words, dpi=110):
     """A figure against each variable, a point a run in the colour of its verdict. ``variables``: {name: (n,)};
     ``values``: (n,); ``verdicts``: (n,) "pass", "fail" or "unknown", or None."""
     names = list(variables)[: 4 * COLUMNS]
-    columns = min(COLUMNS, len(names))
+    columns = _columns(len(names))
     rows = -(-len(names) // columns)
     drawn = plotting.figure(0.6 + 2.6 * columns, 2.3 * rows + 0.5)
     first, some = None, _some(len(values))
@@ -176,7 +181,7 @@ def yields(rows, words, dpi=110):
         axes.barh(place, share, color=GREEN, height=0.62)
         if one["low"] is not None:
             ends = [100.0 * one["low"], 100.0 * one["high"]]
-            axes.plot(ends, [place, place], color="#23272e", lw=1.6, marker="|", ms=8)
+            axes.plot(ends, [place, place], color=INK, lw=1.6, marker="|", ms=8)
     axes.set_yticks(range(len(rows)), [_short(text, 40) for text, _ in reversed(rows)])
     axes.tick_params(labelsize=LETTERS)
     axes.set_xlim(0.0, 100.0)
@@ -195,9 +200,9 @@ def indices(found, names, figure, words, dpi=110):
         for row, k in enumerate(order):
             value, low, high = found[kind][k]
             axes.barh(row + shift, max(value, 0.0), color=colour, height=0.36)
-            axes.plot([low, high], [row + shift] * 2, color="#23272e", lw=1.2, marker="|", ms=5)
+            axes.plot([low, high], [row + shift] * 2, color=INK, lw=1.2, marker="|", ms=5)
     axes.set_yticks(range(len(order)), [_short(names[k], 34) for k in order], fontsize=LETTERS)
-    axes.axvline(0.0, color="#23272e", lw=0.8)
+    axes.axvline(0.0, color=INK, lw=0.8)
     axes.set_xlabel(words("share of the variance of: {figure}", figure=figure), fontsize=LETTERS)
     _legend(
         axes,
@@ -209,6 +214,10 @@ def indices(found, names, figure, words, dpi=110):
     plotting.grid(axes, "x")
     _numbers(axes.xaxis, words)
     return plotting.saved(drawn, dpi=dpi)
+
+
+def _columns(count):
+    return 2 if count == 4 else min(COLUMNS, count)
 
 
 def _some(count):

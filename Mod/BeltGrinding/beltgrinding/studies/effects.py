@@ -38,9 +38,9 @@ def main_effects(variables, figure, drawn=None, confidence=CONFIDENCE):
     """What each variable does to a figure, on average over the others.
 
     ``variables``: {name: (n,) numbers or text}; ``figure``: (n,) finite; ``drawn``: as ``resampling.counts``, None where
-    the runs are no sample: then nothing has an interval. Returns [dict(variable, swing, low, high, levels)]: a level is
-    dict(from, to, count, mean, low, high); the swing is the mean in the last level less that in the first, for text
-    the greatest mean less the least.
+    the runs are no sample: then nothing has an interval. Returns [dict(variable, swing, low, high, range, levels)]: a level
+    is dict(from, to, count, mean, low, high); the swing, with its interval, is the mean in the last level less that in
+    the first, for text the greatest mean less the least, as is the range for all.
     """
     found = []
     for name, values in variables.items():
@@ -62,6 +62,7 @@ def main_effects(variables, figure, drawn=None, confidence=CONFIDENCE):
                 "swing": float(means[last] - means[first]),
                 "low": _number(low[-1]),
                 "high": _number(high[-1]),
+                "range": float(np.ptp(means)),
                 "levels": [
                     {
                         "from": ends[k][0],

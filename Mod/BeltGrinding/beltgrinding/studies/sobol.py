@@ -23,31 +23,35 @@ def whole_rows(good, size):
     return np.asarray(good, dtype=bool).reshape(-1, size).all(axis=0)
 
 
-def of_blocks(inputs, figure, size, estimator="martinez", confidence=CONFIDENCE):
+def of_blocks(
+    inputs, figure, size, estimator="martinez", confidence=CONFIDENCE, second_order=False
+):
     """Indices from a design of blocks (A, B, and B or A with one column of the other for each variable), as
     OpenTURNS' SobolIndicesExperiment makes it.
 
     ``inputs``: (n, d), text as numbers of its choices; ``figure``: (n,), all finite; ``size``: runs of a block; n is
-    (d + 2) ``size`` or, with the blocks of the second order, (2 d + 2) ``size``. Returns dict(first, total), a list of
-    (value, low, high) each; None where the figure is the same in all runs or there are fewer than 16 rows. The
-    intervals are of the bootstrap. Martinez' estimator (2011) by default.
+    (d + 2) ``size`` or, with ``second_order`` and more than two variables, (2 d + 2) ``size``. Returns dict(first, total), a
+    list of (value, low, high) each; and second, a matrix of values, with ``second_order``. None where the figure is the
+    same in all runs or there are fewer than 16 rows. The intervals are of the bootstrap. Martinez' estimator (2011) by
+    default.
     """
     if is_constant(figure) or size < LEAST:
         return None
     ot = openturns.module()
     kind = getattr(ot, ESTIMATORS[estimator])
-    # Blocks of the second order are left out: the estimators of OpenTURNS tell the two by the number of rows alone.
-    rows = size * (inputs.shape[1] + 2)
     centred = (figure - figure.mean()) / figure.std()
-    found = kind(ot.Sample(inputs[:rows].tolist()), ot.Sample(centred[:rows, None].tolist()), size)
+    found = kind(ot.Sample(inputs.tolist()), ot.Sample(centred[:, None].tolist()), size)
     found.setUseAsymptoticDistribution(False)
     found.setBootstrapSize(BOOTSTRAP)
     found.setConfidenceLevel(confidence)
     ot.RandomGenerator.SetSeed(1)
-    return {
+    told = {
         "first": _rows(found.getFirstOrderIndices(), found.getFirstOrderIndicesInterval()),
         "total": _rows(found.getTotalOrderIndices(), found.getTotalOrderIndicesInterval()),
     }
+    if second_order:
+        told["second"] = np.array(found.getSecondOrderIndices()).tolist()
+    return told
 
 
 def _rows(values, interval):

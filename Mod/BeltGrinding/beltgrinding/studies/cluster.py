@@ -1,0 +1,258 @@
+"""A study's runs on Dask workers: what is sent, what comes back, and what is done when workers or the scheduler go.
+
+Records come back to whoever asked, who keeps them; workers need no common disk. A task tells a job by its hash, and files by
+theirs; what a worker does not have it asks for, and gets it with the task's next try.
+"""
+
+import collections
+import queue
+import time
+
+from ..engine import InputError, core
+from . import clusters, one, table
+
+LOOK_S = 0.1  # between two looks for a cancellation
+CHECK_S = 2.0  # between two looks at the scheduler
+WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
+MORE = 2  # tasks waiting beside each one that is run
+MOST_DEATHS = 3  # times that Dask gives a run up because its workers died (each after a few of them)
+MOST_TRIES = 20  # of sending what a worker needs
+RESTARTS = 3  # of a local cluster
+
+
+class Lost(Exception):
+    """The scheduler has gone, or another one has taken its place."""
+
+
+def run(where, tasks, blob, taken, context, told=None):
+    """Runs ``tasks`` (dicts as ``one.in_worker`` takes them) and calls ``taken(record)`` for each as it comes.
+
+    ``where``: ``clusters.Local`` or ``There``; ``blob(sha256)``: the bytes of what a worker asks for; ``told(workers)``: how
+    many processes work, when that changes. Raises InputError, Cancelled; what was taken stays taken.
+    """
+    distributed = clusters.distributed()
+    waiting = collections.deque(tasks)
+    restarts = 0
+    try:
+        while waiting:
+            context.throw_if_cancelled()
+            if where.own and not where.alive():
+                restarts += 1
+                if restarts > RESTARTS:
+                    raise _gone(where, len(waiting))
+            where.start(context)
+            client = _connected(distributed, where, len(waiting), context)
+            session = _Session(distributed, client, waiting, blob, taken, context, told)
+            try:
+                session.work()
+            except Lost:
+                session.put_back()
+            finally:
+                session.close()
+    finally:
+        where.close()
+
+
+def _connected(distributed, where, open_runs, context):
+    """A client. Raises InputError where nobody answers, Cancelled."""
+    end, reason = time.monotonic() + WAIT_S, None
+    while time.monotonic() < end:
+        context.throw_if_cancelled()
+        try:
+            return distributed.Client(
+                where.address, timeout=clusters.ANSWER_S, set_as_default=False
+            )
+        except (OSError, ValueError, TimeoutError) as error:
+            reason = error
+            if isinstance(error, ValueError):  # the address is none
+                break
+            time.sleep(LOOK_S)
+            if where.own and not where.alive():
+                break
+    raise _gone(where, open_runs, reason)
+
+
+def _gone(where, open_runs, reason=None):
+    return InputError(
+        "studies.no_scheduler",
+        "no scheduler answers at {address}{reason}; {open} runs are open, those that have ended are kept: start the same "
+        "study again when it is there",
+        address=where.address or "localhost",
+        reason=f" ({' '.join(str(reason).split())[:160]})" if reason else "",
+        open=open_runs,
+    )
+
+
+class _Session:
+    """One client's connection."""
+
+    def __init__(self, distributed, client, waiting, blob, taken, context, told):
+        self.distributed, self.client = distributed, client
+        self.waiting, self.blob, self.taken = waiting, blob, taken
+        self.context, self.told = context, told
+        self.flying = {}  # future's key: (task, future)
+        self.ended = queue.SimpleQueue()
+        self.deaths, self.tries = collections.Counter(), collections.Counter()
+        self.scheduler = None
+        self.workers = 0
+        self.number = 0
+
+    def work(self):
+        """Until all is done. Raises Lost, InputError, Cancelled."""
+        looked, alone = 0.0, time.monotonic()
+        while self.waiting or self.flying:
+            self.context.throw_if_cancelled()
+            if time.monotonic() - looked > CHECK_S:
+                self._look()
+                looked = time.monotonic()
+                alone = looked if self.workers else alone
+                if looked - alone > WAIT_S:
+                    raise InputError(
+                        "studies.no_workers",
+                        "the scheduler {address} has no workers; start some (dask-worker), and the same study again",
+                        address=self.client.scheduler.address,
+                    )
+            while self.waiting and len(self.flying) < (1 + MORE) * self.workers:
+                self._submit(self.waiting.popleft(), {})
+            try:
+                key = self.ended.get(timeout=LOOK_S)
+            except queue.Empty:
+                continue
+            if key in self.flying:
+                self._take(*self.flying.pop(key))
+
+    def put_back(self):
+        """What is under way is to be done again."""
+        self.waiting.extendleft(reversed([task for task, _ in self.flying.values()]))
+        self.flying.clear()
+
+    def close(self):
+        """Drops what is under way."""
+        try:
+            futures = [future for _, future in self.flying.values()]
+            if futures and self.client.status == "running":
+                self.client.cancel(futures, force=True)
+            self.client.close(timeout=clusters.ANSWER_S)
+        except Exception:  # of a connection that is gone; nothing is to be saved
+            pass
+
+    def _look(self):
+        """Who works, and whether it is still the same scheduler."""
+        try:
+            found = self.client.sync(
+                self.client.scheduler.identity, callback_timeout=clusters.ANSWER_S
+            )
+        except Exception:  # whatever a broken connection raises
+            raise Lost from None
+        if self.scheduler not in (None, found["id"]) or self.client.status != "running":
+            raise Lost
+        self.scheduler = found["id"]
+        workers = len(found["workers"])
+        if workers != self.workers and self.told is not None:
+            self.told(workers)
+        self.workers = workers
+
+    def _submit(self, task, blobs, worker=None):
+        self.number += 1
+        try:
+            future = self.client.submit(
+                work,
+                task,
+                blobs,
+                key=f"beltgrind-{task['job_hash']}-{self.number}",
+                pure=False,
+                workers=None if worker is None else [worker],
+                allow_other_workers=worker is not None,
+            )
+        except Exception:  # whatever a broken connection raises
+            self.waiting.appendleft(task)
+            raise Lost from None
+        self.flying[future.key] = (task, future)
+        future.add_done_callback(lambda done: self.ended.put(done.key))
+
+    def _take(self, task, future):
+        if future.status == "finished":
+            try:
+                answer, worker = future.result(timeout=clusters.ANSWER_S)
+            except Exception as error:
+                if isinstance(error, InputError):
+                    raise
+                self.waiting.appendleft(task)  # gone with its worker
+                return
+            self._answered(task, answer, worker)
+        elif future.status == "error":
+            self._failed(task, future)
+        else:  # cancelled, lost: with the scheduler
+            self.waiting.appendleft(task)
+            self._look()
+
+    def _answered(self, task, answer, worker):
+        if "versions" in answer:
+            raise InputError(
+                "studies.other_version",
+                "the worker {worker} has another engine, whose figures may differ: {there} there, {here} here; install the "
+                "same",
+                worker=worker,
+                there=_versions(answer["versions"]),
+                here=_versions(core.versions()),
+            )
+        if "needs" not in answer:
+            self.taken(answer)
+            return
+        self.tries[task["job_hash"]] += 1
+        if self.tries[task["job_hash"]] > MOST_TRIES:
+            raise InputError(
+                "studies.files_do_not_arrive",
+                "the worker {worker} asks again and again for the files of a run; is its disk full?",
+                worker=worker,
+            )
+        self._submit(task, {sha: self.blob(sha) for sha in answer["needs"]}, worker)
+
+    def _failed(self, task, future):
+        error = future.exception(timeout=clusters.ANSWER_S)
+        if isinstance(error, self.distributed.KilledWorker):
+            self.deaths[task["job_hash"]] += 1
+            if self.deaths[task["job_hash"]] < MOST_DEATHS:
+                self.waiting.append(task)
+                return
+            fact = core.Fact(
+                "studies.worker_died",
+                "each worker that was given it died; perhaps they have too little memory",
+            )
+            self.taken(broken_off(task["job_hash"], str(fact)))
+        elif isinstance(error, (ImportError, AttributeError)):
+            raise InputError(
+                "studies.worker_without_us",
+                "a worker has not this program, or another version of it: {reason}; install it there, or set PYTHONPATH",
+                reason=" ".join(str(error).split())[:200],
+            )
+        elif isinstance(error, OSError):
+            text = " ".join(str(error).split())[:200]
+            self.taken(broken_off(task["job_hash"], text))
+        else:
+            raise error
+
+
+def broken_off(job_hash, reason):
+    """The record of a run that did not come to an end, for reasons of its own no more than another try might show."""
+    return {
+        "job_hash": job_hash,
+        "status": table.FAILED,
+        "figures": {},
+        "error": reason,
+        "passing": True,
+        "field": None,
+        "seconds": 0.0,
+    }
+
+
+def _versions(held):
+    return ", ".join(f"{name} {version}" for name, version in held.items())
+
+
+def work(task, blobs):
+    """What a worker does: (the answer of ``one.in_worker``, the worker's address)."""
+    from distributed import get_worker
+
+    worker = get_worker()
+    return one.in_worker(task, blobs, worker.local_directory), worker.address

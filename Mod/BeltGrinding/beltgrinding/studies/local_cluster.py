@@ -1,0 +1,28 @@
+"""Dask's LocalCluster in a process of its own: ``python -m beltgrinding.studies.local_cluster WORKERS FOLDER``.
+
+So it needs nothing of the program that wants it: not its executable (FreeCAD's is no Python), nor that its script could be
+imported again by the workers, nor its terminal, whose Ctrl-C would reach them all. It prints the scheduler's address, and ends
+with all workers when its standard input ends, that is with whoever started it.
+"""
+
+import sys
+
+
+def main(workers, folder):
+    """Runs until standard input ends."""
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=True,
+        memory_limit=0,
+        dashboard_address=None,
+        local_directory=folder,
+    ) as cluster:
+        print(cluster.scheduler_address, flush=True)
+        sys.stdin.read()
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), sys.argv[2])

@@ -84,7 +84,7 @@ def answers(study, meta, table, context=None):
     }
     for place, name in enumerate(figures):
         context.throw_if_cancelled()
-        context.report_progress(place / len(figures))
+        context.report(place / len(figures))
         found["figures"][name] = _of_figure(
             name, table, sample, drawn, inputs, meta, study, context
         )
@@ -138,11 +138,11 @@ def _sample(table, meta, varied, done):
     rows = np.flatnonzero(done)
     if meta["method"] == "sobol_indices":
         groups = rows % meta["size"]
-    variables = {name: _plain(table[name][rows]) for name in varied}
+    variables = {name: plain(table[name][rows]) for name in varied}
     return Sample(rows, variables, groups, meta["method"] != "grid")
 
 
-def _plain(values):
+def plain(values):
     """Numbers as they are; truth values, lists and texts as texts."""
     if values.dtype.kind in "fiu":
         return values

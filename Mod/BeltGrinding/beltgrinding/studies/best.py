@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..engine import InputError
-from . import chaos, openturns
+from . import chaos, design
 
 GOALS = ("minimise", "maximise")
 TIE = 1e-9  # relative, of the figures' range
@@ -81,7 +81,7 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
     """What response surfaces say: a setting between the runs, which is to be run as a check.
 
     ``inputs``: (n, d) of the variables; ``distributions``: theirs, of OpenTURNS; the rest as ``of_runs``. Searched is
-    the box of the runs. Returns dict(inputs (d,), predicted {name: value}, q2 {name: (chaos, linear regression)},
+    the box of the runs. Returns dict(inputs (d,), predicted {name: value}, q2 {name: [chaos, linear regression]},
     feasible), or dict(poor: {name: Q2}) where a figure's surface predicts left-out runs too badly. None where there are
     too few runs. Raises InputError as ``of_runs``.
     """
@@ -100,7 +100,7 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
                 surfaces[name] = lambda places, value=values[0]: np.full(len(places), value)
                 continue
             return None
-        quality[name] = (found["q2"], found["linear_q2"])
+        quality[name] = [found["q2"], found["linear_q2"]]
         if found["q2"] < chaos.POOR:
             poor[name] = found["q2"]
         else:
@@ -115,7 +115,7 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
 
 def _search(given, distributions, surfaces, figure, sign, limits):
     """(d,) the best place of the surfaces: many places of the box, then of ever smaller ones around the best."""
-    ot = openturns.module()
+    ot = design.openturns()
     low, high = given.min(axis=0), given.max(axis=0)
     unit = np.asarray(ot.SobolSequence(given.shape[1]).generate(CANDIDATES))
     few = {

@@ -1,12 +1,12 @@
 """Sobol indices of a plain sample, by a polynomial chaos expansion: a figure as a sum of orthonormal polynomials of the
 variables, whose squared coefficients are shares of its variance (Sudret 2008, Reliab. Eng. Syst. Saf. 93:964).
 
-OpenTURNS makes the polynomials of each distribution and chooses among them by least angles; what the expansion is
+OpenTURNS makes the polynomials of each density and chooses among their products by least angles; what the expansion is
 worth is told by runs that it has not seen, and a linear regression is judged by the same."""
 
 import numpy as np
 
-from . import openturns, resampling
+from . import design, resampling
 from .effects import is_constant
 from .share import CONFIDENCE
 
@@ -22,49 +22,52 @@ SEED = 1
 
 
 class Chaos:
-    """The expansion's terms for variables with these distributions (``openturns.Distribution``, independent)."""
+    """The expansion's terms for variables with these distributions (of OpenTURNS, independent)."""
 
     def __init__(self, distributions, runs):
-        ot = openturns.module()
+        self.ot = ot = design.openturns()
         self.size = len(distributions)
-        factories = [ot.StandardDistributionPolynomialFactory(one) for one in distributions]
         enumerate_ = ot.HyperbolicAnisotropicEnumerateFunction(self.size, NORM)
-        basis = ot.OrthogonalProductPolynomialFactory(factories, enumerate_)
-        joint = openturns.joint(distributions)
-        self.transform = ot.DistributionTransformation(joint, basis.getMeasure())
         most = max(min(TERMS, 2 * runs), self.size + 1)
         # A variable with few values has as many polynomials.
         limits = np.array([_degrees(one) for one in distributions])
-        at = np.arange(1)
+        kept = np.zeros((1, self.size), dtype=int)
         for degree in range(1, HIGHEST + 1):
             count = enumerate_.getMaximumDegreeCardinal(degree)
             degrees = np.array([list(enumerate_(k)) for k in range(count)])
-            within = np.flatnonzero((degrees <= limits).all(axis=1))
+            within = degrees[(degrees <= limits).all(axis=1)]
             if degree > 1 and len(within) > most:
                 break
-            at = within
-        self.degrees = np.array([list(enumerate_(int(k))) for k in at])  # (terms, variables); the first is the constant
-        self.terms = [basis.build(int(k)) for k in at]
-        self.ot = ot
+            kept = within
+        self.degrees = kept  # (terms, variables); the first is the constant
+        highest = kept.max(axis=0)
+        self.polynomials = [
+            (_of_values if one.isDiscrete() else _of_density)(ot, one, int(most_))
+            for one, most_ in zip(distributions, highest)
+        ]
 
     def matrix(self, inputs):
         """(n, terms): the polynomials at ``inputs`` (n, variables)."""
-        given = self.transform(self.ot.Sample(inputs.tolist()))
-        return np.column_stack([np.asarray(term(given))[:, 0] for term in self.terms])
+        made = np.ones((len(inputs), len(self.degrees)))
+        for k, of in enumerate(self.polynomials):
+            made *= of(inputs[:, k])[:, self.degrees[:, k]]
+        return made
 
-    def choose(self, inputs, figure):
-        """The numbers of the terms that a figure (n,) needs; the constant is one."""
+    def choose(self, matrix, figure):
+        """The numbers of the terms (columns of ``matrix``) that a figure (n,) needs; the constant is one."""
         ot, rows = self.ot, np.arange(len(figure))
         if len(rows) > CHOSEN_BY:
             rows = np.random.default_rng(SEED).choice(rows, CHOSEN_BY, replace=False)
-        given = self.transform(ot.Sample(inputs[rows].tolist()))
+        count = matrix.shape[1]
+        each = np.eye(count)
+        columns = [ot.LinearFunction([0.0] * count, [0.0], ot.Matrix(one[None])) for one in each]
         angles = ot.LARS()
         angles.setMaximumRelativeConvergence(-1.0)  # by the left-out error alone
         search = ot.LeastSquaresMetaModelSelection(
-            given,
-            ot.Sample(figure[rows, None].tolist()),
-            self.terms,
-            list(range(len(self.terms))),
+            ot.Sample(matrix[rows]),
+            ot.Sample(figure[rows, None]),
+            columns,
+            list(range(count)),
             angles,
             ot.CorrectedLeaveOneOut(),
         )
@@ -87,7 +90,7 @@ def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
     ``inputs``: (n, d); ``figure``: (n,), all finite; ``distributions``: of OpenTURNS, one a variable. Returns dict(q2,
     linear_q2, terms, first, total): Q2 is the share of the variance that five-fold cross-validation predicts, of the
     expansion and of a linear regression on the same folds; ``first`` and ``total`` are None where Q2 is below 0.8, else
-    a list of (value, low, high) each, whose intervals are the bootstrap's for the chosen terms: what the expansion
+    a list of [value, low, high] each, whose intervals are the bootstrap's for the chosen terms: what the expansion
     leaves unexplained, 1 - Q2, comes on top. None where the figure is the same in all runs or the runs are fewer than
     20, or 3 a variable.
     """
@@ -102,11 +105,11 @@ def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
     said, said_linearly = np.empty(runs), np.empty(runs)
     for fold in np.array_split(order, FOLDS):
         kept = np.setdiff1d(order, fold)
-        chosen = chaos.choose(inputs[kept], wanted[kept])
+        chosen = chaos.choose(matrix[kept], wanted[kept])
         said[fold] = matrix[np.ix_(fold, chosen)] @ _fit(matrix[np.ix_(kept, chosen)], wanted[kept])
         said_linearly[fold] = linear[fold] @ _fit(linear[kept], wanted[kept])
     found = {"q2": _q2(said, wanted), "linear_q2": _q2(said_linearly, wanted)}
-    chosen = chaos.choose(inputs, wanted)
+    chosen = chaos.choose(matrix, wanted)
     found.update(terms=len(chosen), first=None, total=None)
     if found["q2"] < POOR:
         return found
@@ -121,7 +124,7 @@ def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
         low, high = resampling.interval(many, confidence)
         # The spread of resampled coefficients shifts their squares upwards.
         low, high = np.minimum(low, values), np.maximum(high, values)
-        found[name] = [tuple(row) for row in np.column_stack([values, low, high]).tolist()]
+        found[name] = np.column_stack([values, low, high]).tolist()
     return found
 
 
@@ -130,8 +133,9 @@ def predictor(inputs, figure, distributions):
     chaos = Chaos(distributions, len(figure))
     middle, spread = figure.mean(), figure.std() or 1.0
     wanted = (figure - middle) / spread
-    chosen = chaos.choose(inputs, wanted)
-    coefficients = _fit(chaos.matrix(inputs)[:, chosen], wanted)
+    matrix = chaos.matrix(inputs)
+    chosen = chaos.choose(matrix, wanted)
+    coefficients = _fit(matrix[:, chosen], wanted)
     return lambda places: middle + spread * (chaos.matrix(places)[:, chosen] @ coefficients)
 
 
@@ -141,6 +145,36 @@ def _fit(matrix, wanted):
 
 def _q2(said, wanted):
     return float(1.0 - np.mean((said - wanted) ** 2) / np.var(wanted))
+
+
+def _of_density(ot, distribution, highest):
+    """(n,) -> (n, highest + 1): the orthonormal polynomials of a variable with a density."""
+    factory = ot.StandardDistributionPolynomialFactory(distribution)
+    standard = ot.DistributionTransformation(distribution, factory.getMeasure())
+    polynomials = [factory.build(k) for k in range(highest + 1)]
+
+    def of(values):
+        given = np.asarray(standard(ot.Sample(values[:, None])))[:, 0]
+        return np.column_stack([np.array([one(x) for x in given]) for one in polynomials])
+
+    return of
+
+
+def _of_values(ot, distribution, highest):
+    """The same of a variable with few values: found by orthogonalisation under their probabilities, exact at the values,
+    which are all it may be given."""
+    points = np.asarray(distribution.getSupport())[:, 0]
+    shares = np.array([distribution.computePDF([x]) for x in points])
+    middle, spread = points.mean(), np.ptp(points) or 1.0
+    powers = np.vander((points - middle) / spread, highest + 1, increasing=True)
+    found, _ = np.linalg.qr(np.sqrt(shares)[:, None] * powers)
+    at_points = found / np.sqrt(shares)[:, None]
+    at_points *= np.sign(at_points[0, 0])
+
+    def of(values):
+        return at_points[np.abs(values[:, None] - points).argmin(axis=1)]
+
+    return of
 
 
 def _degrees(distribution):

@@ -37,7 +37,7 @@ USUAL = (
     "unresolved_motions",
     "events_in_all",
 )
-OF_ZONES = ("in_share", "above_share", "below_share")
+OF_ZONES = ("verdict", "in_share", "above_share", "below_share")
 LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "inputs", "models")
 REST = "rest"  # the zone of all that lies in none
 

@@ -1,10 +1,11 @@
 """What varies, as numbers with a distribution: text and lists by the number of their choice."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 
-from . import openturns
+from . import design
 
 
 class Input:
@@ -41,7 +42,7 @@ class Input:
 
     def law(self):
         """The distribution of the numbers, of OpenTURNS. Raises InputError."""
-        ot = openturns.module()
+        ot = design.openturns()
         if self.choices is not None:
             weights = self.weights or [1.0] * len(self.choices)
             codes = self.choices if self.numeric else range(len(self.choices))
@@ -53,9 +54,7 @@ class Input:
             return ot.UserDefined([[x] for x in points], [merged[x] / whole for x in points])
         if "range" in self.given:
             return ot.Uniform(*(float(end) for end in self.given["range"]))
-        from .design import distribution
-
-        return distribution(ot, self.given["distribution"], self.where)
+        return design.distribution(ot, self.given["distribution"], self.where)
 
 
 def _key(value):
@@ -75,6 +74,4 @@ def inputs_of(study, varied):
 
 
 def _part_name(part):
-    from pathlib import Path
-
     return part.get("name", Path(part.get("job") or part["scan"]).stem)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import openturns
+from . import design
 from .effects import is_constant
 from .share import CONFIDENCE
 
@@ -31,13 +31,13 @@ def of_blocks(
 
     ``inputs``: (n, d), text as numbers of its choices; ``figure``: (n,), all finite; ``size``: runs of a block; n is
     (d + 2) ``size`` or, with ``second_order`` and more than two variables, (2 d + 2) ``size``. Returns dict(first, total), a
-    list of (value, low, high) each; and second, a matrix of values, with ``second_order``. None where the figure is the
+    list of [value, low, high] each; and second, a matrix of values, with ``second_order``. None where the figure is the
     same in all runs or there are fewer than 16 rows. The intervals are of the bootstrap. Martinez' estimator (2011) by
     default.
     """
     if is_constant(figure) or size < LEAST:
         return None
-    ot = openturns.module()
+    ot = design.openturns()
     kind = getattr(ot, ESTIMATORS[estimator])
     centred = (figure - figure.mean()) / figure.std()
     found = kind(ot.Sample(inputs.tolist()), ot.Sample(centred[:, None].tolist()), size)
@@ -56,4 +56,4 @@ def of_blocks(
 
 def _rows(values, interval):
     bounds = interval.getLowerBound(), interval.getUpperBound()
-    return [tuple(float(x) for x in row) for row in zip(values, *bounds)]
+    return [[float(x) for x in row] for row in zip(values, *bounds)]

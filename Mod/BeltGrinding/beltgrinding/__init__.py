@@ -35,6 +35,15 @@ def plan(job, settings=None, context=None, told=None):
     return plans.plan(job, settings, context, told)
 
 
+def study(study, output=None, context=None, **options):
+    """Makes the runs of a study (a dict, or the path of a study.json) and returns a ``studies.Study`` with their table; see
+    ``studies.making.study``.
+    """
+    from .studies import making
+
+    return making.study(study, output, context, **options)
+
+
 def report(result, output=None, pdf=None, language="en", title=None, context=None):
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
     from .reporting import report as reporting

@@ -27,6 +27,7 @@ from . import (
     press,
     program,
     report,
+    study,
     view,
 )
 from .messages import LANGUAGES, Messages
@@ -45,6 +46,7 @@ TOPICS = (
     learn,
     inspect,
     measure,
+    study,
     report,
     view,
     lists,

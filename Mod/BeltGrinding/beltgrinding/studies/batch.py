@@ -11,7 +11,8 @@ from . import vary
 
 def parts(job, found, context=None):
     """(names, validated jobs, warnings) of the parts; ([], [``job``], []) where the study has none. ``job``: the
-    study's, validated; ``found``: [Variable]. A scan is laid on the design here, once. Raises InputError, Cancelled."""
+    study's, validated; ``found``: [Variable]. A scan is laid on the design here, once. Raises InputError, Cancelled.
+    """
     lists = [one.given["parts"] for one in found if one.key == vary.PART]
     if not lists:
         return [], [job], []

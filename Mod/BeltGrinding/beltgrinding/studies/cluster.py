@@ -15,7 +15,9 @@ LOOK_S = 0.1  # between two looks for a cancellation
 CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
 MORE = 2  # tasks waiting beside each one that is run
-MOST_DEATHS = 3  # times that Dask gives a run up because its workers died (each after a few of them)
+MOST_DEATHS = (
+    3  # times that Dask gives a run up because its workers died (each after a few of them)
+)
 MOST_TRIES = 20  # of sending what a worker needs
 RESTARTS = 3  # of a local cluster
 

@@ -18,7 +18,7 @@ ANSWER_S = 10.0  # for a scheduler to answer
 END_S = 5.0  # for a local cluster to end by itself
 TAIL = 300  # characters of what a cluster said that failed
 # One simulation a core: libraries must not share it out further.
-ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "TBB_NUM_THREADS")
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def distributed():

@@ -68,7 +68,11 @@ def design(study, found):
     with _generator:
         try:
             cube = _cube(wanted, len(found), matrix)
-        except (TypeError, ValueError, RuntimeError) as error:  # as OpenTURNS tells of too many variables
+        except (
+            TypeError,
+            ValueError,
+            RuntimeError,
+        ) as error:  # as OpenTURNS tells of too many variables
             raise InputError(
                 "studies.design_refused",
                 "{key}: OpenTURNS makes no such design of {count} variables: {reason}",
@@ -208,7 +212,10 @@ def quantile(one, where):
 
 def _needless(name, where):
     return InputError(
-        "studies.needless_key", "{key}: '{name}' says nothing here; leave it out", key=where, name=name
+        "studies.needless_key",
+        "{key}: '{name}' says nothing here; leave it out",
+        key=where,
+        name=name,
     )
 
 
@@ -277,9 +284,7 @@ def _law(ot, given, where):
                 "{key}: the mean of a lognormal distribution must be above 0",
                 key=f"{where}.mean",
             )
-        return ot.LogNormalMuSigma(
-            float(given["mean"]), float(given["sd"]), 0.0
-        ).getDistribution()
+        return ot.LogNormalMuSigma(float(given["mean"]), float(given["sd"]), 0.0).getDistribution()
     if not given["lower"] <= given["mode"] <= given["upper"]:
         raise InputError(
             "studies.mode_outside", "{key}: the mode must lie between the ends", key=f"{where}.mode"

@@ -9,34 +9,34 @@ import math
 
 from ..engine import core
 
-USUAL = (
-    "overall",
-    "in_share",
-    "above_share",
-    "below_share",
-    "deviation_mm.min",
-    "deviation_mm.max",
-    "deviation_mm.mean",
-    "deviation_mm.rms",
-    "deviation_mm.p05",
-    "deviation_mm.p50",
-    "deviation_mm.p95",
-    "worst.beyond_mm",
-    "untouched_area_mm2",
-    "removed_volume_mm3",
-    "excess_volume_mm3",
-    "gouge_volume_mm3",
-    "missed_rays",
-    "process_time_s",
-    "peak_pressure_MPa",
-    "peak_force_N",
-    "belt.remaining_cut",
-    "lost_volume_mm3",
-    "not_converged_events",
-    "extrapolated_law_events",
-    "unresolved_motions",
-    "events_in_all",
-)
+USUAL = """
+    overall
+    in_share
+    above_share
+    below_share
+    deviation_mm.min
+    deviation_mm.max
+    deviation_mm.mean
+    deviation_mm.rms
+    deviation_mm.p05
+    deviation_mm.p50
+    deviation_mm.p95
+    worst.beyond_mm
+    untouched_area_mm2
+    removed_volume_mm3
+    excess_volume_mm3
+    gouge_volume_mm3
+    missed_rays
+    process_time_s
+    peak_pressure_MPa
+    peak_force_N
+    belt.remaining_cut
+    lost_volume_mm3
+    not_converged_events
+    extrapolated_law_events
+    unresolved_motions
+    events_in_all
+""".split()
 OF_ZONES = ("verdict", "in_share", "above_share", "below_share")
 LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "inputs", "models")
 REST = "rest"  # the zone of all that lies in none

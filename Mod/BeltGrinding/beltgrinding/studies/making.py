@@ -67,6 +67,8 @@ class Study(NamedTuple):
     design: dict
     study: dict
     warnings: list  # facts
+    reused: int = 0  # runs that were there already
+    broken_off: int = 0  # that did not come to an end; another try may mend it
 
     @classmethod
     def read(cls, folder):
@@ -204,11 +206,7 @@ def run(
 ):
     """``study`` of a ``Prepared`` one. ``read``: files that it was read from."""
     context = context or core.RunContext()
-    kept = store.Store(folder, prepared.study["keep"]["fields"])
-    own = _own(read, prepared, kept)
-    store.check_folder(folder, [*own, *(path for files in prepared.files for path in files)])
-    if chunk is None:
-        kept.write_study(prepared.study, prepared.design)
+    kept = lay_out(prepared, folder, read, chunk is None)
     mine = prepared.runs if chunk is None else prepared.runs[chunk[0] - 1 :: chunk[1]]
     work = _Work(prepared, kept, mine, again, context, told)
     try:
@@ -226,7 +224,51 @@ def run(
     made = work.table()
     if chunk is None:
         kept.write_table(made)
-    return Study(Path(folder), made, prepared.design, prepared.study, prepared.warnings)
+    return Study(
+        Path(folder),
+        made,
+        prepared.design,
+        prepared.study,
+        prepared.warnings,
+        work.reused,
+        sum(record.get("passing", False) for record in work.records.values()),
+    )
+
+
+def lay_out(prepared, folder, read=(), write=True):
+    """The ``store.Store`` of a study in its folder, in which the study itself and its design are written. Raises
+    InputError."""
+    kept = store.Store(folder, prepared.study["keep"]["fields"])
+    own = _own(read, prepared, kept)
+    store.check_folder(folder, [*own, *(path for files in prepared.files for path in files)])
+    if write:
+        kept.write_study(prepared.study, prepared.design)
+    return kept
+
+
+class Survey(NamedTuple):
+    """What is to be done."""
+
+    runs: int
+    jobs: int  # different ones
+    there: int  # of them
+    mean_s: float  # that a run took; None: not known
+    cores: int
+
+    def left_s(self, workers):
+        """s, of all that is not there, on so many cores; None: not known."""
+        if self.jobs == self.there:
+            return 0.0
+        return None if self.mean_s is None else self.mean_s * (self.jobs - self.there) / workers
+
+
+def survey(prepared, folder):
+    """A ``Survey`` of a study's folder, in which nothing is changed."""
+    kept = store.Store(folder, prepared.study["keep"]["fields"])
+    jobs_ = {each.job_hash for each in prepared.runs}
+    seconds = [record["seconds"] for record in map(kept.read, jobs_) if record is not None]
+    mean = sum(seconds) / len(seconds) if seconds else None
+    return Survey(len(prepared.runs), len(jobs_), len(seconds), mean, _cores())
 
 
 def _cores():
@@ -300,8 +342,7 @@ class _Work:
 
     def _task(self, each, shas, paths):
         files = [
-            [path, sha]
-            for _, path, sha in self.prepared.hashes.files(self.prepared.job(each))
+            [path, sha] for _, path, sha in self.prepared.hashes.files(self.prepared.job(each))
         ]
         paths.update((sha, path) for path, sha in files if sha is not None)
         return {

@@ -73,13 +73,12 @@ def solve(job, job_hash, fields=False, context=None, sent=""):
 
 
 def _failed(record, error, sent):
-    code, text = "simulation.run_out_of_memory", "out of memory"
-    if isinstance(error, InputError):
-        code, text = error.code, str(error)
+    known = isinstance(error, InputError)
+    text = str(error) if known else "out of memory"
     if sent:
         text = text.replace(sent, "")
     record.update(status=table.FAILED, error=" ".join(text.split()))
-    record["passing"] = code.endswith(PASSING)
+    record["passing"] = not known or error.code.endswith(PASSING)
 
 
 def _check(job):

@@ -28,9 +28,7 @@ class Table:
     def __init__(self, columns, varied=None, figures=None):
         """``columns``: sequences by name, in order."""
         self.names = list(columns)
-        self.columns = {
-            name: _array(values, name in TEXTS) for name, values in columns.items()
-        }
+        self.columns = {name: _array(values, name in TEXTS) for name, values in columns.items()}
         self.varied, self.figures = varied, figures
 
     def __len__(self):
@@ -90,9 +88,7 @@ class Table:
         rows = list(csv.reader(io.StringIO(text)))
         names = rows[0] if rows else []
         if not {RUN, STATUS, HASH} <= set(names):
-            raise InputError(
-                "studies.no_table", "{file}: is no table of a study's runs", file=path
-            )
+            raise InputError("studies.no_table", "{file}: is no table of a study's runs", file=path)
         for number, row in enumerate(rows, 1):
             if len(row) != len(names):
                 raise InputError(

@@ -1,5 +1,6 @@
 """The answers of studies: yield, main effects, Sobol indices, the best setting, the report."""
 
+import ast
 import json
 import sys
 from pathlib import Path
@@ -14,6 +15,7 @@ ot = pytest.importorskip("openturns")
 
 from beltgrinding.base import messages  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.reporting import language  # noqa: E402
 from beltgrinding.studies import (  # noqa: E402
     answers,
     best,
@@ -21,6 +23,7 @@ from beltgrinding.studies import (  # noqa: E402
     design,
     effects,
     making,
+    names,
     report,
     resampling,
     share,
@@ -305,9 +308,22 @@ def test_a_ground_study_has_its_report(ground_study):
 def test_the_report_speaks_german(ground_study):
     report.write_answers(ground_study, "de")
     html = (ground_study / report.REPORT).read_text()
-    assert "Ausbeute" in html and "standardisierter Koeffizient" in html
+    assert "Ausbeute nach der Toleranz" in html and "standardisierter Koeffizient" in html
     for english in ("Tolerance yield", "what varies", "first level", "Latin hypercube"):
         assert english not in html
+
+
+def test_every_text_is_there_in_german():
+    german, texts = language._texts("de"), set()
+    for file in Path(report.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            called = isinstance(node, ast.Call) and getattr(node.func, "id", None) == "words"
+            if called and isinstance(node.args[0], ast.Constant):
+                texts.add(node.args[0].value)
+    texts |= {*names.NAMES.values(), *names.OF_ZONE.values(), *report.METHODS.values()}
+    texts |= {"first level", "last level", "all levels", "set to", "plus", "times"}
+    texts |= {"whole part passes", "nowhere too much left", "nowhere cut too deep"}
+    assert len(texts) > 90 and sorted(texts - german.keys()) == []
 
 
 def test_notes_have_a_german_form():

@@ -159,8 +159,8 @@ def _yield(found, pictures, words):
     ]
     heads = [
         ("", "name"),
-        (words("pass"), "number"),
-        (words("fail"), "number"),
+        (words("passed"), "number"),
+        (words("failed"), "number"),
         (words("not known"), "number"),
         (words("share"), "number"),
         (words("95 % interval"), "number"),
@@ -387,7 +387,7 @@ def _runs(found, study, words):
         (words("values"), ""),
     ]
     design = [
-        (words("design"), words(METHODS[found["design"]["method"]])),
+        (words("design of the runs"), words(METHODS[found["design"]["method"]])),
         (words("runs"), words.whole(found["runs"]["all"])),
         (words("seed"), str(found["design"]["seed"])),
     ]

@@ -102,6 +102,8 @@ DOCUMENT_FUNCTIONS = (
     "make_plan",
     "apply_plan",
     "write_plan",
+    "make_study",
+    "open_study_run",
     "make_deviation",
     "make_section",
     "make_verdict",

@@ -28,7 +28,7 @@ class Hashes:
         """64 hex digits of a validated job."""
         slim = self._slim(job)
         read = [(what, Path(path).name, sha) for what, path, sha in self.files(job)]
-        made_of = [FORMAT, core.versions(), _by_name(slim), read]
+        made_of = [FORMAT, core.versions(), _even(_by_name(slim)), read]
         return hashlib.sha256(inputs.canonical(made_of)).hexdigest()
 
     def files(self, job):
@@ -81,6 +81,15 @@ def _large(job):
     for program in job["programs"]:
         if "poses" in program:
             yield program, "poses"
+
+
+def _even(value):
+    """Plain data with whole numbers as they are otherwise: 20 and 20.0 are the same job."""
+    if isinstance(value, dict):
+        return {name: _even(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_even(one) for one in value]
+    return float(value) if type(value) is int else value
 
 
 def _by_name(slim):

@@ -317,6 +317,7 @@ class _Work:
         """One after the other, in this process."""
         self.workers = 1
         for number, each in enumerate(list(self.open.values()), self.reused):
+            self.context.throw_if_cancelled()
             part = self.context.part(number / self.count, (number + 1) / self.count)
             job = self.prepared.job(each)
             self.take(one.solve(job, each.job_hash, self.kept.fields, part))

@@ -4,15 +4,17 @@ import hashlib
 import json
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 from ..base import schemas
 from ..base.files import json_bytes, write_whole
 from ..engine import Cancelled, InputError, core
-from ..studies import answers, making, store as stores, table as tables
+from ..studies import answers, making, store as stores, table as tables, vary
 from . import job_inputs, result_files, study_keys
-from .job_data import inspection
+from .job_data import children, inspection
 from .properties import Key, Output, add_keys, add_outputs, to_job
 from .proxy import Proxy
+from .robot_path import RobotPath
 
 KEYS = (
     Key("Vary", "JSON", "Study", "study.vary"),
@@ -33,6 +35,7 @@ OUTPUTS = (
     Output("Answers", "String", "Study", "answers as answers.json has them", True),
     Output("Base", "String", "Study", "the job's settings that were varied, as JSON", True),
     Output("Fingerprint", "String", "Study", "hash of what was run", True),
+    Output("JobFingerprint", "String", "Study", "the same of the job alone", True),
     Output("OpenedFingerprint", "String", "Study", "the same of the job set to OpenedRun", True),
 )
 TABLE = "Table"
@@ -48,8 +51,7 @@ class Study(Proxy):
         add_keys(obj, KEYS)
         if "Workers" not in obj.PropertiesList:
             text = "processes that run; 0: as many as there are cores, 1: one run after the other"
-            obj.addProperty("App::PropertyIntegerConstraint", "Workers", "Design", text)
-            obj.Workers = (0, 0, 4096, 1)
+            obj.addProperty("App::PropertyInteger", "Workers", "Design", text)
         add_outputs(obj, OUTPUTS)
         if TABLE not in obj.PropertiesList:
             text = "a row a run, as table.csv has it"
@@ -96,10 +98,24 @@ class Study(Proxy):
         return json.loads(obj.Answers) if obj.Answers else None
 
 
+class Opened(NamedTuple):
+    """What came of setting the document to a run."""
+
+    left: list  # names of what varies that no property of the document holds: it stays as it is
+    laid_anew: list  # labels of paths that follow the new settings: their poses are not the run's
+
+
+def _hash(*data):
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def _job_fingerprint(job):
+    return _hash(job_inputs.fingerprint(job), inspection(job))
+
+
 def fingerprint(obj, job):
     """Hash of all that a study depends on."""
-    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj)]
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+    return _hash(_job_fingerprint(job), obj.Proxy.settings(obj))
 
 
 class Work:
@@ -116,9 +132,12 @@ class Work:
         rule = making.schema()
         self.study = schemas.checked({**settings, "job": ""}, rule, "study")
         self.workers = 0 if obj.Workers == 1 else obj.Workers or None
-        self.fingerprint = fingerprint(obj, job)
+        self.fingerprint, self.job_fingerprint = fingerprint(obj, job), _job_fingerprint(job)
         self.base = study_keys.base(job)
-        self.known = None if obj.OutOfDate and obj.Fingerprint else obj.Proxy.table(obj)
+        self.known = None  # runs of the same job with the same things varied
+        if obj.Design and obj.JobFingerprint == self.job_fingerprint:
+            if json.loads(obj.Design)["vary"] == self.study["vary"]:
+                self.known = obj.Proxy.table(obj)
 
     def find(self, data, context=None, told=None):
         """A ``Found`` for a job's data; of one that is cancelled, with the runs that had ended. Raises InputError, Cancelled
@@ -154,17 +173,20 @@ class Work:
         """What the document's table has already is not run again."""
         if self.known is None or not set(prepared.figures) <= set(self.known.names):
             return
-        kept, old = stores.Store(folder), self.known
-        wanted = {run.job_hash for run in prepared.runs}
-        for row in range(len(old)):
-            status, job_hash = old[tables.STATUS][row], old[tables.HASH][row]
-            if status == tables.OPEN or job_hash not in wanted:
+        # By their values: FreeCAD writes a shape differently now and then, and with it the job's hash.
+        kept, old, names = stores.Store(folder), self.known, prepared.names
+        columns = [old[name].tolist() for name in names]
+        rows = {_hash(values): row for row, values in enumerate(zip(*columns))}
+        for run, values in zip(prepared.runs, prepared.rows):
+            row = rows.get(_hash(tuple(values)))
+            if row is None or old[tables.STATUS][row] == tables.OPEN:
                 continue
+            status = old[tables.STATUS][row]
             failed = status == tables.FAILED
             figures = {} if failed else {n: _plain(old[n][row]) for n in prepared.figures}
             kept.write(
                 {
-                    "job_hash": job_hash,
+                    "job_hash": run.job_hash,
                     "status": status,
                     "figures": figures,
                     "error": old[tables.ERROR][row] if failed else None,
@@ -199,12 +221,12 @@ class Found:
 
 def store(obj, found):
     """Puts a ``Found`` into a Study object."""
-    obj.Fingerprint = obj.OpenedFingerprint = ""
+    obj.Fingerprint = obj.OpenedFingerprint = obj.JobFingerprint = ""
     status = found.table[tables.STATUS]
     obj.RunsInAll = len(found.table)
     obj.RunsDone = int((status == tables.DONE).sum())
     obj.RunsFailed = int((status == tables.FAILED).sum())
-    obj.Design = json.dumps(found.design)
+    obj.Design = json.dumps({**found.design, "vary": found.work.study["vary"]})
     obj.Answers = "" if found.answers is None else json_bytes(found.answers).decode()
     obj.Base = json.dumps(found.work.base)
     whole = [one for one in (found.answers or {}).get("yield", ()) if one["of"] == "overall"]
@@ -212,13 +234,14 @@ def store(obj, found):
     obj.Yield = -1.0 if share is None else 100.0 * share
     result_files.store(obj, found.file)
     obj.OpenedRun = 0
+    obj.JobFingerprint = found.work.job_fingerprint
     obj.Fingerprint = found.work.fingerprint
     obj.OutOfDate = False
 
 
 def open_run(obj, number):
-    """Sets the job's properties to what run ``number`` had. Returns the names of what varies that no property of the
-    document holds, which stay as they are. Raises InputError; then nothing is changed."""
+    """Sets the job's properties to what run ``number`` had. Returns an ``Opened``. Raises InputError; then nothing is
+    changed."""
     job, made = obj.getParentGroup(), obj.Proxy.table(obj)
     if made is None:
         raise InputError("objects.study_not_run", "{object}: is not run yet", object=obj.Label)
@@ -241,9 +264,22 @@ def open_run(obj, number):
     settings = schemas.checked({**settings, "job": ""}, making.schema(), "study")
     design = json.loads(obj.Design)
     values = {name: _plain(made[name][number - 1]) for name in design["varied"]}
+    paths = {path.Name: path.Proxy.digest(path) for path in children(job, RobotPath)}
     left = study_keys.put_in(job, json.loads(obj.Base), settings, values)
     job.Document.recompute()
+    laid_anew = [
+        path.Label
+        for path in children(job, RobotPath)
+        if path.Proxy.digest(path) != paths.get(path.Name)
+    ]
     obj.OpenedRun = number
     obj.OpenedFingerprint = fingerprint(obj, job)
     obj.Proxy.update(obj)
-    return left
+    return Opened(left, laid_anew)
+
+
+def check_varied(entries):
+    """Raises InputError for what is no ``vary`` of a study."""
+    rule = making.schema()["properties"]["vary"]
+    checked = schemas.checked(list(entries), rule, "vary") if entries else []
+    vary.variables({"vary": checked})

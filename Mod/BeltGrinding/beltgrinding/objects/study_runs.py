@@ -31,7 +31,8 @@ def make_study(job, compute=True, context=None, told=None, **properties):
 
 
 def open_study_run(study, number):
-    """Sets the job of a Study to what run ``number`` of its table had; its simulation goes out of date. Returns the names of
-    what varies that the document has no property for, which stay as they are. Raises InputError; then nothing is
+    """Sets the job of a Study to what run ``number`` of its table had; its simulation goes out of date. Returns (names of
+    what varies that the document has no property for, which stay as they are; labels of raster paths that were laid anew
+    for the settings, so that a simulation may give other figures than the table). Raises InputError; then nothing is
     changed."""
     return studies.open_run(study, number)

@@ -38,7 +38,7 @@ def write_answers(folder, language="en", context=None, study=None):
     pictures = draw(found, study.table, words, PRINT_DPI, context)
     files = {
         folder / ANSWERS: json_bytes(found),
-        folder / REPORT: document(found, study, pictures, words).encode(),
+        folder / REPORT: document(found, study.study, pictures, words).encode(),
         **{folder / PICTURES / name: data for name, data in pictures.items()},
     }
     try:
@@ -53,30 +53,45 @@ def write_answers(folder, language="en", context=None, study=None):
 def draw(found, table, words, dpi=PRINT_DPI, context=None):
     """{file name: bytes of a PNG}: yield.png, matrix.png and of each figure FIGURE-tornado.png, -effects.png,
     -scatter.png, -sobol.png, as far as there is something to draw."""
-    done, made = np.flatnonzero(table.done), {}
-    verdicts = table[answering.OVERALL][done] if answering.OVERALL in table.columns else None
-    variables = {name: answering.plain(table[name][done]) for name in found["varied"]}
-    if found["yield"]:
-        rows = [(names.yielded(one, words), one) for one in found["yield"]]
-        made["yield.png"] = charts.yields(rows, words, dpi)
-    for name, one in found["figures"].items():
+    made, kinds = {}, ("tornado", "effects", "scatter", "sobol")
+    wanted = [("yield.png", "yield", None)]
+    for name in found["figures"]:
+        wanted += [(f"{file_stem(name)}-{kind}.png", kind, name) for kind in kinds]
+    for file, kind, name in [*wanted, ("matrix.png", "matrix", None)]:
         if context is not None:
             context.throw_if_cancelled()
-        stem, text = file_stem(name), names.figure(name, words)
-        made[f"{stem}-tornado.png"] = charts.tornado(one["effects"], one["mean"], text, words, dpi)
-        made[f"{stem}-effects.png"] = charts.effects(one["effects"], one["mean"], text, words, dpi)
-        values = table[name][done].astype(float)
-        made[f"{stem}-scatter.png"] = charts.scatter(variables, values, verdicts, text, words, dpi)
-        if one["sobol"].get("first"):
-            made[f"{stem}-sobol.png"] = charts.indices(
-                one["sobol"], one["sobol"]["variables"], text, words, dpi
-            )
-    first = list(found["figures"])[:2]
-    columns = dict(list(variables.items())[: charts.MOST_IN_MATRIX - len(first)])
-    columns.update({names.figure(n, words): table[n][done].astype(float) for n in first})
-    if len(columns) > 1:
-        made["matrix.png"] = charts.matrix(columns, verdicts, words, dpi)
+        content = one(found, table, kind, name, words, dpi)
+        if content is not None:
+            made[file] = content
     return made
+
+
+def one(found, table, kind, name, words, dpi=PRINT_DPI):
+    """Bytes of a PNG: a chart ("yield", "matrix"; "tornado", "effects", "scatter", "sobol" of the figure ``name``) of the
+    answers; None where there is nothing to draw."""
+    done = np.flatnonzero(table.done)
+    verdicts = table[answering.OVERALL][done] if answering.OVERALL in table.columns else None
+    variables = {key: answering.plain(table[key][done]) for key in found["varied"]}
+    if kind == "yield":
+        rows = [(names.yielded(each, words), each) for each in found["yield"]]
+        return charts.yields(rows, words, dpi) if rows else None
+    if kind == "matrix":
+        first = list(found["figures"])[:2]
+        columns = dict(list(variables.items())[: charts.MOST_IN_MATRIX - len(first)])
+        columns.update({names.figure(n, words): table[n][done].astype(float) for n in first})
+        return charts.matrix(columns, verdicts, words, dpi) if len(columns) > 1 else None
+    if name is None:
+        return None
+    told, text = found["figures"][name], names.figure(name, words)
+    if kind == "scatter":
+        values = table[name][done].astype(float)
+        return charts.scatter(variables, values, verdicts, text, words, dpi)
+    if kind == "sobol":
+        if not told["sobol"].get("first"):
+            return None
+        return charts.indices(told["sobol"], told["sobol"]["variables"], text, words, dpi)
+    drawn = charts.tornado if kind == "tornado" else charts.effects
+    return drawn(told["effects"], told["mean"], text, words, dpi)
 
 
 def file_stem(name):
@@ -85,8 +100,8 @@ def file_stem(name):
 
 
 def document(found, study, pictures, words):
-    """The whole HTML text. ``pictures``: of ``draw``."""
-    title = words("Belt grinding: study of {part}", part=part_name(study.study["job"]))
+    """The whole HTML text. ``study``: with its job; ``pictures``: of ``draw``."""
+    title = words("Belt grinding: study of {part}", part=part_name(study["job"]))
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
     style += (resources() / "report" / "study.css").read_text(encoding="utf-8")
     body = [
@@ -375,10 +390,10 @@ def _matrix(pictures, words):
 
 def _runs(found, study, words):
     rows = []
-    for one in study.study["vary"]:
+    for one in study["vary"]:
         name = one.get("name", one["key"])
         hows = {"set": "set to", "add": "plus", "multiply": "times"}
-        how = words(hows[one["how"]])
+        how = words(hows[one.get("how", "set")])
         rows.append([name, one["key"], how, _given(one, words)])
     heads = [
         (words("what varies"), "name"),

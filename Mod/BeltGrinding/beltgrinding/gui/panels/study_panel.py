@@ -13,8 +13,10 @@ from ..common.study_runner import StudyRunner
 from ..widgets.fold import slim
 from ..widgets.form import Form
 from ..widgets.steady import steady
-from ..widgets.varied_table import VariedTable
+from ..widgets.varied_rows import VariedRows
 from .run_panel import RunPanel
+
+MOST_RUNS, MOST_SEED, MOST_WORKERS = 1_000_000, 2**31 - 1, 4096
 
 
 class StudyPanel(RunPanel):
@@ -47,7 +49,9 @@ class StudyPanel(RunPanel):
     def _varied(self):
         box = QtGui.QGroupBox(translate("BeltGrinding", "What varies"))
         layout = QtGui.QVBoxLayout(box)
-        self.varied = VariedTable(self.obj.Proxy.settings(self.obj)["vary"])
+        self.choices = {one.key: one for one in study_keys.choices(self.job)}
+        texts = {key: one.text for key, one in self.choices.items()}
+        self.varied = VariedRows(self.obj.Proxy.settings(self.obj)["vary"], texts)
         self.varied.setToolTip(
             translate(
                 "BeltGrinding",
@@ -65,18 +69,12 @@ class StudyPanel(RunPanel):
         self.keys.completer().setCompletionMode(QtGui.QCompleter.PopupCompletion)
         self.keys.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         self.keys.setMinimumContentsLength(12)
-        self.choices = {one.key: one for one in study_keys.choices(self.job)}
         for key, one in self.choices.items():
             self.keys.addItem(key, key)
             self.keys.setItemData(self.keys.count() - 1, one.text, QtCore.Qt.ToolTipRole)
         self.keys.setCurrentIndex(max(self.keys.findData("belt_machine.force_N"), 0))
         layout.addWidget(self.keys)
-        row = QtGui.QHBoxLayout()
-        row.addWidget(self._button("addVaried", translate("BeltGrinding", "Add"), self.add))
-        row.addWidget(
-            self._button("removeVaried", translate("BeltGrinding", "Remove"), self._remove)
-        )
-        layout.addLayout(row)
+        layout.addWidget(self._button("addVaried", translate("BeltGrinding", "Add"), self.add))
         self.varied_box = box
         return box
 
@@ -93,9 +91,10 @@ class StudyPanel(RunPanel):
                 "sobol_indices": translate("BeltGrinding", "blocks for Sobol indices"),
             },
         )
-        box.add("Runs", translate("BeltGrinding", "Number"))
-        box.add("Seed", translate("BeltGrinding", "Seed"))
+        box.add("Runs", translate("BeltGrinding", "Number")).setRange(1, MOST_RUNS)
+        box.add("Seed", translate("BeltGrinding", "Seed")).setRange(0, MOST_SEED)
         workers = box.add("Workers", translate("BeltGrinding", "Side by side"))
+        workers.setRange(0, MOST_WORKERS)
         workers.setSpecialValueText(translate("BeltGrinding", "one a core"))
         box.changed = self._changed
         self.design = box
@@ -118,9 +117,6 @@ class StudyPanel(RunPanel):
             return
         self.varied.add(entry)
         self._changed()
-
-    def _remove(self):
-        self.varied.remove_chosen()
 
     def doing(self):
         return translate("BeltGrinding", "Running, {}")

@@ -15,6 +15,7 @@ ot = pytest.importorskip("openturns")
 
 from beltgrinding.base import messages  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.planning import pictures  # noqa: E402
 from beltgrinding.reporting import language  # noqa: E402
 from beltgrinding.studies import (  # noqa: E402
     answers,
@@ -28,6 +29,7 @@ from beltgrinding.studies import (  # noqa: E402
     resampling,
     share,
     sobol,
+    sorting_report,
     vary,
 )
 from beltgrinding.studies.table import Table  # noqa: E402
@@ -322,6 +324,8 @@ def test_every_text_is_there_in_german():
                 texts.add(node.args[0].value)
     texts |= {*names.NAMES.values(), *names.OF_ZONE.values(), *report.METHODS.values()}
     texts |= {"first level", "last level", "all levels", "set to", "plus", "times"}
+    texts |= {*sorting_report.TEXTS.values(), *pictures.WORDS.values()} - {"before", "as planned"}
+    texts -= {pictures.WORDS["why"]}
     texts |= {"whole part passes", "nowhere too much left", "nowhere cut too deep"}
     assert len(texts) > 90 and sorted(texts - german.keys()) == []
 

@@ -44,6 +44,24 @@ def study(study, output=None, context=None, **options):
     return making.study(study, output, context, **options)
 
 
+def study_answers(folder, language="en", context=None):
+    """Writes the answers of a study that lies in a folder (answers.json, report.html, pictures) and returns them; see
+    ``studies.report.write_answers``."""
+    from .studies import report as reports
+
+    return reports.write_answers(folder, language, context)
+
+
+def sort_castings(job, scans, folder=None, **options):
+    """Sorts raw parts by their scans: passes, passes with a plan of its own, scrap. ``job``: a dict, or the path of a
+    job.json; see ``studies.sorting.sort``."""
+    from .job import load as jobs
+    from .studies import sorting
+
+    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
+    return sorting.sort(job, scans, folder, **options)
+
+
 def report(result, output=None, pdf=None, language="en", title=None, context=None):
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
     from .reporting import report as reporting

@@ -27,6 +27,7 @@ from . import (
     press,
     program,
     report,
+    sort,
     study,
     view,
 )
@@ -47,6 +48,7 @@ TOPICS = (
     inspect,
     measure,
     study,
+    sort,
     report,
     view,
     lists,

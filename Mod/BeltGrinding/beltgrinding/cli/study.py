@@ -57,6 +57,12 @@ def add(commands):
         action="store_true",
         help="tell how many runs there are and how long they take, run nothing",
     )
+    study.add_argument(
+        "--language", choices=("en", "de"), default="en", help="of the report (default en)"
+    )
+    study.add_argument(
+        "--no-report", action="store_true", help="the table alone, no answers, report and pictures"
+    )
     study.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     study.set_defaults(do=_study)
 
@@ -113,6 +119,24 @@ def _study(arguments):
     finally:
         shown.end()
     _tell(found, arguments, chunk)
+    if chunk is None and not arguments.no_report and found.table.done.any():
+        _answer(found, arguments)
+
+
+def _answer(found, arguments):
+    """Writes answers, report and pictures; what they warn of is a warning."""
+    from ..studies import report
+
+    said = background.run(
+        lambda context: report.write_answers(
+            arguments.output, arguments.language, context, found
+        ),
+        quiet=True,
+    )
+    if arguments.quiet:
+        return
+    arguments.messages.print_notes(said["note_facts"])
+    print_text(f"{report.REPORT}, {report.ANSWERS} and {report.PICTURES} in {arguments.output}")
 
 
 def _chunk(text):

@@ -214,7 +214,7 @@ def run(
             if scheduler is None and workers == 0:
                 work.here()
             else:
-                count = workers or min(_cores(), len(work.open))
+                count = workers or min(cores(), len(work.open))
                 where = clusters.There(scheduler) if scheduler else clusters.Local(count)
                 work.on(where)
     except BaseException:
@@ -268,10 +268,11 @@ def survey(prepared, folder):
     jobs_ = {each.job_hash for each in prepared.runs}
     seconds = [record["seconds"] for record in map(kept.read, jobs_) if record is not None]
     mean = sum(seconds) / len(seconds) if seconds else None
-    return Survey(len(prepared.runs), len(jobs_), len(seconds), mean, _cores())
+    return Survey(len(prepared.runs), len(jobs_), len(seconds), mean, cores())
 
 
-def _cores():
+def cores():
+    """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

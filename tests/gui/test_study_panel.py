@@ -42,8 +42,8 @@ assert json.loads(study.Vary)[2] == {"key": "programs[0].feed_mm_s", "values": [
 keys.setEditText("belt_machine.fors_N")
 press("Add")
 assert "force_N" in field("state").text() and len(json.loads(study.Vary)) == 3
-vary("law.pressure_exponent", "0.9 1.1")
-assert len(json.loads(study.Vary)) == 4
+vary("law.pressure_exponent", "0.9 1.1 5")
+assert json.loads(study.Vary)[3] == {"key": "law.pressure_exponent", "range": [0.9, 1.1], "steps": 5}
 field("removeVaried4", QtGui.QToolButton).click()
 settle()
 assert len(json.loads(study.Vary)) == 3
@@ -75,6 +75,8 @@ settle()
 assert not field("studyPicture").pixmap_.isNull() or "Q2" in field("studyNote").text()
 kind.setCurrentIndex(0)
 press("Close")
+Gui.activeDocument().activeView().viewIsometric()
+Gui.SendMsgToActiveView("ViewFit")
 settle()
 picture("workbench-study-table")
 

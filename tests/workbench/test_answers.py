@@ -159,12 +159,22 @@ def test_few_values_and_text_have_indices():
 
     x, grit, n = inputs_of(study, ["x", "grit", "n"])
     rng = np.random.default_rng(0)
-    a, g, b = rng.random(400), rng.integers(0, 3, 400), rng.choice([1.0, 2.0, 5.0], 400, p=[0.25, 0.25, 0.5])
+    a, g, b = (
+        rng.random(400),
+        rng.integers(0, 3, 400),
+        rng.choice([1.0, 2.0, 5.0], 400, p=[0.25, 0.25, 0.5]),
+    )
     text = np.array(["soft", "hard", "harder"], dtype=object)[g]
     columns = np.column_stack([x.coded(a), grit.coded(text), n.coded(b)])
     figure = a + np.array([0.0, 2.0, -1.0])[g] + 0.1 * b**2
     found = chaos.of_sample(columns, figure, [x.law(), grit.law(), n.law()])
-    parts = np.array([1 / 12, np.var([0.0, 2.0, -1.0]), 0.01 * (0.25 * 1 + 0.25 * 16 + 0.5 * 625 - (0.25 + 1 + 12.5) ** 2)])
+    parts = np.array(
+        [
+            1 / 12,
+            np.var([0.0, 2.0, -1.0]),
+            0.01 * (0.25 * 1 + 0.25 * 16 + 0.5 * 625 - (0.25 + 1 + 12.5) ** 2),
+        ]
+    )
     assert np.array(found["total"])[:, 0] == pytest.approx(parts / parts.sum(), abs=WITHIN)
     assert grit.value(1.2) == "hard" and n.value(3.9) == 5.0
 
@@ -226,7 +236,11 @@ def test_a_grid_has_no_intervals_and_says_so():
 
 def test_standardised_coefficients_and_their_intervals():
     rng = np.random.default_rng(4)
-    x = {"a": rng.normal(size=300), "b": 5.0 + 10.0 * rng.normal(size=300), "c": rng.normal(size=300)}
+    x = {
+        "a": rng.normal(size=300),
+        "b": 5.0 + 10.0 * rng.normal(size=300),
+        "c": rng.normal(size=300),
+    }
     y = 2.0 * x["a"] + 0.1 * x["b"] + rng.normal(size=300)
     found = effects.regression(x, y, resampling.counts(300))
     whole = np.sqrt(4.0 + 1.0 + 1.0)

@@ -16,7 +16,9 @@ def add(commands):
     )
     sort.add_argument("job", help="job.json")
     sort.add_argument("scans", nargs="+", help="meshes of the raw parts, or folders of them")
-    sort.add_argument("-o", "--output", required=True, help="folder for the table, report and plans")
+    sort.add_argument(
+        "-o", "--output", required=True, help="folder for the table, report and plans"
+    )
     sort.add_argument("--settings", help="JSON file of the plans' settings")
     sort.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one of them; as JSON"

@@ -128,9 +128,7 @@ def _answer(found, arguments):
     from ..studies import report
 
     said = background.run(
-        lambda context: report.write_answers(
-            arguments.output, arguments.language, context, found
-        ),
+        lambda context: report.write_answers(arguments.output, arguments.language, context, found),
         quiet=True,
     )
     if arguments.quiet:

@@ -15,16 +15,17 @@ OVERALL = "overall"
 VERDICTS = ("pass", "fail", "unknown")
 FEW = 30  # runs, below which intervals by resampling are told to be too narrow
 RANDOM = ("monte_carlo", "latin_hypercube", "sobol")
-USUAL = (  # figures that are answered for if the study names none
-    "in_share",
-    "above_share",
-    "below_share",
-    "worst.beyond_mm",
-    "deviation_mm.rms",
-    "removed_volume_mm3",
-    "process_time_s",
-    "peak_pressure_MPa",
-)
+# Figures that are answered for if the study names none.
+USUAL = """
+    in_share
+    above_share
+    below_share
+    worst.beyond_mm
+    deviation_mm.rms
+    removed_volume_mm3
+    process_time_s
+    peak_pressure_MPa
+""".split()
 SIDES = {"above_share": "not_above", "below_share": "not_below"}
 
 
@@ -291,7 +292,13 @@ def _indices(name, table, inputs, meta, study, context):
                 size=size,
                 least=sobol.LEAST,
             )
-        return {"method": "blocks", "variables": names, "count": int(kept.sum()), "size": size, **found}
+        return {
+            "method": "blocks",
+            "variables": names,
+            "count": int(kept.sum()),
+            "size": size,
+            **found,
+        }
     context.throw_if_cancelled()
     found = chaos.of_sample(columns[good], values[good], [one.law() for one in used])
     if found is None:

@@ -118,16 +118,16 @@ def _search(given, distributions, surfaces, figure, sign, limits):
     ot = design.openturns()
     low, high = given.min(axis=0), given.max(axis=0)
     unit = np.asarray(ot.SobolSequence(given.shape[1]).generate(CANDIDATES))
-    few = {
-        k: np.unique(given[:, k]) for k, one in enumerate(distributions) if one.isDiscrete()
-    }
+    few = {k: np.unique(given[:, k]) for k, one in enumerate(distributions) if one.isDiscrete()}
     scale = {name: float(np.ptp(surface(given))) or 1.0 for name, surface in surfaces.items()}
     best, size = None, high - low
     for _ in range(ROUNDS):
         begin = low if best is None else np.clip(best - 0.5 * size, low, high - size)
         places = begin + unit * size
         for k, values in few.items():
-            places[:, k] = values[np.minimum((unit[:, k] * len(values)).astype(int), len(values) - 1)]
+            places[:, k] = values[
+                np.minimum((unit[:, k] * len(values)).astype(int), len(values) - 1)
+            ]
         if best is not None:
             places = np.vstack([best, places])
         far = sum(

@@ -82,7 +82,8 @@ def main_effects(variables, figure, drawn=None, confidence=CONFIDENCE):
 def regression(variables, figure, drawn=None, confidence=CONFIDENCE):
     """Linear regression on all variables with numbers: dict(r2, rows [dict(variable, coefficient, low, high)]), of the
     standardised coefficients: by how many of its standard deviations the figure changes with one of the variable.
-    None where the runs do not determine them: too few, or variables that are not independent of each other."""
+    None where the runs do not determine them: too few, or variables that are not independent of each other.
+    """
     names = [name for name, values in variables.items() if values.dtype.kind in "fiu"]
     names = [name for name in names if not is_constant(variables[name].astype(float))]
     if not names or is_constant(figure) or len(figure) < len(names) + 2:

@@ -20,7 +20,8 @@ class Input:
         elif "values" in given:
             self.choices = list(given["values"])
         numbers = [
-            isinstance(one, (int, float)) and not isinstance(one, bool) for one in self.choices or ()
+            isinstance(one, (int, float)) and not isinstance(one, bool)
+            for one in self.choices or ()
         ]
         self.numeric = all(numbers)
         self.varies = self.choices is None or len({_key(one) for one in self.choices}) > 1

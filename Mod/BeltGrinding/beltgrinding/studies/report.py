@@ -16,7 +16,9 @@ from ..reporting.markup import Markup, data_uri, element
 from . import answers as answering, charts, names
 from .making import Study
 
-ANSWERS, REPORT, PICTURES = "answers.json", "report.html", "pictures"
+ANSWERS = "answers.json"
+REPORT = "report.html"
+PICTURES = "pictures"
 PRINT_DPI = 130
 METHODS = {
     "grid": "grid: every value with every other",
@@ -29,7 +31,8 @@ METHODS = {
 
 def write_answers(folder, language="en", context=None, study=None):
     """Writes a study's answers into its folder: answers.json, report.html and pictures/*.png. ``language``: "en" or "de";
-    ``study``: the ``Study`` of the folder, read from it if None. Returns the answers. Raises InputError, Cancelled."""
+    ``study``: the ``Study`` of the folder, read from it if None. Returns the answers. Raises InputError, Cancelled.
+    """
     context = context or core.RunContext()
     folder = Path(folder)
     study = study or Study.read(folder)
@@ -54,15 +57,15 @@ def draw(found, table, words, dpi=PRINT_DPI, context=None):
     """{file name: bytes of a PNG}: yield.png, matrix.png and of each figure FIGURE-tornado.png, -effects.png,
     -scatter.png, -sobol.png, as far as there is something to draw."""
     made, kinds = {}, ("tornado", "effects", "scatter", "sobol")
-    wanted = [("yield.png", "yield", None)]
+    wanted = [("yield", "yield", None)]
     for name in found["figures"]:
-        wanted += [(f"{file_stem(name)}-{kind}.png", kind, name) for kind in kinds]
-    for file, kind, name in [*wanted, ("matrix.png", "matrix", None)]:
+        wanted += [(f"{file_stem(name)}-{kind}", kind, name) for kind in kinds]
+    for stem, kind, name in [*wanted, ("matrix", "matrix", None)]:
         if context is not None:
             context.throw_if_cancelled()
         content = one(found, table, kind, name, words, dpi)
         if content is not None:
-            made[file] = content
+            made[f"{stem}.png"] = content
     return made
 
 
@@ -427,8 +430,7 @@ def _failed(found, words):
     if not found["runs"]["errors"]:
         return None
     rows = [
-        [words.whole(one["count"]), str(one["run"]), one["text"]]
-        for one in found["runs"]["errors"]
+        [words.whole(one["count"]), str(one["run"]), one["text"]] for one in found["runs"]["errors"]
     ]
     heads = [
         (words("runs"), "number"),

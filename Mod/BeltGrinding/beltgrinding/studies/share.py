@@ -22,7 +22,8 @@ def wilson(passed, count, confidence=CONFIDENCE):
 
 def of(verdicts, random, confidence=CONFIDENCE):
     """The yield of ``verdicts`` ("pass", "fail" or "unknown" each): dict(passed, failed, unknown, count, share, low,
-    high). What is not known has not passed. ``random``: the runs are a sample; else there is no interval."""
+    high). What is not known has not passed. ``random``: the runs are a sample; else there is no interval.
+    """
     counts = {word: sum(one == word for one in verdicts) for word in ("pass", "fail", "unknown")}
     count = sum(counts.values())
     low, high = wilson(counts["pass"], count, confidence) if random else (None, None)

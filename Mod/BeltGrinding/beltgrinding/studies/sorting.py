@@ -129,7 +129,8 @@ def _named(scans):
             paths.append(path)
     if not paths:
         raise InputError(
-            "studies.no_scans", "there is nothing to sort: give scans (.stl, .ply, .obj) or a folder"
+            "studies.no_scans",
+            "there is nothing to sort: give scans (.stl, .ply, .obj) or a folder",
         )
     found, taken = [], set()
     for path in paths:
@@ -231,13 +232,15 @@ def _lacking(job, context):
 
 
 def _word(verdict, share):
-    """"pass", "fail" or "unknown". Where the scan has no stock nothing is known, of either sign."""
+    """ "pass", "fail" or "unknown". Where the scan has no stock nothing is known, of either sign."""
     if share >= 1.0:
         return verdict["overall"]
     known = verdict["in_share"] * verdict["inspected_area_mm2"] / verdict["area_mm2"]
     if known >= share:
         return "pass"
-    return "unknown" if known + verdict["missed_area_mm2"] / verdict["area_mm2"] >= share else "fail"
+    return (
+        "unknown" if known + verdict["missed_area_mm2"] / verdict["area_mm2"] >= share else "fail"
+    )
 
 
 def _side_by_side(tasks, workers, taken, context):

@@ -50,13 +50,17 @@ def document(batch, job, share, words):
     style += (resources() / "report" / "study.css").read_text(encoding="utf-8")
     found = counts(batch)
     tiles = [
-        element("div", element("b", words.whole(n)), element("span", words(TEXTS[k])), class_="tile")
+        element(
+            "div", element("b", words.whole(n)), element("span", words(TEXTS[k])), class_="tile"
+        )
         for k, n in found.items()
         if n or k != sorting.UNKNOWN
     ]
     limit = words("A part passes if its verdict is pass.")
     if share < 1.0:
-        limit = words("A part passes with {share} of its area in tolerance.", share=words.percent(share))
+        limit = words(
+            "A part passes with {share} of its area in tolerance.", share=words.percent(share)
+        )
     body = [
         element("p", words("A batch of castings, sorted by their scans"), class_="kind"),
         element("h1", title),
@@ -91,7 +95,9 @@ def _table(batch, words):
     ]
     rows = []
     for row in batch.parts:
-        seconds = row["planned_time_s"] if row["sorted"] == sorting.PLANNED else row["process_time_s"]
+        seconds = (
+            row["planned_time_s"] if row["sorted"] == sorting.PLANNED else row["process_time_s"]
+        )
         why = sorting.reason(row, words)
         if not row["trusted"]:
             why = "; ".join(filter(None, [why, words("the scan is poorly laid on the design")]))

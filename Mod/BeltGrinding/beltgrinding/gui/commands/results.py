@@ -69,7 +69,7 @@ class Study(Command):
     )
 
     def run(self):
-        from ..panels.study_panel import show
+        from ..docks.study_dock import show
 
         job = active_job()
         obj = child(job, study.Study)

@@ -8,7 +8,8 @@ from .runner import Runner
 
 class StudyRunner(Runner):
     """``done(study.Found or None, error or None)`` follows in the end; ``told`` is the last ``Progress``. The Study object is
-    written in one undo step, in the end, also with what a cancelled study had. Raises InputError for what is missing."""
+    written in one undo step, in the end, also with what a cancelled study had. Raises InputError for what is missing.
+    """
 
     def __init__(self, obj, progress, done):
         self.study, self.told = obj.Name, None

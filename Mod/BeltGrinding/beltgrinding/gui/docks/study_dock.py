@@ -3,6 +3,7 @@
 import json
 
 import FreeCAD
+import FreeCADGui as Gui
 
 from ...base.files import cannot_be_written, write_whole
 from ...base.messages import sentence
@@ -15,6 +16,7 @@ from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
 from ..common.theme import theme
 from ..common.transaction import transaction
+from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
 from .object_dock import ObjectDock
 
@@ -385,3 +387,8 @@ class StudyDock(ObjectDock):
         self._clear()
         self.hide()
 
+
+def show(obj):
+    """Opens the panel of a Study object; its table comes in the dock."""
+    if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
+        Gui.Control.showDialog(StudyPanel(obj, StudyDock.open))

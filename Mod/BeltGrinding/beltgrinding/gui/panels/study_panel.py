@@ -2,8 +2,6 @@
 
 import json
 
-import FreeCADGui as Gui
-
 from ...engine import InputError
 from ...objects import study as studies, study_keys
 from ...objects.proxy import type_of
@@ -22,11 +20,12 @@ MOST_RUNS, MOST_SEED, MOST_WORKERS = 1_000_000, 2**31 - 1, 4096
 class StudyPanel(RunPanel):
     """Settings go into the Study object as they are typed; the table and the answers are stored in it in the end."""
 
-    def __init__(self, obj):
+    def __init__(self, obj, open_table):
+        """``open_table(obj)`` shows the table and the charts."""
         super().__init__(
             obj.getParentGroup(), translate("BeltGrinding", "Study"), "BeltGrinding_Study"
         )
-        self.obj, self.document = obj, obj.Document
+        self.obj, self.document, self.open_table = obj, obj.Document, open_table
         body = QtGui.QVBoxLayout(self.form)
         body.addWidget(self._varied())
         body.addWidget(self._design())
@@ -196,9 +195,7 @@ class StudyPanel(RunPanel):
         self._say("\n".join(lines))
 
     def show_table(self):
-        from ..docks.study_dock import StudyDock
-
-        StudyDock.open(self.obj)
+        self.open_table(self.obj)
 
     def _changed(self):
         try:
@@ -238,8 +235,3 @@ class StudyPanel(RunPanel):
         self.document.recompute()
         return super().reject()
 
-
-def show(obj):
-    """Opens the panel of a Study object."""
-    if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(StudyPanel(obj))

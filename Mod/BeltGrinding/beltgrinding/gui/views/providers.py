@@ -320,7 +320,7 @@ class StudyView(Undrawn):
             self.view.signalChangeIcon()
 
     def doubleClicked(self, view):
-        from ..panels.study_panel import show
+        from ..docks.study_dock import show
 
         show(view.Object)
         return True

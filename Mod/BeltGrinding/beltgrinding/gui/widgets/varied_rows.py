@@ -149,7 +149,10 @@ class _Row(QtGui.QFrame):
             return {**entry, "values": values}
         names = NUMBERS[kind]
         numbers = [v for v in values if isinstance(v, float)]
-        if len(numbers) != len(names) or len(values) != len(names):
+        entry.pop("steps", None)
+        if len(numbers) == len(names) + 1 and numbers[-1] >= 1.0 and numbers[-1].is_integer():
+            entry["steps"] = int(numbers.pop())
+        if len(numbers) != len(names) or len(values) not in (len(names), len(names) + 1):
             raise _unreadable(entry["key"], kinds()[kind])
         if kind == "range":
             return {**entry, "range": numbers}
@@ -169,12 +172,14 @@ def _told(entry):
     """(kind, text of the values) of an entry."""
     if "parts" in entry:
         return "values", translate("BeltGrinding", "{} parts").format(len(entry["parts"]))
+    steps = [entry["steps"]] if "steps" in entry else []
     if "range" in entry:
-        return "range", "  ".join(_text(value) for value in entry["range"])
+        return "range", "  ".join(_text(value) for value in [*entry["range"], *steps])
     if "values" in entry:
         return "values", "  ".join(_text(value) for value in entry["values"])
     given = entry["distribution"]
-    return given["kind"], "  ".join(_text(given[n]) for n in NUMBERS[given["kind"]] if n in given)
+    numbers = [given[name] for name in NUMBERS[given["kind"]] if name in given]
+    return given["kind"], "  ".join(_text(value) for value in [*numbers, *steps])
 
 
 def _text(value):

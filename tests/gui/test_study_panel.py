@@ -114,7 +114,7 @@ def test_the_panel_as_it_looks(freecad):
 import beltgrinding
 varied = [
     {"key": "belt_machine.force_N", "range": [20, 60]},
-    {"key": "stock.allowance_mm", "distribution": {"kind": "normal", "mean": 0.2, "sd": 0.02}},
+    {"key": "stock.allowance_mm", "distribution": {"kind": "normal", "mean": 0.2, "sd": 0.02, "lower": 0.0}},
     {"key": "placement.z_mm", "distribution": {"kind": "normal", "mean": 0, "sd": 0.05}},
     {"key": "programs[0].feed_mm_s", "values": [20, 30, 40]},
 ]

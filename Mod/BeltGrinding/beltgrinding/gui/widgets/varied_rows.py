@@ -80,6 +80,7 @@ class _Row(QtGui.QFrame):
         self.changed = self.gone = lambda: None
         shown = ("how", "range", "values", "distribution")
         self.kept = {k: v for k, v in entry.items() if k not in shown}
+        self.given = entry.get("distribution", {})  # its ends, which are not shown, are kept
         body = QtGui.QGridLayout(self)
         body.setContentsMargins(0, 0, 0, 0)
         body.setSpacing(2)
@@ -156,7 +157,8 @@ class _Row(QtGui.QFrame):
             raise _unreadable(entry["key"], kinds()[kind])
         if kind == "range":
             return {**entry, "range": numbers}
-        return {**entry, "distribution": {"kind": kind, **dict(zip(names, numbers))}}
+        ends = self.given if self.given.get("kind") == kind else {}
+        return {**entry, "distribution": {**ends, "kind": kind, **dict(zip(names, numbers))}}
 
 
 def _unreadable(key, kind):

@@ -13,6 +13,7 @@ sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
 ot = pytest.importorskip("openturns")
 
+from beltgrinding import cli  # noqa: E402
 from beltgrinding.base import messages  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
 from beltgrinding.planning import pictures  # noqa: E402
@@ -327,6 +328,18 @@ def test_the_report_speaks_german(ground_study):
     assert "Ausbeute nach der Toleranz" in html and "standardisierter Koeffizient" in html
     for english in ("Tolerance yield", "what varies", "first level", "Latin hypercube"):
         assert english not in html
+
+
+def test_the_command_writes_answers_beside_the_table(ground_study, capsys):
+    (ground_study / report.REPORT).unlink(missing_ok=True)
+    given = str(ground_study / "study.json")
+    call = ["study", given, "-o", str(ground_study), "--workers", "0"]
+    assert cli.main([*call, "--no-report"]) == 0
+    assert not (ground_study / report.REPORT).exists()
+    assert cli.main([*call, "--language", "de"]) == 0
+    told = capsys.readouterr()
+    assert report.REPORT in told.out and "only 24 runs" in told.err
+    assert "Ausbeute" in (ground_study / report.REPORT).read_text()
 
 
 def test_every_text_is_there_in_german():

@@ -117,6 +117,15 @@ def test_indices_of_blocks_are_those_of_ishigamis_function():
         assert (low < value).all() and (value < high).all()
 
 
+def test_what_two_variables_do_together():
+    study = study_of("abc", "sobol_indices", 1024)
+    study["design"]["second_order"] = True
+    table, meta = table_of(study, ishigami)
+    found = answers.answers(study, meta, table)["figures"]["f"]["sobol"]
+    assert found["second"][0][2] == pytest.approx(TOTAL[2], abs=0.06)  # x1 with x3, and no others
+    assert abs(found["second"][0][1]) < 0.06 and abs(found["second"][1][2]) < 0.06
+
+
 def test_indices_of_a_sample_are_those_of_ishigamis_function():
     for method in ("latin_hypercube", "monte_carlo", "sobol"):
         study = study_of("abc", method, 256)
@@ -303,7 +312,14 @@ def ground_study(tmp_path_factory):
             {"name": "allowance", "key": "stock.allowance_mm", "range": [0.1, 0.4]},
         ],
         "design": {"runs": 24},
-        "answers": {"best": {"figure": "process_time_s", "limits": {"in_share": [0.1, None]}}},
+        "answers": {
+            "best": {
+                "figure": "removed_volume_mm3",
+                "goal": "maximise",
+                "limits": {"removed_volume_mm3": [None, 150.0]},
+                "surface": True,
+            }
+        },
     }
     making.study(given, folder, workers=0)
     return folder
@@ -316,6 +332,10 @@ def test_a_ground_study_has_its_report(ground_study):
     force = next(row for row in one["regression"]["rows"] if row["variable"] == "force")
     assert force["low"] > 0.3  # who presses harder removes more
     assert found["runs"]["done"] == 24
+    said = found["best"]["surface"]
+    assert said["checked"]["removed_volume_mm3"] == pytest.approx(
+        said["predicted"]["removed_volume_mm3"], rel=0.15
+    )
     pictures = {path.name for path in (ground_study / report.PICTURES).iterdir()}
     assert {"yield.png", "matrix.png", "removed_volume_mm3-tornado.png"} <= pictures
     html = (ground_study / report.REPORT).read_text()

@@ -107,8 +107,9 @@ told = []
 beltgrinding.make_study(job, told=told.append)
 assert told[-1].reused == 6 and told[-1].done == 6, told
 told.clear()
-beltgrinding.make_study(job, told=told.append, Method="sobol", Runs=8)
-assert study.RunsInAll == 8 and told[-1].reused == 0
+beltgrinding.make_study(job, told=told.append, Method="sobol", Runs=8, Workers=2)
+assert study.RunsInAll == 8 == study.RunsDone and told[-1].reused == 0
+assert max(one.workers for one in told) == 2, "processes of their own, from FreeCAD too"
 """
     )
 

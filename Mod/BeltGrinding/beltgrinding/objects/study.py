@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..base import schemas
 from ..base.files import json_bytes, write_whole
 from ..engine import Cancelled, InputError, core
-from ..studies import answers, making, store as stores, table as tables, vary
+from ..studies import answers, checking, making, store as stores, table as tables, vary
 from . import job_inputs, result_files, study_keys
 from .job_data import children, inspection
 from .properties import Key, Output, add_keys, add_outputs, to_job
@@ -157,6 +157,8 @@ class Work:
         answered = None
         if made.done.any():
             answered = answers.answers(study, prepared.design, made)
+            if not cancelled:
+                checking.check(answered, study, context)
         return Found(self, made, prepared.design, answered, cancelled)
 
     def _workers(self, prepared):

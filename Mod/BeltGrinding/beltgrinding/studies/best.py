@@ -26,9 +26,9 @@ def of_runs(figures, figure, goal, limits, good):
     known = good & np.isfinite(values)
     for name in limits:
         known &= np.isfinite(figures[name])
-    beyond = {name: _beyond(figures[name], *pair) for name, pair in limits.items()}
+    over = {name: beyond(figures[name], *pair) for name, pair in limits.items()}
     inside = known.copy()
-    for far in beyond.values():
+    for far in over.values():
         inside &= far <= 0.0
     found = {"run": None, "value": None, "ties": [], "nearest": None}
     found.update(feasible=int(inside.sum()), judged=int(known.sum()))
@@ -40,10 +40,10 @@ def of_runs(figures, figure, goal, limits, good):
         found.update(run=best, value=float(values[best]), ties=[int(k) for k in ties if k != best])
     elif known.any():
         total = np.zeros(len(values))
-        for name, far in beyond.items():
+        for name, far in over.items():
             total += far / (float(np.ptp(figures[name][known])) or 1.0)
         nearest = int(np.argmin(np.where(known, total, np.inf)))
-        broken = {name: float(far[nearest]) for name, far in beyond.items() if far[nearest] > 0.0}
+        broken = {name: float(far[nearest]) for name, far in over.items() if far[nearest] > 0.0}
         found["nearest"] = {"run": nearest, "beyond": broken}
     return found
 
@@ -67,9 +67,9 @@ def _sign(goal):
     return 1.0 if goal == "minimise" else -1.0
 
 
-def _beyond(values, low, high):
-    """(n,) by how much the values lie beyond the limits."""
-    far = np.zeros(len(values))
+def beyond(values, low, high):
+    """By how much values (of any shape) lie beyond limits, each of which may be None."""
+    far = np.zeros(np.shape(values))
     if low is not None:
         far = np.maximum(far, low - values)
     if high is not None:
@@ -109,7 +109,7 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
         return {"poor": poor, "q2": quality}
     place = _search(given, distributions, surfaces, figure, _sign(goal), limits)
     predicted = {name: float(surface(place[None])[0]) for name, surface in surfaces.items()}
-    inside = all(_beyond(np.array([predicted[n]]), *pair)[0] <= 0.0 for n, pair in limits.items())
+    inside = all(beyond(np.array([predicted[n]]), *pair)[0] <= 0.0 for n, pair in limits.items())
     return {"inputs": place, "predicted": predicted, "q2": quality, "feasible": inside}
 
 
@@ -131,7 +131,7 @@ def _search(given, distributions, surfaces, figure, sign, limits):
         if best is not None:
             places = np.vstack([best, places])
         far = sum(
-            (_beyond(surfaces[name](places), *pair) / scale[name] for name, pair in limits.items()),
+            (beyond(surfaces[name](places), *pair) / scale[name] for name, pair in limits.items()),
             np.zeros(len(places)),
         )
         wanted = sign * surfaces[figure](places)

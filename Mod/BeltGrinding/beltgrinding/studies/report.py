@@ -13,13 +13,14 @@ from ..reporting.facts import part_name
 from ..reporting.language import DASH, Language
 from ..reporting.layout import facts, section, table as html_table
 from ..reporting.markup import Markup, data_uri, element
-from . import answers as answering, charts, names
+from . import answers as answering, charts, checking, names
 from .making import Study
 
 ANSWERS = "answers.json"
 REPORT = "report.html"
 PICTURES = "pictures"
 PRINT_DPI = 130
+MOST_PAIRS = 15
 METHODS = {
     "grid": "grid: every value with every other",
     "latin_hypercube": "Latin hypercube",
@@ -38,6 +39,7 @@ def write_answers(folder, language="en", context=None, study=None):
     study = study or Study.read(folder)
     words = Language(language)
     found = answering.answers(study.study, study.design, study.table, context)
+    checking.check(found, study.study, context)
     pictures = draw(found, study.table, words, PRINT_DPI, context)
     files = {
         folder / ANSWERS: json_bytes(found),
@@ -271,16 +273,36 @@ def _surface(best, words):
         text = words("The response surface predicts left-out runs too badly to be followed.")
         return [element("p", text, class_="note"), quality]
     rows = [(key, _text(value, words)) for key, value in said["values"].items()]
-    rows += [
-        (words("predicted: {figure}", figure=names.figure(key, words)), words.figures(value))
-        for key, value in said["predicted"].items()
-    ]
+    for key, value in said["predicted"].items():
+        name = names.figure(key, words)
+        rows.append((words("predicted: {figure}", figure=name), words.figures(value)))
+        if said.get("checked", {}).get(key) is not None:
+            text = words("simulated: {figure}", figure=name)
+            rows.append((text, words.figures(said["checked"][key])))
     text = words("Between the runs, the response surface suggests this; run it as a check.")
-    if not said["feasible"]:
+    if "checked" in said and said["checked_feasible"]:
+        text = words(
+            "Between the runs, the response surface suggests this; it was run, and keeps all limits."
+        )
+    elif "checked" in said:
+        text = words(
+            "Between the runs, the response surface suggests this; it was run, and does not keep all limits."
+        )
+    elif not said["feasible"]:
         text = words(
             "The response surface keeps all limits nowhere; this comes nearest. Run it as a check."
         )
-    return [element("h3", words("Between the runs")), element("p", text), facts(rows), quality]
+    failed = None
+    if "check_failed" in said:
+        told_ = words("It could not be run: {why}", why=said["check_failed"])
+        failed = element("p", told_, class_="note")
+    return [
+        element("h3", words("Between the runs")),
+        element("p", text),
+        failed,
+        facts(rows),
+        quality,
+    ]
 
 
 def _end(value, words):
@@ -367,6 +389,8 @@ def _sobol(found, stem, pictures, words):
         (words("95 % interval"), "number"),
     ]
     said.append(html_table(heads, rows))
+    if "second" in found:
+        said.append(_pairs(found, words))
     if found["method"] == "blocks":
         text = words(
             "By Martinez' estimator from {count} of {size} rows of the design's blocks.",
@@ -384,6 +408,19 @@ def _sobol(found, stem, pictures, words):
         )
     said.append(element("p", text, class_="small"))
     return said
+
+
+def _pairs(found, words):
+    """Indices of the second order, the largest first."""
+    named = found["variables"]
+    pairs = [(i, j) for i in range(len(named)) for j in range(i)]
+    pairs.sort(key=lambda pair: -found["second"][pair[0]][pair[1]])
+    rows = [
+        [f"{named[j]} × {named[i]}", words.number(found["second"][i][j], 3)]
+        for i, j in pairs[:MOST_PAIRS]
+    ]
+    heads = [(words("two together"), "name"), (words("beyond each alone"), "number")]
+    return html_table(heads, rows)
 
 
 def _matrix(pictures, words):

@@ -4724,6 +4724,54 @@ im Mittel {} abgetragen</translation>
         <source>{} parts</source>
         <translation>{} Teile</translation>
     </message>
+    <message>
+        <source>Best setting</source>
+        <translation>Beste Einstellung</translation>
+    </message>
+    <message>
+        <source>From … to</source>
+        <translation>Von … bis</translation>
+    </message>
+    <message>
+        <source>Limit of</source>
+        <translation>Grenze für</translation>
+    </message>
+    <message>
+        <source>Wanted</source>
+        <translation>Gesucht</translation>
+    </message>
+    <message>
+        <source>also between the runs</source>
+        <translation>auch zwischen den Läufen</translation>
+    </message>
+    <message>
+        <source>best: run {}</source>
+        <translation>am besten: Lauf {}</translation>
+    </message>
+    <message>
+        <source>greatest</source>
+        <translation>größter Wert</translation>
+    </message>
+    <message>
+        <source>least</source>
+        <translation>kleinster Wert</translation>
+    </message>
+    <message>
+        <source>no run keeps all limits, nearest: run {}</source>
+        <translation>kein Lauf hält alle Grenzen ein, am nächsten: Lauf {}</translation>
+    </message>
+    <message>
+        <source>no run to choose the best from</source>
+        <translation>kein Lauf, der zur Wahl stünde</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
+        <source>only runs that pass</source>
+        <translation>nur Läufe, die bestehen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

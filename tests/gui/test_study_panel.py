@@ -48,6 +48,16 @@ field("removeVaried4", QtGui.QToolButton).click()
 settle()
 assert len(json.loads(study.Vary)) == 3
 
+field("foldBest", QtGui.QToolButton).click()
+settle()
+for name, chosen in (("bestFigure", "process_time_s"), ("bestLimit", "removed_volume_mm3")):
+    box = field(name, QtGui.QComboBox)
+    box.setCurrentIndex(box.findData(chosen))
+type_in("bestLow", "many")
+assert "no number" in field("state").text()
+type_in("bestLow", "120")
+assert json.loads(study.Asked)["best"]["limits"] == {"removed_volume_mm3": [120.0, None]}
+field("foldBest", QtGui.QToolButton).click()
 field("Runs", QtGui.QSpinBox).setValue(24)
 field("Workers", QtGui.QSpinBox).setValue(1)
 press("Run")
@@ -95,6 +105,10 @@ doc.undo()
 doc.recompute()
 assert doc.BeltMachine.Force.getValueAs("N").Value == 30.0 and not study.OutOfDate
 
+best = study.Proxy.answers(study)["best"]
+assert f"best: run {best['run']}" in field("studyFigures").text()
+good = made["removed_volume_mm3"] >= 120.0
+assert best["value"] == made["process_time_s"][good].min() and good[best["run"] - 1]
 name_file("table.csv")
 press("Save table...")
 assert Path("table.csv").read_bytes() == made.csv_bytes()

@@ -11,6 +11,7 @@ from beltgrinding.job import load as jobs
 from beltgrinding.simulation import run as runs
 from beltgrinding.studies import batch, design as designs, making, vary
 from beltgrinding.studies.keys import Key
+from support import pictures
 from test_job import plate_job
 
 
@@ -216,6 +217,40 @@ def test_correlations_that_cannot_be_and_designs_that_have_none_are_refused():
     wide = [{**one, "range": [0, 1], "steps": 100} for one in many[:4]]
     with pytest.raises(InputError, match="more than 1000000"):
         rows(wide, "grid")
+
+
+def test_the_manuals_picture_of_the_designs():
+    import io
+
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    entries = [
+        force(range=[20, 60], steps=8),
+        {"name": "allowance", "key": "stock.allowance_mm", "range": [0.1, 0.3], "steps": 8},
+    ]
+    given = [{"between": ["force", "allowance"], "coefficient": 0.8}]
+    kinds = [
+        ("grid, 8 x 8", "grid", []),
+        ("monte_carlo", "monte_carlo", []),
+        ("latin_hypercube", "latin_hypercube", []),
+        ("sobol", "sobol", []),
+        ("latin_hypercube, correlation 0.8", "latin_hypercube", given),
+    ]
+    figure, axes = pyplot.subplots(1, 5, figsize=(15, 3.4), sharey=True, layout="constrained")
+    for ax, (title, method, correlated) in zip(axes, kinds):
+        drawn = np.array(rows(entries, method, 64, correlations=correlated))
+        assert drawn.shape == (64, 2)
+        ax.scatter(*drawn.T, s=14, color="#1f5fa8")
+        ax.set(title=title, xlim=(18, 62), ylim=(0.09, 0.31), xlabel="force_N, N")
+    axes[0].set_ylabel("allowance_mm, mm")
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=100)
+    pyplot.close(figure)
+    pictures.keep("study-designs", file.getvalue())
+    pictures.check(pictures.RELEASE, ["study-designs"])
 
 
 # Keys ------------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ MOST_DEATHS = (
 )
 MOST_TRIES = 20  # of sending what a worker needs
 RESTARTS = 3  # of a local cluster
+MISSED = 2  # looks in which a task is nowhere although workers are idle: then the scheduler has lost it
 
 
 class Lost(Exception):
@@ -95,6 +96,7 @@ class _Session:
         self.flying = {}  # future's key: (task, future)
         self.ended = queue.SimpleQueue()
         self.deaths, self.tries = collections.Counter(), collections.Counter()
+        self.missed = collections.Counter()  # looks in which a task was nowhere, by the future's key
         self.scheduler = None
         self.workers = 0
         self.number = 0
@@ -144,6 +146,9 @@ class _Session:
             found = self.client.sync(
                 self.client.scheduler.identity, callback_timeout=clusters.ANSWER_S
             )
+            held = self.client.sync(
+                self.client.scheduler.processing, callback_timeout=clusters.ANSWER_S
+            )
         except Exception:  # whatever a broken connection raises
             raise Lost from None
         if self.scheduler not in (None, found["id"]) or self.client.status != "running":
@@ -153,6 +158,21 @@ class _Session:
         if workers != self.workers and self.told is not None:
             self.told(workers)
         self.workers = workers
+        self._find_lost(held)
+
+    def _find_lost(self, held):
+        """Dask's scheduler (2022.12) forgets tasks that wait while all workers die: these are done again. ``held``: keys of
+        the tasks that each worker has."""
+        workers_idle = any(not keys for keys in held.values())
+        known = {key for keys in held.values() for key in keys}
+        for key in list(self.flying):
+            task, future = self.flying[key]
+            nowhere = workers_idle and key not in known and future.status == "pending"
+            self.missed[key] = self.missed[key] + 1 if nowhere else 0
+            if self.missed[key] >= MISSED:
+                del self.flying[key]
+                self.client.cancel([future], force=True)
+                self.waiting.appendleft(task)
 
     def _submit(self, task, blobs, worker=None):
         self.number += 1

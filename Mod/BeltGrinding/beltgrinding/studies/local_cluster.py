@@ -10,8 +10,11 @@ import sys
 
 def main(workers, folder):
     """Runs until standard input ends."""
+    import dask.config
     from distributed import LocalCluster
 
+    # All that is submitted, little at a time, goes to workers at once.
+    dask.config.set({"distributed.scheduler.worker-saturation": "inf"})
     with LocalCluster(
         n_workers=workers,
         threads_per_worker=1,

@@ -241,6 +241,7 @@ class StudyDock(ObjectDock):
                 low, high = 100.0 * whole[0]["low"], 100.0 * whole[0]["high"]
                 text += translate("BeltGrinding", " (95 %: {:.1f} to {:.1f})").format(low, high)
             lines.append(text)
+        lines += _best((self.answers or {}).get("best"))
         if obj.OpenedRun:
             text = translate("BeltGrinding", "the document is set to run {}")
             lines.append(text.format(obj.OpenedRun))
@@ -386,6 +387,18 @@ class StudyDock(ObjectDock):
         self.obj = None
         self._clear()
         self.hide()
+
+
+def _best(found):
+    """What is said of the best setting, in a list."""
+    if found is None:
+        return []
+    if found["run"] is not None:
+        return [translate("BeltGrinding", "best: run {}").format(found["run"])]
+    if found["nearest"] is not None:
+        text = translate("BeltGrinding", "no run keeps all limits, nearest: run {}")
+        return [text.format(found["nearest"]["run"])]
+    return [translate("BeltGrinding", "no run to choose the best from")]
 
 
 def show(obj):

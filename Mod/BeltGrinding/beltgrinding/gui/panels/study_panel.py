@@ -5,10 +5,13 @@ import json
 from ...engine import InputError
 from ...objects import study as studies, study_keys
 from ...objects.proxy import type_of
+from ...studies import names
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
+from ..common.report_language import words
 from ..common.study_runner import StudyRunner
-from ..widgets.fold import slim
+from ..widgets.best_form import BestForm
+from ..widgets.fold import Fold, slim
 from ..widgets.form import Form
 from ..widgets.steady import steady
 from ..widgets.varied_rows import VariedRows
@@ -29,6 +32,7 @@ class StudyPanel(RunPanel):
         body = QtGui.QVBoxLayout(self.form)
         body.addWidget(self._varied())
         body.addWidget(self._design())
+        body.addWidget(self._best())
         row = QtGui.QHBoxLayout()
         self.begin = self._button("runStudy", translate("BeltGrinding", "Run"), self.start)
         self.table = self._button(
@@ -98,6 +102,18 @@ class StudyPanel(RunPanel):
         box.changed = self._changed
         self.design = box
         return box
+
+    def _best(self):
+        told = words()
+        numbers = [name for name in names.NAMES if name != "overall"]
+        figures = {name: names.figure(name, told) for name in numbers}
+        asked = self.obj.Proxy.settings(self.obj)["answers"]
+        self.best = BestForm(asked.get("best"), figures)
+        self.best.changed = self._changed
+        folded = not asked.get("best")
+        title = translate("BeltGrinding", "Best setting")
+        self.best_fold = Fold("foldBest", title, self.best, folded=folded)
+        return self.best_fold
 
     def add(self):
         """Adds the chosen key, with a first range around its value."""
@@ -216,6 +232,15 @@ class StudyPanel(RunPanel):
         text = json.dumps(entries) if entries else ""
         if self.obj.Vary != text:
             self.obj.Vary = text
+        asked = {
+            k: v for k, v in self.obj.Proxy.settings(self.obj)["answers"].items() if k != "best"
+        }
+        best = self.best.wanted()
+        if best is not None:
+            asked["best"] = best
+        text = json.dumps(asked) if asked else ""
+        if self.obj.Asked != text:
+            self.obj.Asked = text
 
     def _open(self):
         self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
@@ -227,11 +252,10 @@ class StudyPanel(RunPanel):
         super()._arrange(running)
         self.begin.setVisible(not running)
         self.table.setVisible(not running and bool(self.obj.Fingerprint))
-        for widget in (self.varied_box, self.design):
+        for widget in (self.varied_box, self.design, self.best_fold):
             widget.setEnabled(not running)
 
     def reject(self):
         self._commit()
         self.document.recompute()
         return super().reject()
-

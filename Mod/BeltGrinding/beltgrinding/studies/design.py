@@ -128,7 +128,9 @@ def _blocks(ot, dimension, runs, second_order):
     column of A. A and B are a Sobol sequence of twice the dimension, shifted at random: the indices' error is then a
     fraction of what it is with numbers drawn at random."""
     both = ot.IndependentCopula(2 * dimension)
-    drawn = np.array(ot.LowDiscrepancyExperiment(ot.SobolSequence(), both, runs, True).generate())
+    even = ot.LowDiscrepancyExperiment(ot.SobolSequence(), both, runs, True)
+    even.setRandomize(True)
+    drawn = np.array(even.generate())
     a, b = drawn[:, :dimension], drawn[:, dimension:]
     blocks = [a, b, *_exchanged(a, b)]
     if second_order and dimension > 2:

@@ -5,22 +5,26 @@ theirs; what a worker does not have it asks for, and gets it with the task's nex
 """
 
 import collections
+import contextlib
+import logging
 import queue
 import time
 
 from ..engine import InputError, core
 from . import clusters, one, table
 
+LOGGERS = ("distributed.client", "distributed.core", "distributed.comm", "asyncio")
 LOOK_S = 0.1  # between two looks for a cancellation
 CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
 MORE = 2  # tasks waiting beside each one that is run
-MOST_DEATHS = (
-    3  # times that Dask gives a run up because its workers died (each after a few of them)
-)
 MOST_TRIES = 20  # of sending what a worker needs
-RESTARTS = 3  # of a local cluster
-MISSED = 2  # looks in which a task is nowhere although workers are idle: then the scheduler has lost it
+ALONE_S = 20.0  # without a worker, after which a local cluster is started again
+RESTARTS = 5  # of a local cluster, one after the other without a run in between
+ODD = 3  # errors of a worker that are none of ours, such as of one that is just ending, after which a run's is told
+MISSED = (
+    2  # looks in which a task is nowhere although workers are idle: then the scheduler has lost it
+)
 
 
 class Lost(Exception):
@@ -34,18 +38,45 @@ def run(where, tasks, blob, taken, context, told=None):
     many processes work, when that changes. Raises InputError, Cancelled; what was taken stays taken.
     """
     distributed = clusters.distributed()
-    waiting = collections.deque(tasks)
-    restarts = 0
+    with _quiet():
+        _run(distributed, where, tasks, blob, taken, context, told)
+
+
+@contextlib.contextmanager
+def _quiet():
+    """Dask's client logs what we see ourselves, such as a worker that is gone."""
+    loggers = [logging.getLogger(name) for name in LOGGERS]
+    before = [logger.level for logger in loggers]
     try:
-        while waiting:
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL + 1)
+        yield
+    finally:
+        for logger, level in zip(loggers, before):
+            logger.setLevel(level)
+
+
+def _run(distributed, where, tasks, blob, taken, context, told):
+    waiting, suspects = collections.deque(tasks), collections.deque()
+    restarts = 0
+
+    def counted(record):
+        nonlocal restarts
+        restarts = 0
+        taken(record)
+
+    try:
+        while waiting or suspects:
             context.throw_if_cancelled()
             if where.own and not where.alive():
                 restarts += 1
                 if restarts > RESTARTS:
-                    raise _gone(where, len(waiting))
+                    raise _gone(where, len(waiting) + len(suspects))
             where.start(context)
-            client = _connected(distributed, where, len(waiting), context)
-            session = _Session(distributed, client, waiting, blob, taken, context, told)
+            client = _connected(distributed, where, len(waiting) + len(suspects), context)
+            session = _Session(
+                distributed, client, where, (waiting, suspects), blob, counted, context, told
+            )
             try:
                 session.work()
             except Lost:
@@ -89,14 +120,20 @@ def _gone(where, open_runs, reason=None):
 class _Session:
     """One client's connection."""
 
-    def __init__(self, distributed, client, waiting, blob, taken, context, told):
-        self.distributed, self.client = distributed, client
-        self.waiting, self.blob, self.taken = waiting, blob, taken
+    def __init__(self, distributed, client, where, tasks, blob, taken, context, told):
+        """``tasks``: two deques, of those that wait, and of those that Dask has given up because the workers that had them
+        died. One of these may only have been beside another that killed them: it is tried once more, alone.
+        """
+        self.distributed, self.client, self.where = distributed, client, where
+        self.waiting, self.suspects = tasks
+        self.alone = None  # the key of a suspect's future
+        self.blob, self.taken = blob, taken
         self.context, self.told = context, told
         self.flying = {}  # future's key: (task, future)
         self.ended = queue.SimpleQueue()
-        self.deaths, self.tries = collections.Counter(), collections.Counter()
-        self.missed = collections.Counter()  # looks in which a task was nowhere, by the future's key
+        self.tries = collections.Counter()  # of sending what a worker needs, by job
+        self.odd = collections.Counter()  # errors that are none of ours, by job
+        self.missed = collections.Counter()  # looks in which a task was nowhere, by key
         self.scheduler = None
         self.workers = 0
         self.number = 0
@@ -104,26 +141,32 @@ class _Session:
     def work(self):
         """Until all is done. Raises Lost, InputError, Cancelled."""
         looked, alone = 0.0, time.monotonic()
-        while self.waiting or self.flying:
+        while self.waiting or self.flying or self.suspects:
             self.context.throw_if_cancelled()
             if time.monotonic() - looked > CHECK_S:
                 self._look()
                 looked = time.monotonic()
                 alone = looked if self.workers else alone
+                if self.where.own and looked - alone > ALONE_S:
+                    self.where.close()
+                    raise Lost
                 if looked - alone > WAIT_S:
                     raise InputError(
                         "studies.no_workers",
                         "the scheduler {address} has no workers; start some (dask-worker), and the same study again",
                         address=self.client.scheduler.address,
                     )
-            while self.waiting and len(self.flying) < (1 + MORE) * self.workers:
+            room = 0 if self.alone in self.flying else (1 + MORE) * self.workers
+            while self.waiting and len(self.flying) < room:
                 self._submit(self.waiting.popleft(), {})
+            if self.suspects and self.workers and not self.flying:
+                self.alone = self._submit(self.suspects.popleft(), {})
             try:
                 key = self.ended.get(timeout=LOOK_S)
             except queue.Empty:
                 continue
             if key in self.flying:
-                self._take(*self.flying.pop(key))
+                self._take(*self.flying.pop(key), alone=key == self.alone)
 
     def put_back(self):
         """What is under way is to be done again."""
@@ -191,8 +234,9 @@ class _Session:
             raise Lost from None
         self.flying[future.key] = (task, future)
         future.add_done_callback(lambda done: self.ended.put(done.key))
+        return future.key
 
-    def _take(self, task, future):
+    def _take(self, task, future, alone=False):
         if future.status == "finished":
             try:
                 answer, worker = future.result(timeout=clusters.ANSWER_S)
@@ -201,14 +245,14 @@ class _Session:
                     raise
                 self.waiting.appendleft(task)  # gone with its worker
                 return
-            self._answered(task, answer, worker)
+            self._answered(task, answer, worker, alone)
         elif future.status == "error":
-            self._failed(task, future)
+            self._failed(task, future, alone)
         else:  # cancelled, lost: with the scheduler
             self.waiting.appendleft(task)
             self._look()
 
-    def _answered(self, task, answer, worker):
+    def _answered(self, task, answer, worker, alone=False):
         if "versions" in answer:
             raise InputError(
                 "studies.other_version",
@@ -228,18 +272,22 @@ class _Session:
                 "the worker {worker} asks again and again for the files of a run; is its disk full?",
                 worker=worker,
             )
-        self._submit(task, {sha: self.blob(sha) for sha in answer["needs"]}, worker)
+        key = self._submit(task, {sha: self.blob(sha) for sha in answer["needs"]}, worker)
+        self.alone = key if alone else self.alone
 
-    def _failed(self, task, future):
-        error = future.exception(timeout=clusters.ANSWER_S)
+    def _failed(self, task, future, alone):
+        try:
+            error = future.exception(timeout=clusters.ANSWER_S)
+        except Exception:  # whatever a broken connection raises
+            self.waiting.appendleft(task)
+            return
         if isinstance(error, self.distributed.KilledWorker):
-            self.deaths[task["job_hash"]] += 1
-            if self.deaths[task["job_hash"]] < MOST_DEATHS:
-                self.waiting.append(task)
+            if not alone:
+                self.suspects.append(task)
                 return
             fact = core.Fact(
                 "studies.worker_died",
-                "each worker that was given it died; perhaps they have too little memory",
+                "each worker that was given it died; perhaps it needs more memory than they have",
             )
             self.taken(broken_off(task["job_hash"], str(fact)))
         elif isinstance(error, (ImportError, AttributeError)):
@@ -251,6 +299,9 @@ class _Session:
         elif isinstance(error, OSError):
             text = " ".join(str(error).split())[:200]
             self.taken(broken_off(task["job_hash"], text))
+        elif self.odd[task["job_hash"]] < ODD:
+            self.odd[task["job_hash"]] += 1
+            self.waiting.append(task)
         else:
             raise error
 

@@ -5,7 +5,10 @@ imported again by the workers, nor its terminal, whose Ctrl-C would reach them a
 with all workers when its standard input ends, that is with whoever started it.
 """
 
+import select
 import sys
+
+LOOK_S = 2.0  # between two looks for workers that are missing
 
 
 def main(workers, folder):
@@ -24,7 +27,10 @@ def main(workers, folder):
         local_directory=folder,
     ) as cluster:
         print(cluster.scheduler_address, flush=True)
-        sys.stdin.read()
+        while not select.select([sys.stdin], [], [], LOOK_S)[0]:
+            cluster.scale(
+                workers
+            )  # for those whose nanny has given up, as of one that died while it started
 
 
 if __name__ == "__main__":

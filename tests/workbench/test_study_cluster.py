@@ -316,7 +316,7 @@ def test_a_worker_with_another_engine_is_refused(tmp_path):
     prepared = making.prepare(making.validate(study_of()))
     task, base = task_of(prepared, [], versions={**core.versions(), "beltgrinding": "0.0.1"})
     assert one.in_worker(task, {task["base"]: base}, tmp_path) == {"versions": core.versions()}
-    session = cluster._Session(None, None, None, ([], []), None, None, None, None)
+    session = cluster._Session(None, None, None, ([], [], {}), None, None, None, None)
     with pytest.raises(InputError, match="another engine"):
         session._answered(task, {"versions": {"beltgrinding": "0.0.1"}}, "tcp://there")
 

@@ -13,7 +13,7 @@ import time
 from ..engine import InputError, core
 from . import clusters, one, table
 
-LOGGERS = ("distributed.client", "distributed.core", "distributed.comm", "asyncio")
+LOGGERS = ("asyncio", "distributed.client", "distributed.core", "distributed.comm")
 LOOK_S = 0.1  # between two looks for a cancellation
 CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
@@ -21,6 +21,7 @@ MORE = 2  # tasks waiting beside each one that is run
 MOST_TRIES = 20  # of sending what a worker needs
 ALONE_S = 20.0  # without a worker, after which a local cluster is started again
 RESTARTS = 5  # of a local cluster, one after the other without a run in between
+BLAMED = 2  # times that workers were lost with a run that was alone, after which it is given up
 ODD = 3  # errors of a worker that are none of ours, such as of one that is just ending, after which a run's is told
 MISSED = (
     2  # looks in which a task is nowhere although workers are idle: then the scheduler has lost it
@@ -57,7 +58,7 @@ def _quiet():
 
 
 def _run(distributed, where, tasks, blob, taken, context, told):
-    waiting, suspects = collections.deque(tasks), collections.deque()
+    waiting, suspects, blamed = collections.deque(tasks), collections.deque(), collections.Counter()
     restarts = 0
 
     def counted(record):
@@ -75,7 +76,14 @@ def _run(distributed, where, tasks, blob, taken, context, told):
             where.start(context)
             client = _connected(distributed, where, len(waiting) + len(suspects), context)
             session = _Session(
-                distributed, client, where, (waiting, suspects), blob, counted, context, told
+                distributed,
+                client,
+                where,
+                (waiting, suspects, blamed),
+                blob,
+                counted,
+                context,
+                told,
             )
             try:
                 session.work()
@@ -122,10 +130,10 @@ class _Session:
 
     def __init__(self, distributed, client, where, tasks, blob, taken, context, told):
         """``tasks``: two deques, of those that wait, and of those that Dask has given up because the workers that had them
-        died. One of these may only have been beside another that killed them: it is tried once more, alone.
+        died; and how often, by job, one of these was lost with all workers while it was alone. One of these may only have been beside another that killed them: it is tried once more, alone.
         """
         self.distributed, self.client, self.where = distributed, client, where
-        self.waiting, self.suspects = tasks
+        self.waiting, self.suspects, self.blamed = tasks
         self.alone = None  # the key of a suspect's future
         self.blob, self.taken = blob, taken
         self.context, self.told = context, told
@@ -160,7 +168,7 @@ class _Session:
             while self.waiting and len(self.flying) < room:
                 self._submit(self.waiting.popleft(), {})
             if self.suspects and self.workers and not self.flying:
-                self.alone = self._submit(self.suspects.popleft(), {})
+                self._try_alone(self.suspects.popleft())
             try:
                 key = self.ended.get(timeout=LOOK_S)
             except queue.Empty:
@@ -170,8 +178,29 @@ class _Session:
 
     def put_back(self):
         """What is under way is to be done again."""
-        self.waiting.extendleft(reversed([task for task, _ in self.flying.values()]))
-        self.flying.clear()
+        for key in reversed(list(self.flying)):
+            self._again(key, self.flying.pop(key)[0])
+
+    def _again(self, key, task):
+        """It did not come to an end, for nothing that it is known to have done; alone it is the one to blame."""
+        if key != self.alone:
+            self.waiting.appendleft(task)
+            return
+        self.blamed[task["job_hash"]] += 1
+        self.suspects.append(task)
+
+    def _try_alone(self, task):
+        if self.blamed[task["job_hash"]] < BLAMED:
+            self.alone = self._submit(task, {})
+        else:
+            self._give_up(task)
+
+    def _give_up(self, task):
+        fact = core.Fact(
+            "studies.worker_died",
+            "each worker that was given it died; perhaps it needs more memory than they have",
+        )
+        self.taken(broken_off(task["job_hash"], str(fact)))
 
     def close(self):
         """Drops what is under way."""
@@ -215,7 +244,7 @@ class _Session:
             if self.missed[key] >= MISSED:
                 del self.flying[key]
                 self.client.cancel([future], force=True)
-                self.waiting.appendleft(task)
+                self._again(key, task)
 
     def _submit(self, task, blobs, worker=None):
         self.number += 1
@@ -243,13 +272,13 @@ class _Session:
             except Exception as error:
                 if isinstance(error, InputError):
                     raise
-                self.waiting.appendleft(task)  # gone with its worker
+                self._again(future.key, task)  # gone with its worker
                 return
             self._answered(task, answer, worker, alone)
         elif future.status == "error":
             self._failed(task, future, alone)
         else:  # cancelled, lost: with the scheduler
-            self.waiting.appendleft(task)
+            self._again(future.key, task)
             self._look()
 
     def _answered(self, task, answer, worker, alone=False):
@@ -279,17 +308,13 @@ class _Session:
         try:
             error = future.exception(timeout=clusters.ANSWER_S)
         except Exception:  # whatever a broken connection raises
-            self.waiting.appendleft(task)
+            self._again(future.key, task)
             return
         if isinstance(error, self.distributed.KilledWorker):
             if not alone:
                 self.suspects.append(task)
                 return
-            fact = core.Fact(
-                "studies.worker_died",
-                "each worker that was given it died; perhaps it needs more memory than they have",
-            )
-            self.taken(broken_off(task["job_hash"], str(fact)))
+            self._give_up(task)
         elif isinstance(error, (ImportError, AttributeError)):
             raise InputError(
                 "studies.worker_without_us",

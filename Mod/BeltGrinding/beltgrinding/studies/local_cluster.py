@@ -18,6 +18,8 @@ def main(workers, folder):
 
     # All that is submitted, little at a time, goes to workers at once.
     dask.config.set({"distributed.scheduler.worker-saturation": "inf"})
+    # Deaths of workers after which a run is given up; it is then tried alone (cluster.py).
+    dask.config.set({"distributed.scheduler.allowed-failures": 1})
     with LocalCluster(
         n_workers=workers,
         threads_per_worker=1,

@@ -13,7 +13,7 @@ import time
 from ..engine import InputError, core
 from . import clusters, one, table
 
-LOGGERS = ("asyncio", "distributed.client", "distributed.core", "distributed.comm")
+LOGGERS = "asyncio distributed.client distributed.core distributed.comm".split()
 LOOK_S = 0.1  # between two looks for a cancellation
 CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone

@@ -69,7 +69,7 @@ math(EXPR next_python "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "freecad, python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \
 python3 (<< ${Python_VERSION_MAJOR}.${next_python}), python3-numpy, python3-jsonschema, python3-matplotlib, \
 python3-pil, libjs-three")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS calculix-ccx)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "calculix-ccx, python3-dask, python3-distributed, python3-openturns")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_files}/postinst ${package_files}/prerm
     ${package_files}/postrm)

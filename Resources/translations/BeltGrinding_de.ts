@@ -1471,6 +1471,82 @@
         <source>radius left and chord loss at each edge that it meets</source>
         <translation>verbliebener Radius und Sehnenverlust an jeder Kante, die er trifft</translation>
     </message>
+    <message>
+        <source>What is answered from the table.</source>
+        <translation>Was aus der Tabelle beantwortet wird.</translation>
+    </message>
+    <message>
+        <source>a row a run, as table.csv has it</source>
+        <translation>eine Zeile je Lauf, wie in table.csv</translation>
+    </message>
+    <message>
+        <source>answers as answers.json has them</source>
+        <translation>Antworten wie in answers.json</translation>
+    </message>
+    <message>
+        <source>grid: every value with every other; latin_hypercube: each part of every range once; sobol: a sequence that fills evenly; monte_carlo: at random; sobol_indices: the blocks that Sobol indices are found from</source>
+        <translation>grid: jeder Wert mit jedem anderen; latin_hypercube: jeder Teil jedes Bereichs einmal; sobol: eine Folge, die gleichmäßig füllt; monte_carlo: zufällig; sobol_indices: die Blöcke, aus denen Sobol-Indizes bestimmt werden</translation>
+    </message>
+    <message>
+        <source>hash of what was run</source>
+        <translation>Hash dessen, was gelaufen ist</translation>
+    </message>
+    <message>
+        <source>how many; of sobol_indices, of one block; of a grid nothing, which has as many as its values make</source>
+        <translation>wie viele; bei sobol_indices in einem Block; bei einem Gitter ohne Bedeutung, das so viele hat, wie seine Werte ergeben</translation>
+    </message>
+    <message>
+        <source>of what is drawn at random: the same seed gives the same runs</source>
+        <translation>für alles Zufällige: dieselbe Startzahl ergibt dieselben Läufe</translation>
+    </message>
+    <message>
+        <source>processes that run; 0: as many as there are cores, 1: one run after the other</source>
+        <translation>Prozesse, die laufen; 0: so viele, wie es Kerne gibt, 1: ein Lauf nach dem anderen</translation>
+    </message>
+    <message>
+        <source>run that the document was set to last; 0: none</source>
+        <translation>Lauf, auf den das Dokument zuletzt gesetzt wurde; 0: keiner</translation>
+    </message>
+    <message>
+        <source>runs of the design</source>
+        <translation>Läufe des Versuchsplans</translation>
+    </message>
+    <message>
+        <source>runs that could not be run</source>
+        <translation>Läufe, die nicht möglich waren</translation>
+    </message>
+    <message>
+        <source>runs whose verdict is pass, percent; -1: not known</source>
+        <translation>Läufe, deren Urteil bestanden ist, Prozent; -1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>runs with figures</source>
+        <translation>Läufe mit Ergebnis</translation>
+    </message>
+    <message>
+        <source>the design as design.json has it</source>
+        <translation>der Versuchsplan wie in design.json</translation>
+    </message>
+    <message>
+        <source>the job&apos;s settings that were varied, as JSON</source>
+        <translation>die Einstellungen des Auftrags, die variiert wurden, als JSON</translation>
+    </message>
+    <message>
+        <source>the same of the job alone</source>
+        <translation>dasselbe des Auftrags allein</translation>
+    </message>
+    <message>
+        <source>the same of the job set to OpenedRun</source>
+        <translation>dasselbe des auf OpenedRun gesetzten Auftrags</translation>
+    </message>
+    <message>
+        <source>what varies</source>
+        <translation>was variiert</translation>
+    </message>
+    <message>
+        <source>which of the varied depend on each other: a Gaussian copula</source>
+        <translation>welche der variierten Größen voneinander abhängen: eine Gauß-Copula</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -4436,6 +4512,298 @@ im Mittel {} abgetragen</translation>
         <source>RMS</source>
         <translation>RMS</translation>
     </message>
+    <message>
+        <source> (95 %: {:.1f} to {:.1f})</source>
+        <translation> (95 %: {:.1f} bis {:.1f})</translation>
+    </message>
+    <message>
+        <source>, {} failed</source>
+        <translation>, {} fehlgeschlagen</translation>
+    </message>
+    <message>
+        <source>= sets the value, + adds to the job&apos;s, × is a factor on it; numbers in the unit that the key ends with, blanks between them</source>
+        <translation>= setzt den Wert, + wird zu dem des Auftrags addiert, × ist ein Faktor darauf; Zahlen in der Einheit, mit der der Schlüssel endet, mit Leerzeichen dazwischen</translation>
+    </message>
+    <message>
+        <source>All runs (scatter)</source>
+        <translation>Alle Läufe (Streudiagramm)</translation>
+    </message>
+    <message>
+        <source>Cancelled: {} of {} runs are kept, Run goes on from there.</source>
+        <translation>Abgebrochen: {} von {} Läufen sind behalten, Starten macht dort weiter.</translation>
+    </message>
+    <message>
+        <source>Design</source>
+        <translation>Versuchsplan</translation>
+    </message>
+    <message>
+        <source>Double click: set the document to this run. Heads: sort</source>
+        <translation>Doppelklick: das Dokument auf diesen Lauf setzen. Spaltenköpfe: sortieren</translation>
+    </message>
+    <message>
+        <source>Each against each other</source>
+        <translation>Jede gegen jede</translation>
+    </message>
+    <message>
+        <source>It does not vary</source>
+        <translation>Es variiert nicht</translation>
+    </message>
+    <message>
+        <source>Latin hypercube</source>
+        <translation>lateinischer Hyperwürfel</translation>
+    </message>
+    <message>
+        <source>Mean over each variable</source>
+        <translation>Mittel über jede Größe</translation>
+    </message>
+    <message>
+        <source>Monte Carlo</source>
+        <translation>Monte Carlo</translation>
+    </message>
+    <message>
+        <source>Number</source>
+        <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>Open as the document&apos;s state</source>
+        <translation>Als Zustand des Dokuments öffnen</translation>
+    </message>
+    <message>
+        <source>Out of date: an input has changed since; run again.</source>
+        <translation>Veraltet: Seither hat sich eine Eingabe geändert; noch einmal starten.</translation>
+    </message>
+    <message>
+        <source>Report of the study</source>
+        <translation>Bericht der Studie</translation>
+    </message>
+    <message>
+        <source>Report...</source>
+        <translation>Bericht...</translation>
+    </message>
+    <message>
+        <source>Run</source>
+        <translation>Starten</translation>
+    </message>
+    <message>
+        <source>Running, {}</source>
+        <translation>Läuft, {}</translation>
+    </message>
+    <message>
+        <source>Runs</source>
+        <translation>Läufe</translation>
+    </message>
+    <message>
+        <source>Save table</source>
+        <translation>Tabelle speichern</translation>
+    </message>
+    <message>
+        <source>Save table...</source>
+        <translation>Tabelle speichern...</translation>
+    </message>
+    <message>
+        <source>Seed</source>
+        <translation>Startzahl</translation>
+    </message>
+    <message>
+        <source>Set to run {}</source>
+        <translation>Auf Lauf {} setzen</translation>
+    </message>
+    <message>
+        <source>Settings of the study</source>
+        <translation>Einstellungen der Studie</translation>
+    </message>
+    <message>
+        <source>Show study</source>
+        <translation>Studie zeigen</translation>
+    </message>
+    <message>
+        <source>Side by side</source>
+        <translation>Gleichzeitig</translation>
+    </message>
+    <message>
+        <source>Sobol indices</source>
+        <translation>Sobol-Indizes</translation>
+    </message>
+    <message>
+        <source>Sobol sequence</source>
+        <translation>Sobol-Folge</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Studie</translation>
+    </message>
+    <message>
+        <source>Table and charts</source>
+        <translation>Tabelle und Diagramme</translation>
+    </message>
+    <message>
+        <source>The document has no property for these, they stay as they are: {}</source>
+        <translation>Hierfür hat das Dokument keine Eigenschaft, es bleibt, wie es ist: {}</translation>
+    </message>
+    <message>
+        <source>The job is simulated many times, with other values of what varies. The job itself stays as it is.</source>
+        <translation>Der Auftrag wird viele Male simuliert, mit anderen Werten dessen, was variiert. Der Auftrag selbst bleibt, wie er ist.</translation>
+    </message>
+    <message>
+        <source>These paths were laid anew for the settings, so the figures may differ from the table&apos;s: {}</source>
+        <translation>Diese Bahnen wurden für die Einstellungen neu gelegt, sodass die Ergebnisse von denen der Tabelle abweichen können: {}</translation>
+    </message>
+    <message>
+        <source>Tolerance yield</source>
+        <translation>Ausbeute</translation>
+    </message>
+    <message>
+        <source>Weibull: scale, shape</source>
+        <translation>Weibull: Skala, Form</translation>
+    </message>
+    <message>
+        <source>What does most (tornado)</source>
+        <translation>Was am meisten bewirkt (Tornado)</translation>
+    </message>
+    <message>
+        <source>What varies</source>
+        <translation>Was variiert</translation>
+    </message>
+    <message>
+        <source>Why</source>
+        <translation>Warum</translation>
+    </message>
+    <message>
+        <source>blocks for Sobol indices</source>
+        <translation>Blöcke für Sobol-Indizes</translation>
+    </message>
+    <message>
+        <source>done</source>
+        <translation>fertig</translation>
+    </message>
+    <message>
+        <source>failed</source>
+        <translation>fehlgeschlagen</translation>
+    </message>
+    <message>
+        <source>from … to</source>
+        <translation>von … bis</translation>
+    </message>
+    <message>
+        <source>grid</source>
+        <translation>Gitter</translation>
+    </message>
+    <message>
+        <source>lognormal: mean, std. dev.</source>
+        <translation>lognormal: Mittel, Std.-Abw.</translation>
+    </message>
+    <message>
+        <source>normal: mean, std. dev.</source>
+        <translation>normal: Mittel, Std.-Abw.</translation>
+    </message>
+    <message>
+        <source>one a core</source>
+        <translation>einer je Kern</translation>
+    </message>
+    <message>
+        <source>open</source>
+        <translation>offen</translation>
+    </message>
+    <message>
+        <source>the document is set to run {}</source>
+        <translation>das Dokument ist auf Lauf {} gesetzt</translation>
+    </message>
+    <message>
+        <source>triangular: from, mode, to</source>
+        <translation>Dreieck: von, Modus, bis</translation>
+    </message>
+    <message>
+        <source>uniform: from, to</source>
+        <translation>gleichverteilt: von, bis</translation>
+    </message>
+    <message>
+        <source>values</source>
+        <translation>Werte</translation>
+    </message>
+    <message>
+        <source>{:.1f} % of the runs pass.</source>
+        <translation>{:.1f} % der Läufe bestehen.</translation>
+    </message>
+    <message>
+        <source>{:.1f} % pass</source>
+        <translation>{:.1f} % bestehen</translation>
+    </message>
+    <message>
+        <source>{} could not be run; the table says why.</source>
+        <translation>{} waren nicht möglich; die Tabelle sagt, warum.</translation>
+    </message>
+    <message>
+        <source>{} failed</source>
+        <translation>{} fehlgeschlagen</translation>
+    </message>
+    <message>
+        <source>{} of {} runs</source>
+        <translation>{} von {} Läufen</translation>
+    </message>
+    <message>
+        <source>{} of {} runs have figures</source>
+        <translation>{} von {} Läufen haben Ergebnisse</translation>
+    </message>
+    <message>
+        <source>{} of {} runs have figures.</source>
+        <translation>{} von {} Läufen haben Ergebnisse.</translation>
+    </message>
+    <message>
+        <source>{} parts</source>
+        <translation>{} Teile</translation>
+    </message>
+    <message>
+        <source>Best setting</source>
+        <translation>Beste Einstellung</translation>
+    </message>
+    <message>
+        <source>From … to</source>
+        <translation>Von … bis</translation>
+    </message>
+    <message>
+        <source>Limit of</source>
+        <translation>Grenze für</translation>
+    </message>
+    <message>
+        <source>Wanted</source>
+        <translation>Gesucht</translation>
+    </message>
+    <message>
+        <source>also between the runs</source>
+        <translation>auch zwischen den Läufen</translation>
+    </message>
+    <message>
+        <source>best: run {}</source>
+        <translation>am besten: Lauf {}</translation>
+    </message>
+    <message>
+        <source>greatest</source>
+        <translation>größter Wert</translation>
+    </message>
+    <message>
+        <source>least</source>
+        <translation>kleinster Wert</translation>
+    </message>
+    <message>
+        <source>no run keeps all limits, nearest: run {}</source>
+        <translation>kein Lauf hält alle Grenzen ein, am nächsten: Lauf {}</translation>
+    </message>
+    <message>
+        <source>no run to choose the best from</source>
+        <translation>kein Lauf, der zur Wahl stünde</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
+        <source>only runs that pass</source>
+        <translation>nur Läufe, die bestehen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -4787,6 +5155,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Stock</source>
         <translation>Rohteil</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_Study</name>
+    <message>
+        <source>Simulates the job many times with other values: yield, what matters most, the best setting</source>
+        <translation>Simuliert den Auftrag viele Male mit anderen Werten: Ausbeute, was am meisten ausmacht, die beste Einstellung</translation>
+    </message>
+    <message>
+        <source>Study...</source>
+        <translation>Studie...</translation>
     </message>
 </context>
 <context>

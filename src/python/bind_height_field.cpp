@@ -126,6 +126,13 @@ void bind_height_field(py::module_& m) {
         },
         py::arg("field"), py::arg("allowance"), "Uniform stock, mm.");
     m.def(
+        "add_stock",
+        [](HeightField& field, const std::vector<double>& thickness) {
+            return to_dict(add_stock(field, thickness));
+        },
+        py::arg("field"), py::arg("thickness"),
+        "More stock on that which is there, (n,) mm; where rays missed it stays so.");
+    m.def(
         "apply_mesh",
         [](HeightField& field, const TriangleMesh& mesh, double above, double below,
            const RunContext* context, double least_cosine, double unit) {

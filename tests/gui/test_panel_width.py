@@ -71,7 +71,9 @@ for program in programs:
 for program in programs:
     doc.removeObject(program.Name)
 beltgrinding.make_plan(job, Rounds=1, Check=False, ForceMax="40 N")
-for command in ("Plan", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan", "BeltPlan"):
+varied = {"key": "belt_machine.force_dynamics.overshoot_limit", "range": [0.123456, 1.234567]}
+beltgrinding.make_study(job, compute=False, Vary=[varied], Runs=1000000)
+for command in ("Plan", "Study", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan", "BeltPlan"):
     Gui.runCommand("BeltGrinding_" + command)
     look(command)
 assert not wide, wide

@@ -70,9 +70,9 @@ def _descriptions(node, of_objects):
 
 
 def _description(key):
-    """What the schema says of a job's dotted key, or of a raster path's or a plan's."""
+    """What the schema says of a job's dotted key, or of a raster path's, a plan's or a study's."""
     first, _, rest = key.partition(".")
-    own = first in ("raster", "plan")
+    own = first in ("raster", "plan", "study")
     name, parts = (first, rest.split(".")) if own else ("job", key.split("."))
     node = json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
     for part in parts:

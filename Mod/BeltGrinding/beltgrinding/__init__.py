@@ -35,6 +35,33 @@ def plan(job, settings=None, context=None, told=None):
     return plans.plan(job, settings, context, told)
 
 
+def study(study, output=None, context=None, **options):
+    """Makes the runs of a study (a dict, or the path of a study.json) and returns a ``studies.Study`` with their table; see
+    ``studies.making.study``.
+    """
+    from .studies import making
+
+    return making.study(study, output, context, **options)
+
+
+def study_answers(folder, language="en", context=None):
+    """Writes the answers of a study that lies in a folder (answers.json, report.html, pictures) and returns them; see
+    ``studies.report.write_answers``."""
+    from .studies import report as reports
+
+    return reports.write_answers(folder, language, context)
+
+
+def sort_castings(job, scans, folder=None, **options):
+    """Sorts raw parts by their scans: passes, passes with a plan of its own, scrap. ``job``: a dict, or the path of a
+    job.json; see ``studies.sorting.sort``."""
+    from .job import load as jobs
+    from .studies import sorting
+
+    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
+    return sorting.sort(job, scans, folder, **options)
+
+
 def report(result, output=None, pdf=None, language="en", title=None, context=None):
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
     from .reporting import report as reporting
@@ -93,6 +120,8 @@ DOCUMENT_FUNCTIONS = (
     "make_plan",
     "apply_plan",
     "write_plan",
+    "make_study",
+    "open_study_run",
     "make_deviation",
     "make_section",
     "make_verdict",

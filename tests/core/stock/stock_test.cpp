@@ -49,6 +49,31 @@ TEST(Stock, AllowanceIsEverywhere) {
     EXPECT_THROW(apply_allowance(field, std::nan("")), InputError);
 }
 
+TEST(Stock, MoreOfItIsAddedWhereItIsKnown) {
+    HeightField field = testing::plate(10.0, 10.0, 1.0);
+    apply_allowance(field, 0.4);
+    field.flags[3] |= kMissed;
+    std::vector<double> more(field.size(), 0.25);
+    more[0] = -0.5;
+    const StockReport report = add_stock(field, more);
+    EXPECT_EQ(report.missed, 1u);
+    EXPECT_EQ(report.defective, 1u);
+    ASSERT_EQ(report.warnings.size(), 1u);
+    EXPECT_EQ(report.warnings[0].code, "stock.below_design");
+    EXPECT_NEAR(field.height[0], -0.1, 1e-12);
+    EXPECT_NE(field.flags[0] & kDefective, 0);
+    EXPECT_EQ(field.height[3], 0.4);
+    EXPECT_NEAR(field.height[1], 0.65, 1e-12);
+    EXPECT_NEAR(field.stock_height[1], 0.65, 1e-6);
+    more[0] = 0.5;
+    EXPECT_EQ(add_stock(field, more).defective, 0u);
+    EXPECT_EQ(field.flags[0] & kDefective, 0);
+    more[0] = std::nan("");
+    EXPECT_THROW(add_stock(field, more), InputError);
+    more.pop_back();
+    EXPECT_THROW(add_stock(field, more), InputError);
+}
+
 TEST(Stock, SealedSolidGivesExactHeights) {
     HeightField field = plate_at(9.4);
     const StockReport report = apply_mesh(field, box({0, 0, 0}, {30, 20, 10}), {});

@@ -1,16 +1,15 @@
 """The picture of a calibration: measured against predicted, and residuals against each input."""
 
-import io
 import math
 from pathlib import Path
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.plotting import BLUE, GREY, ORANGE, figure as new_figure, grid as grid_lines, saved
 from ..engine import InputError
 
 FORMATS = (".png", ".svg", ".pdf")
-BLUE, ORANGE, GREY = "#1f5a96", "#d1701f", "#8a8f98"
 LABELS = {
     "force_N": "force, N",
     "belt_speed_m_s": "belt speed, m/s",
@@ -47,7 +46,7 @@ def render(report, kind="png", dpi=110):
     rows = report["rows"]
     inputs = [name for name in LABELS if _drawn(rows.get(name))]
     lines = math.ceil(len(inputs) / COLUMNS)
-    figure = _figure(10.0, 4.8 + 2.3 * lines)
+    figure = new_figure(10.0, 4.8 + 2.3 * lines)
     heights = [4.8] + [2.3] * lines
     grid = figure.add_gridspec(1 + lines, COLUMNS, height_ratios=heights)
     _compare(figure.add_subplot(grid[0, : COLUMNS // 2]), report)
@@ -61,40 +60,19 @@ def render(report, kind="png", dpi=110):
             axes.set_ylabel("measured / predicted")
         else:
             axes.tick_params(labelleft=False)
-    return _saved(figure, kind, dpi)
+    return saved(figure, kind, dpi)
 
 
 def render_small(report):
     """Measured against predicted alone, a small square PNG. Raises InputError."""
-    figure = _figure(2.6, 2.6)
+    figure = new_figure(2.6, 2.6)
     axes = figure.add_subplot()
     _compare(axes, report)
     axes.set_title("")
     axes.tick_params(labelsize=8)
     for label in (axes.xaxis.label, axes.yaxis.label):
         label.set_fontsize(8.5)
-    return _saved(figure, "png", 160)
-
-
-def _figure(width, height):
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise InputError(
-            "calibration.no_matplotlib", "a plot needs matplotlib (Debian: python3-matplotlib)"
-        ) from None
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _saved(figure, kind, dpi):
-    target = io.BytesIO()
-    # Who made it: such a file may be written over.
-    made_by = {"Software" if kind == "png" else "Creator": "BeltGrinding"}
-    figure.savefig(target, format=kind, dpi=dpi, metadata=made_by)
-    return target.getvalue()
+    return saved(figure, "png", 160)
 
 
 def _drawn(values):
@@ -142,8 +120,7 @@ def _compare(axes, report):
     axes.set_xlabel(f"predicted removal, {unit}")
     axes.set_ylabel(f"measured removal, {unit}")
     axes.set_title("Measured against predicted; band: 95 % of new grinds", fontsize=10)
-    axes.grid(True, color="#e3e5e8", lw=0.6)
-    axes.set_axisbelow(True)
+    grid_lines(axes)
 
 
 def _tell(axes, report):
@@ -184,7 +161,6 @@ def _residuals(axes, rows, name):
     axes.set_yscale("log")
     _plain(axes.yaxis, LogLocator, NullFormatter, (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 6.5, 8.0))
     axes.set_xlabel(LABELS[name])
-    axes.grid(True, color="#e3e5e8", lw=0.6)
-    axes.set_axisbelow(True)
+    grid_lines(axes)
     axes.locator_params(axis="x", nbins=4)
     axes.ticklabel_format(axis="x", style="sci", scilimits=(-3, 4))

@@ -90,12 +90,14 @@ def _met(job, path, found, clearance, arm, context):
 def bodies(job, shape, warnings, context=None):
     """The bodies of a validated job as ``core.check_collisions`` takes them."""
     stock = job["stock"]
-    grown = max(0.0, stock["allowance_mm"]) if stock["kind"] == "allowance" else 0.0
+    uniform = stock["kind"] == "allowance"
+    grown = max(0.0, stock["allowance_mm"] + stock["offset_mm"]) if uniform else 0.0
     mesh = _triangulate(shape, context)
     found = [{"name": PART, "frame": "part", "mesh": mesh, "margin": grown}]
-    if stock["kind"] != "allowance":
+    if not uniform:
         mesh = read_body(stock, "stock", warnings, context)
-        found.append({"name": STOCK, "frame": "part", "mesh": mesh})
+        grown = max(0.0, stock["offset_mm"])
+        found.append({"name": STOCK, "frame": "part", "mesh": mesh, "margin": grown})
     disc = wheel_body(job["belt_machine"]["wheel"], job["cell"]["wheel_inset_mm"])
     if disc is not None:
         found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})

@@ -27,6 +27,8 @@ from . import (
     press,
     program,
     report,
+    sort,
+    study,
     view,
 )
 from .messages import LANGUAGES, Messages
@@ -45,6 +47,8 @@ TOPICS = (
     learn,
     inspect,
     measure,
+    study,
+    sort,
     report,
     view,
     lists,

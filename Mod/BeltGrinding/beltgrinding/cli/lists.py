@@ -21,6 +21,7 @@ def add(commands):
             "presets",
             "raster",
             "plan",
+            "study",
             "events",
             "summary",
             "values",

@@ -15,6 +15,7 @@ BEGINNINGS = (
     b"x_mm,y_mm,p_MPa",  # contact
     b"line,predicted,standard_deviation,",  # predict
     b"part,belt,part_of_belt,cut,",  # belt-plan
+    b"part,scan,sorted,in_share,",  # sort
     b"belt-ground part",  # mesh, STL
 )
 MARKS = (

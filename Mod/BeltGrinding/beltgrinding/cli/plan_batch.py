@@ -28,6 +28,11 @@ def add(parser):
         help="mesh of a raw part, which is laid on the design and is its stock (.stl, .ply, .obj); for several parts "
         "several times: each has a folder of its own",
     )
+    add_alignment(parser)
+
+
+def add_alignment(parser):
+    """Gives a command the options that lay scans on the design."""
     parser.add_argument("--unit-mm", type=float, default=1.0, help="of the scans, mm (default 1)")
     parser.add_argument("--datum-faces", help="numbers from 1, as 1,2,5; default: all not ground")
     start = parser.add_mutually_exclusive_group()

@@ -3,11 +3,17 @@
 import os
 from pathlib import Path
 
+import numpy as np
+
 from ..base import frames, kept
 from ..base.files import at_key
 from ..engine import InputError, core
 from . import inputs, spacing
 
+BELOW = (
+    "stock.below_design",
+    "stock.negative_allowance",
+)  # warnings of stock before something is added
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 SHAPE_BYTES = 12  # in memory, of a byte of a B-rep's file or text, about; of a mesh's file more
 MESH_SHAPE_BYTES = 40
@@ -170,12 +176,17 @@ def make_stocked_field(job, shape, warnings, context, sampled=lambda: None):
 
 
 def apply_stock(field, stock, warnings, context):
-    """Puts the stock on the field."""
+    """Puts the stock on the field: where its placement has it, and thicker by its offset."""
+    placement = frame_of(stock.get("placement"), "stock.placement")
+    moved = not np.array_equal(placement, np.eye(4))
+    offset = stock["offset_mm"]
     if stock["kind"] == "allowance":
-        report = core.apply_allowance(field, stock["allowance_mm"])
+        report = core.apply_allowance(field, stock["allowance_mm"] + offset)
+        # A layer that is moved as a whole: at first order its thickness changes by the shift along the normal.
+        shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
+        added = np.einsum("ij,ij->i", field.normals, shift) if moved else None
     else:
         if stock["kind"] == "mesh":
-            placement = frame_of(stock.get("placement"), "stock.placement")
             mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement, context)
         else:
             shape = read_design(stock, context)
@@ -184,6 +195,9 @@ def apply_stock(field, stock, warnings, context):
                 for text in shape.warnings()
             ]
             mesh = core.triangulate(shape, stock["deflection_mm"], context)
+            if moved:
+                points = mesh.vertices @ placement[:3, :3].T + placement[:3, 3]
+                mesh = core.TriangleMesh(points.astype(np.float32), mesh.triangles)
         report = core.apply_mesh(
             field,
             mesh,
@@ -192,7 +206,12 @@ def apply_stock(field, stock, warnings, context):
             context,
             unit_mm=stock["unit_mm"] if stock["kind"] == "mesh" else 1.0,
         )
-    warnings += report["warnings"]
+        added = np.full(field.size, offset) if offset else None
+    told = report["warnings"]
+    if added is not None:
+        told = [fact for fact in told if fact.code not in BELOW]
+        told += core.add_stock(field, added)["warnings"]
+    warnings += told
 
 
 def frame_of(data, where):

@@ -34,6 +34,7 @@ from .set_up import (
     wear_belt,
 )
 from .stock_scan import lay_stock
+from .study_runs import make_study, open_study_run
 
 __all__ = [
     "apply_plan",
@@ -57,9 +58,11 @@ __all__ = [
     "make_raster",
     "make_section",
     "make_stock",
+    "make_study",
     "make_verdict",
     "open_example",
     "open_job",
+    "open_study_run",
     "set_up",
     "set_zones",
     "simulate",

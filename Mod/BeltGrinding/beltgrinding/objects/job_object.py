@@ -66,7 +66,8 @@ class BeltGrindingJob(Proxy):
         for verdict in children(obj, Verdict):
             verdict.Proxy.update(verdict)
         for member in obj.Group:
-            if "NewFeeds" in member.PropertiesList:  # a Plan, whose module knows this one
+            # A Plan or a Study, whose modules know this one.
+            if {"NewFeeds", "RunsInAll"} & set(member.PropertiesList):
                 member.Proxy.update(member)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:

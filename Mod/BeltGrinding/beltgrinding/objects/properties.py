@@ -54,9 +54,10 @@ class Output(NamedTuple):
 
 @lru_cache(maxsize=None)
 def _schema():
-    """The job's schema, and under 'raster' and 'plan' those of a raster path's settings and a plan's."""
+    """The job's schema, and under 'raster', 'plan' and 'study' those of a raster path's settings, a plan's and a
+    study."""
     found = schema()
-    for name in ("raster", "plan"):
+    for name in ("raster", "plan", "study"):
         found["properties"][name] = schemas.schema(name)
     return found
 

@@ -30,6 +30,11 @@ struct StockReport {
 /// Sets every height to the uniform `allowance` (mm; negative is defective stock).
 StockReport apply_allowance(HeightField& field, double allowance);
 
+/// Adds a `thickness` (mm, one a sample, negative: less) to stock that is there already. Where rays
+/// missed it nothing is known, and stays so. Throws InputError for a number that is not finite, or
+/// another count than the field's.
+StockReport add_stock(HeightField& field, const std::vector<double>& thickness);
+
 /// Intersects every normal ray with the mesh (outward and inward, Embree) and sets heights and
 /// flags: a missed ray keeps height 0 and is flagged, never dropped. Throws InputError when the
 /// mesh is empty, holds NaN, or is so far from the field that hardly a ray can hit (wrong unit or

@@ -45,6 +45,7 @@ MENU = (  # the same steps and what else belongs to each, divided
         results.Plan,
         results.GrindFaces,
         results.BeltPlan,
+        results.Study,
         report.CheckSettings,
     ),
     (

@@ -3,7 +3,7 @@
 import FreeCAD
 import FreeCADGui as Gui
 
-from ...objects import api, deviation, plan, simulation
+from ...objects import api, deviation, plan, simulation, study
 from ...objects.job_data import child
 from ..common.compat import translate
 from ..common.transaction import transaction
@@ -58,6 +58,27 @@ class BeltPlan(Command):
         from ..panels.belt_plan_panel import BeltPlanPanel
 
         Gui.Control.showDialog(BeltPlanPanel(active_job()))
+
+
+class Study(Command):
+    NAME = "BeltGrinding_Study"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_Study", "Study...")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_Study",
+        "Simulates the job many times with other values: yield, what matters most, the best setting",
+    )
+
+    def run(self):
+        from ..docks.study_dock import show
+
+        job = active_job()
+        obj = child(job, study.Study)
+        if obj is None:
+            with transaction(job.Document, translate("BeltGrinding", "Study")) as step:
+                obj = api.make_study(job, compute=False)
+            if step.failed:
+                return
+        show(obj)
 
 
 class GrindFaces(Command):

@@ -31,6 +31,7 @@ __all__ = [
     "SectionView",
     "SimulationView",
     "StockView",
+    "StudyView",
     "VerdictView",
 ]
 
@@ -62,6 +63,7 @@ class JobView(View):
         "BeltGrinding_ReadAgain",
         "BeltGrinding_Simulate",
         "BeltGrinding_Plan",
+        "BeltGrinding_Study",
         "BeltGrinding_Deviation",
         "BeltGrinding_ExportJob",
         "BeltGrinding_ImportResult",
@@ -299,3 +301,32 @@ class SimulationView(Undrawn):
 
     def verb(self):
         return translate("BeltGrinding", "Show result")
+
+
+class StudyView(Undrawn):
+    """The icon says when the study is out of date; a double click opens its panel."""
+
+    ICON = "BeltGrinding_Study"
+    COMMANDS = ("BeltGrinding_Study", "BeltGrinding_Simulate")
+
+    def getIcon(self):
+        stale = getattr(self, "view", None) is not None and getattr(
+            self.view.Object, "OutOfDate", False
+        )
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
+
+    def updateData(self, obj, name):
+        if name == "OutOfDate" and getattr(self, "view", None) is not None:
+            self.view.signalChangeIcon()
+
+    def doubleClicked(self, view):
+        from ..docks.study_dock import show
+
+        show(view.Object)
+        return True
+
+    def setEdit(self, view, mode=0):
+        return None
+
+    def verb(self):
+        return translate("BeltGrinding", "Show study")

@@ -119,6 +119,8 @@ class Form(QtGui.QGroupBox):
             widget.toggled.connect(lambda on: self._set(name, on))
         elif kind == "App::PropertyInteger":
             widget = steady(QtGui.QSpinBox())
+            # Whoever adds it may set another range; the value must not be cut off before.
+            widget.setMaximum(max(widget.maximum(), getattr(self.obj, name)))
             widget.setValue(getattr(self.obj, name))
             widget.valueChanged.connect(lambda value: self._set(name, value))
         elif kind == "App::PropertyLinkGlobal":

@@ -1,0 +1,39 @@
+"""Runs a study in a thread of its own, polled by the window; its runs are processes of their own where Dask is."""
+
+from ...engine import Cancelled
+from ...objects import study as studies
+from .compat import translate
+from .runner import Runner
+
+
+class StudyRunner(Runner):
+    """``done(study.Found or None, error or None)`` follows in the end; ``told`` is the last ``Progress``. The Study object is
+    written in one undo step, in the end, also with what a cancelled study had. Raises InputError for what is missing.
+    """
+
+    def __init__(self, obj, progress, done):
+        self.study, self.told = obj.Name, None
+        job = obj.getParentGroup()
+        self.task = studies.Work(obj, job)
+        super().__init__(job, progress, done)
+
+    def work(self, context):
+        return self.task.find(self.data, context, self._tell)
+
+    def _tell(self, progress):
+        self.told = progress
+
+    def _store(self, found):
+        job = self.job()
+        obj = None if job is None else self.document.getObject(self.study)
+        if obj is None:
+            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
+        self.document.openTransaction(translate("BeltGrinding", "Study"))
+        try:
+            studies.store(obj, found)
+            obj.Proxy.update(obj)  # an input may have changed while it ran
+            self.document.commitTransaction()
+        except BaseException:
+            self.document.abortTransaction()
+            raise
+        return found

@@ -1,0 +1,86 @@
+"""The figures of a run: those of its verdict and its summary, flat, by names that stay.
+
+A figure's name is its path in verdict.json (``in_share``, ``worst.beyond_mm``, ``zones.edge.in_share``, ``faces.3.rms``), or,
+where the verdict has none, in summary.json (``process_time_s``, ``deviation_mm.p95``, ``events.not_converged``). Times of
+the computer are none: a run gives the same figures wherever it is made.
+"""
+
+import math
+
+from ..engine import core
+
+USUAL = """
+    overall
+    in_share
+    above_share
+    below_share
+    deviation_mm.min
+    deviation_mm.max
+    deviation_mm.mean
+    deviation_mm.rms
+    deviation_mm.p05
+    deviation_mm.p50
+    deviation_mm.p95
+    worst.beyond_mm
+    untouched_area_mm2
+    removed_volume_mm3
+    excess_volume_mm3
+    gouge_volume_mm3
+    missed_rays
+    process_time_s
+    peak_pressure_MPa
+    peak_force_N
+    belt.remaining_cut
+    lost_volume_mm3
+    not_converged_events
+    extrapolated_law_events
+    unresolved_motions
+    events_in_all
+""".split()
+OF_ZONES = ("verdict", "in_share", "above_share", "below_share")
+LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "inputs", "models")
+REST = "rest"  # the zone of all that lies in none
+
+
+def of_result(result):
+    """{name: number, text, bool or None} of a ``simulation.result.Result`` with its verdict."""
+    summary, verdict = result.summary, result.verdict
+    found = dict(_flat(verdict))
+    for zone in verdict["zones"]:
+        found.update(_flat(zone, f"zones.{REST if zone['name'] is None else zone['name']}."))
+    for face in verdict["faces"]:
+        found.update(_flat(face, f"faces.{face['face']}."))
+    for name, value in _flat(summary):
+        found.setdefault(name, value)
+    steps = result.steps
+    pressed = steps is not None and len(steps["time"]) > 0
+    found["peak_pressure_MPa"] = float(steps["peak_pressure"].max()) if pressed else 0.0
+    found["peak_force_N"] = float(steps["force"].max()) if pressed else 0.0
+    counts = summary["events"]
+    for kind in core.event_kinds():
+        found[f"events.{kind['code']}"] = counts.get(kind["code"], 0)
+    found["events_in_all"] = sum(counts.values())
+    return {name: _plain(value) for name, value in found.items()}
+
+
+def usual(job):
+    """Names of the columns of a table, for a validated job: ``USUAL``, and what its zones have."""
+    zones = [zone["name"] for zone in job["inspection"]["zones"]]
+    return [*USUAL, *(f"zones.{zone}.{name}" for zone in zones for name in OF_ZONES)]
+
+
+def _flat(held, before=""):
+    for name, value in held.items():
+        if name in LEFT_OUT or isinstance(value, (list, tuple)):
+            continue
+        if isinstance(value, dict):
+            yield from _flat(value, f"{before}{name}.")
+        else:
+            yield f"{before}{name}", value
+
+
+def _plain(value):
+    """As JSON has it: what is not finite is nothing."""
+    if hasattr(value, "item"):  # numpy's
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,78 @@
+"""What varies, as numbers with a distribution: text and lists by the number of their choice."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from . import design
+
+
+class Input:
+    """One varied thing. ``choices``: its values where it is a list of them, None for a range or a distribution;
+    ``numeric``: whether they are numbers."""
+
+    def __init__(self, name, given, where):
+        self.name, self.given, self.where = name, given, where
+        self.choices, self.weights = None, given.get("weights")
+        if "parts" in given:
+            self.choices = given["parts"]  # names
+        elif "values" in given:
+            self.choices = list(given["values"])
+        numbers = [
+            isinstance(one, (int, float)) and not isinstance(one, bool)
+            for one in self.choices or ()
+        ]
+        self.numeric = all(numbers)
+        self.varies = self.choices is None or len({_key(one) for one in self.choices}) > 1
+
+    def coded(self, column):
+        """(n,) the column of a table as numbers."""
+        if self.numeric:
+            return column.astype(float)
+        at = {_key(one): k for k, one in enumerate(self.choices)}
+        return np.array([float(at[_key(one)]) for one in column])
+
+    def value(self, code):
+        """The value of a number, the nearest where it is a choice."""
+        if self.choices is None:
+            return float(code)
+        if self.numeric:
+            return min(self.choices, key=lambda one: abs(one - code))
+        return self.choices[int(round(float(code)))]
+
+    def law(self):
+        """The distribution of the numbers, of OpenTURNS. Raises InputError."""
+        ot = design.openturns()
+        if self.choices is not None:
+            weights = self.weights or [1.0] * len(self.choices)
+            codes = self.choices if self.numeric else range(len(self.choices))
+            merged = {}
+            for code, weight in zip(codes, weights):
+                merged[float(code)] = merged.get(float(code), 0.0) + weight
+            whole = sum(merged.values())
+            points = sorted(merged)
+            return ot.UserDefined([[x] for x in points], [merged[x] / whole for x in points])
+        if "range" in self.given:
+            return ot.Uniform(*(float(end) for end in self.given["range"]))
+        return design.distribution(ot, self.given["distribution"], self.where)
+
+
+def _key(value):
+    return value if isinstance(value, str) else json.dumps(value, sort_keys=True)
+
+
+def inputs_of(study, varied):
+    """[Input] in the order of the names ``varied``."""
+    named = {}
+    for k, given in enumerate(study["vary"]):
+        if "parts" in given:
+            given = {**given, "parts": [_part_name(one) for one in given["parts"]]}
+        named[given.get("name", given["key"])] = Input(
+            given.get("name", given["key"]), given, f"vary[{k}].distribution"
+        )
+    return [named[name] for name in varied]
+
+
+def _part_name(part):
+    return part.get("name", Path(part.get("job") or part["scan"]).stem)

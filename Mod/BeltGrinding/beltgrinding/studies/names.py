@@ -1,0 +1,56 @@
+"""What a figure of a table is called where people read it."""
+
+NAMES = {
+    "overall": "whole part",
+    "in_share": "area in tolerance, share",
+    "above_share": "area with too much left, share",
+    "below_share": "area cut too deep, share",
+    "deviation_mm.min": "least deviation, mm",
+    "deviation_mm.max": "greatest deviation, mm",
+    "deviation_mm.mean": "mean deviation, mm",
+    "deviation_mm.rms": "rms deviation, mm",
+    "deviation_mm.p05": "deviation, 5th percentile, mm",
+    "deviation_mm.p50": "deviation, median, mm",
+    "deviation_mm.p95": "deviation, 95th percentile, mm",
+    "worst.beyond_mm": "worst place beyond its limit, mm",
+    "untouched_area_mm2": "untouched area, mm²",
+    "removed_volume_mm3": "removed volume, mm³",
+    "excess_volume_mm3": "volume left too much, mm³",
+    "gouge_volume_mm3": "volume cut too deep, mm³",
+    "missed_rays": "places without stock",
+    "process_time_s": "grinding time, s",
+    "peak_pressure_MPa": "greatest pressure, MPa",
+    "peak_force_N": "greatest force, N",
+    "belt.remaining_cut": "cut left in the belt",
+    "lost_volume_mm3": "volume not removed for want of contact, mm³",
+    "events_in_all": "events",
+}
+OF_ZONE = {
+    "verdict": "zone {zone}",
+    "in_share": "zone {zone}: area in tolerance, share",
+    "above_share": "zone {zone}: area with too much left, share",
+    "below_share": "zone {zone}: area cut too deep, share",
+}
+
+
+def figure(name, words):
+    """The name of a figure in the words of a ``reporting.language.Language``; its column where it has no other."""
+    if name in NAMES:
+        return words(NAMES[name])
+    if name.startswith("zones."):
+        zone, _, last = name[len("zones.") :].rpartition(".")
+        if last in OF_ZONE and zone:
+            return words(OF_ZONE[last], zone=zone)
+    return name
+
+
+def yielded(one, words):
+    """What an entry of the yield is about."""
+    if one["of"] == "zone":
+        return words("zone {zone}", zone=one["name"])
+    texts = {
+        "overall": "whole part passes",
+        "not_above": "nowhere too much left",
+        "not_below": "nowhere cut too deep",
+    }
+    return words(texts[one["of"]])

@@ -1,0 +1,133 @@
+"""The report of a sorted batch, one HTML file."""
+
+from pathlib import Path
+
+from ..base import plotting
+from ..base.files import cannot_be_written, write_whole
+from ..base.plotting import GREEN, GREY, ORANGE, RED
+from ..base.resources import resources
+from ..reporting.facts import part_name
+from ..reporting.language import DASH, Language
+from ..reporting.layout import section, table as html_table
+from ..reporting.markup import Markup, data_uri, element
+from . import sorting
+
+REPORT = "parts.html"
+COLOURS = {
+    sorting.PASSES: GREEN,
+    sorting.PLANNED: ORANGE,
+    sorting.SCRAP: RED,
+    sorting.UNKNOWN: GREY,
+}
+TEXTS = {
+    sorting.PASSES: "passes",
+    sorting.PLANNED: "passes with this plan",
+    sorting.SCRAP: "scrap",
+    sorting.UNKNOWN: "not known",
+}
+
+
+def write(folder, batch, job, share=1.0, language="en"):
+    """Writes the report of a ``sorting.Batch`` of a job into the folder; returns its path. Raises InputError."""
+    words = Language(language)
+    path = Path(folder, REPORT)
+    try:
+        write_whole(path, document(batch, job, share, words).encode())
+    except OSError as error:
+        raise cannot_be_written(path, error) from None
+    return path
+
+
+def counts(batch):
+    """{sort: parts}"""
+    return {sort: sum(row["sorted"] == sort for row in batch.parts) for sort in sorting.SORTS}
+
+
+def document(batch, job, share, words):
+    """The whole HTML text."""
+    title = words("Belt grinding: castings of {part}", part=part_name(job))
+    style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
+    style += (resources() / "report" / "study.css").read_text(encoding="utf-8")
+    found = counts(batch)
+    tiles = [
+        element(
+            "div", element("b", words.whole(n)), element("span", words(TEXTS[k])), class_="tile"
+        )
+        for k, n in found.items()
+        if n or k != sorting.UNKNOWN
+    ]
+    limit = words("A part passes if its verdict is pass.")
+    if share < 1.0:
+        limit = words(
+            "A part passes with {share} of its area in tolerance.", share=words.percent(share)
+        )
+    body = [
+        element("p", words("A batch of castings, sorted by their scans"), class_="kind"),
+        element("h1", title),
+        element("div", tiles, class_="tiles"),
+        element("p", limit),
+        element("img", src=data_uri(picture(batch, words), "image/png"), alt=words("Parts")),
+        section(words("Parts"), _table(batch, words)),
+    ]
+    html = element(
+        "html",
+        element(
+            "head",
+            element("meta", charset="utf-8"),
+            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            element("title", title),
+            element("style", Markup(style)),
+        ),
+        element("body", element("main", element("section", body))),
+        lang=words.code,
+    )
+    return "<!DOCTYPE html>\n" + html + "\n"
+
+
+def _table(batch, words):
+    heads = [
+        (words("part"), "name"),
+        (words("sorted"), ""),
+        (words("in tolerance"), "number"),
+        (words("with its plan"), "number"),
+        (words("grinding, s"), "number"),
+        (words("why"), "name"),
+    ]
+    rows = []
+    for row in batch.parts:
+        seconds = (
+            row["planned_time_s"] if row["sorted"] == sorting.PLANNED else row["process_time_s"]
+        )
+        why = sorting.reason(row, words)
+        if not row["trusted"]:
+            why = "; ".join(filter(None, [why, words("the scan is poorly laid on the design")]))
+        rows.append(
+            [
+                row["part"],
+                words(TEXTS[row["sorted"]]),
+                words.percent(row["in_share"]),
+                DASH if row["planned_in_share"] is None else words.percent(row["planned_in_share"]),
+                words.number(seconds, 1),
+                why,
+            ]
+        )
+    return html_table(heads, rows)
+
+
+def picture(batch, words):
+    """Bytes of a PNG: the area in tolerance of each part, as the program grinds it and with its plan."""
+    parts = batch.parts
+    drawn = plotting.figure(7.2, 0.9 + 0.3 * max(len(parts), 2))
+    axes = drawn.add_subplot()
+    for place, row in enumerate(reversed(parts)):
+        share = 100.0 * (row["in_share"] or 0.0)
+        axes.barh(place, share, color=COLOURS[row["sorted"]], height=0.6)
+        if row["planned_in_share"] is not None:
+            planned = 100.0 * row["planned_in_share"]
+            axes.plot([planned], [place], "D", color="#23272e", ms=5)
+    axes.set_yticks(range(len(parts)), [words.short(row["part"], 24) for row in reversed(parts)])
+    axes.tick_params(labelsize=9)
+    axes.set_xlim(0.0, 101.0)
+    axes.set_xlabel(words("area in tolerance, %; diamond: with a plan"), fontsize=9)
+    plotting.grid(axes, "x")
+    return plotting.saved(drawn, dpi=130)

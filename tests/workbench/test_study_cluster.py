@@ -1,0 +1,365 @@
+"""Studies on Dask: workers that are killed, a scheduler started by hand elsewhere, one that restarts, files that are sent."""
+
+import json
+import os
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltgrinding import cli
+from beltgrinding.engine import Cancelled, InputError, core
+from beltgrinding.studies import cluster, clusters, making, one, store, table
+from support.freecad import MOD
+from test_study import alive, descendants, program_job, quick_job, study_of
+
+RUNS = 24
+KILLS = 6
+
+
+def many(runs=RUNS):
+    """A study of several variables, drawn at random; a job in it cannot be run."""
+    bands = [[-0.05, 0.05], [-0.1, 0.1], [0.1, -0.1]]
+    return {
+        "job": quick_job(),
+        "vary": [
+            {"name": "force", "key": "belt_machine.force_N", "range": [20, 60]},
+            {
+                "name": "off",
+                "key": "stock_placement.rx_deg",
+                "distribution": {"kind": "normal", "mean": 0, "sd": 0.1},
+            },
+            {
+                "name": "band",
+                "key": "inspection.tolerance_mm",
+                "values": bands,
+                "weights": [12, 12, 1],
+            },
+        ],
+        "design": {"method": "monte_carlo", "runs": runs, "seed": 7},
+    }
+
+
+@pytest.fixture(scope="module")
+def serial(tmp_path_factory):
+    """The bytes of the table of ``many`` runs one after the other."""
+    folder = tmp_path_factory.mktemp("serial")
+    found = making.study(many(), folder, workers=0)
+    assert found.table.done.sum() > 0.8 * RUNS and (found.table["status"] == "error").any()
+    return (folder / table.FILE).read_bytes()
+
+
+def worker_processes(pid):
+    """Those of the descendants that compute: children of Dask's spawning."""
+    found = []
+    for child in descendants(pid):
+        try:
+            words = Path("/proc", str(child), "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if any(b"multiprocessing.spawn" in word for word in words):
+            found.append(child)
+    return found
+
+
+class Killer(threading.Thread):
+    """Kills a worker at random, now and then."""
+
+    def __init__(self, pid, kills, seed=1):
+        super().__init__(daemon=True)
+        self.pid, self.left, self.dice = pid, kills, random.Random(seed)
+        self.over, self.killed = threading.Event(), 0
+
+    def run(self):
+        while self.left and not self.over.wait(self.dice.uniform(0.3, 1.2)):
+            found = [pid for pid in worker_processes(self.pid) if alive(pid)]
+            if found:
+                os.kill(self.dice.choice(found), signal.SIGKILL)
+                self.left, self.killed = self.left - 1, self.killed + 1
+
+
+def test_workers_that_are_killed_change_no_bit_of_the_table(tmp_path, serial):
+    killer = Killer(os.getpid(), KILLS)
+
+    def told(progress):
+        if progress.done > 0 and not killer.is_alive() and killer.left == KILLS:
+            killer.start()
+
+    found = making.study(many(), tmp_path, workers=2, told=told)
+    killer.over.set()
+    killer.join()
+    assert killer.killed >= 3 and not found.broken_off
+    assert (tmp_path / table.FILE).read_bytes() == serial
+    assert not worker_processes(os.getpid())
+
+
+def test_a_cancelled_study_ends_its_workers_and_goes_on(tmp_path, serial):
+    context = core.RunContext()
+
+    def told(progress):
+        if progress.done >= 5:
+            context.cancel()
+
+    with pytest.raises(Cancelled):
+        making.study(many(), tmp_path, workers=2, told=told, context=context)
+    assert not worker_processes(os.getpid())
+    finished = len(list((tmp_path / store.RUNS).glob("*/*.json")))
+    assert 5 <= finished < RUNS
+    assert making.study(many(), tmp_path, workers=2).reused == finished
+    assert (tmp_path / table.FILE).read_bytes() == serial
+
+
+def test_a_local_cluster_that_dies_is_started_again(tmp_path, serial):
+    died = []
+
+    def told(progress):
+        if progress.done >= 5 and not died:
+            helper = next(
+                pid
+                for pid in descendants(os.getpid())
+                if b"beltgrinding.studies.local_cluster"
+                in Path(f"/proc/{pid}/cmdline").read_bytes()
+            )
+            os.killpg(helper, signal.SIGKILL)
+            died.append(helper)
+
+    making.study(many(), tmp_path, workers=2, told=told)
+    assert died and (tmp_path / table.FILE).read_bytes() == serial
+
+
+# A cluster that is there -------------------------------------------------------------------------------
+
+
+def free_port():
+    with socket.socket() as one_:
+        one_.bind(("127.0.0.1", 0))
+        return one_.getsockname()[1]
+
+
+class ByHand:
+    """dask-scheduler and dask-worker as a person starts them, in another folder."""
+
+    def __init__(self, folder, port=None):
+        self.folder = folder
+        folder.mkdir(exist_ok=True)
+        self.port = port or free_port()
+        self.address = f"tcp://127.0.0.1:{self.port}"
+        self.processes = []
+        place = ["--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard"]
+        self.start("distributed.cli.dask_scheduler", *place)
+
+    def start(self, module, *arguments, before=()):
+        environment = {
+            **os.environ,
+            "PYTHONPATH": f"{MOD}:{Path(core.__file__).parent}",
+            "DASK_TEMPORARY_DIRECTORY": str(self.folder),
+        }
+        process = subprocess.Popen(
+            [*before, sys.executable, "-m", module, *arguments],
+            cwd=self.folder,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=open(self.folder / "log", "ab"),
+            start_new_session=True,
+        )
+        self.processes.append(process)
+        return process
+
+    def worker(self, *arguments, before=()):
+        options = ["--no-dashboard", "--local-directory", str(self.folder), *arguments]
+        return self.start("distributed.cli.dask_worker", self.address, *options, before=before)
+
+    def stop(self):
+        for process in self.processes:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        self.processes = []
+
+
+@pytest.fixture
+def by_hand(tmp_path):
+    made = ByHand(tmp_path / "elsewhere")
+    yield made
+    made.stop()
+
+
+def test_a_scheduler_that_was_started_by_hand_in_another_folder(tmp_path, by_hand, serial, capsys):
+    by_hand.worker("--nthreads", "1")
+    by_hand.worker("--nthreads", "3")  # one run at a time in a process all the same
+    path = tmp_path / "study.json"
+    path.write_text(json.dumps(many()))
+    command = ["study", str(path), "-o", str(tmp_path / "out"), "--scheduler", by_hand.address]
+    assert cli.main(command) == 0
+    assert f"of {RUNS} runs have figures" in capsys.readouterr().out
+    assert (tmp_path / "out" / table.FILE).read_bytes() == serial
+    assert all(process.poll() is None for process in by_hand.processes)  # it is the user's
+
+
+def test_files_are_sent_to_workers_that_do_not_see_them(tmp_path, by_hand):
+    if subprocess.run(["unshare", "--mount", "true"], capture_output=True).returncode != 0:
+        pytest.skip("a mount namespace needs root")
+    path = program_job(tmp_path / "job")
+    making.study(path, tmp_path / "here", workers=0)
+    hidden = f'mount -t tmpfs none {tmp_path / "job"} && exec "$@"'
+    by_hand.worker("--nthreads", "1", before=["unshare", "--mount", "bash", "-c", hidden, "worker"])
+    found = making.study(path, tmp_path / "out", scheduler=by_hand.address)
+    assert found.table.done.all(), found.table["error"]
+    assert (tmp_path / "out" / table.FILE).read_bytes() == (
+        tmp_path / "here" / table.FILE
+    ).read_bytes()
+    sent = list(
+        (tmp_path / "elsewhere").rglob(f"{one.FOLDER}/*/{tmp_path}/job/*".replace("//", "/"))
+    )
+    assert {file.name for file in sent} == {"part.brep", "path.csv"}
+
+
+def test_a_scheduler_that_restarts_loses_no_run(tmp_path, by_hand, serial):
+    by_hand.worker("--nthreads", "1")
+    restarted = []
+
+    def told(progress):
+        if progress.done >= 5 and not restarted:
+            by_hand.stop()
+            restarted.append(ByHand(by_hand.folder, by_hand.port))
+            restarted[0].worker("--nthreads", "1")
+
+    try:
+        making.study(many(), tmp_path / "out", scheduler=by_hand.address, told=told)
+    finally:
+        for made in restarted:
+            made.stop()
+    assert restarted and (tmp_path / "out" / table.FILE).read_bytes() == serial
+
+
+def test_a_scheduler_that_is_not_there_or_alone_is_told(tmp_path, by_hand, monkeypatch):
+    monkeypatch.setattr(cluster, "WAIT_S", 3.0)
+    with pytest.raises(InputError, match="has no workers; start some"):
+        making.study(study_of(), tmp_path / "a", scheduler=by_hand.address)
+    by_hand.stop()
+    monkeypatch.setattr(clusters, "ANSWER_S", 0.5)
+    with pytest.raises(
+        InputError, match=f"no scheduler answers at {by_hand.address}.*4 runs are open"
+    ):
+        making.study(study_of(), tmp_path / "b", scheduler=by_hand.address)
+    with pytest.raises(InputError, match="no scheduler answers at nonsense://"):
+        making.study(study_of(), tmp_path / "c", scheduler="nonsense://1")
+    left = table.Table.read(tmp_path / "b" / table.FILE)
+    assert (left["status"] == table.OPEN).all()
+
+
+# What a worker answers ---------------------------------------------------------------------------------
+
+
+def task_of(prepared, files, **more):
+    base = prepared.bases[0].blob()
+    import hashlib
+
+    run = prepared.runs[0]
+    return {
+        "job_hash": run.job_hash,
+        "base": hashlib.sha256(base).hexdigest(),
+        "values": list(run.values),
+        "files": files,
+        "fields": False,
+        "versions": core.versions(),
+        **more,
+    }, base
+
+
+def test_a_worker_asks_for_what_it_lacks(tmp_path):
+    path = program_job(tmp_path / "job")
+    prepared = making.prepare(making.load(path))
+    job = prepared.job(prepared.runs[0])
+    files = [[file, sha] for _, file, sha in prepared.hashes.files(job)]
+    assert sorted(Path(file).name for file, _ in files) == ["part.brep", "path.csv"]
+    task, base = task_of(prepared, files)
+    contents = {sha: Path(file).read_bytes() for file, sha in files}
+    shutil.rmtree(tmp_path / "job")  # as on another machine
+    work = tmp_path / "worker"
+    needs = one.in_worker(task, {}, work)["needs"]
+    assert set(needs) == {task["base"], *contents}
+    assert set(one.in_worker(task, {task["base"]: base}, work)["needs"]) == set(contents)
+    found = one.in_worker(task, contents, work)
+    assert found["status"] == "done", found
+    assert one.in_worker(task, {}, work)["figures"] == found["figures"]  # it has them now
+    laid = next(work.rglob("part.brep"))
+    laid.write_text("damaged")
+    assert len(one.in_worker(task, {}, work)["needs"]) == 1
+
+
+def test_what_a_worker_tells_has_the_users_paths(tmp_path):
+    path = program_job(tmp_path / "job")
+    (tmp_path / "job" / "part.brep").write_text("no shape")
+    prepared = making.prepare(making.load(path))
+    job = prepared.job(prepared.runs[0])
+    files = [[file, sha] for _, file, sha in prepared.hashes.files(job)]
+    task, base = task_of(prepared, files)
+    blobs = {sha: Path(file).read_bytes() for file, sha in files} | {task["base"]: base}
+    here = one.in_worker(task, blobs, tmp_path / "worker")
+    shutil.rmtree(tmp_path / "job")
+    there = one.in_worker(task, blobs, tmp_path / "worker")
+    assert here["status"] == there["status"] == "error" and here["error"] == there["error"]
+    assert str(tmp_path / "job" / "part.brep") in there["error"]
+    assert one.FOLDER not in there["error"]
+
+
+def test_a_worker_with_another_engine_is_refused(tmp_path):
+    prepared = making.prepare(making.validate(study_of()))
+    task, base = task_of(prepared, [], versions={**core.versions(), "beltgrinding": "0.0.1"})
+    assert one.in_worker(task, {task["base"]: base}, tmp_path) == {"versions": core.versions()}
+    session = cluster._Session(None, None, None, ([], [], {}), None, None, None, None)
+    with pytest.raises(InputError, match="another engine"):
+        session._answered(task, {"versions": {"beltgrinding": "0.0.1"}}, "tcp://there")
+
+
+def test_a_file_that_changes_meanwhile_is_not_sent(tmp_path):
+    (tmp_path / "part.brep").write_text("one")
+    sha = one.inputs.file_digest("", tmp_path / "part.brep")["sha256"]
+    assert making._file(tmp_path / "part.brep", sha) == b"one"
+    (tmp_path / "part.brep").write_text("two")
+    with pytest.raises(InputError, match="has changed since the study began"):
+        making._file(tmp_path / "part.brep", sha)
+
+
+def test_a_run_that_kills_its_workers_is_given_up(tmp_path, monkeypatch):
+    """Of a real cluster: one of the runs ends the process that it is in."""
+    hook = tmp_path / "hook"
+    hook.mkdir()
+    (hook / "sitecustomize.py").write_text(
+        "import sys, importlib.abc, importlib.machinery\n"
+        "class Finder(importlib.abc.MetaPathFinder):\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name != 'beltgrinding.studies.one':\n"
+        "            return None\n"
+        "        spec = importlib.machinery.PathFinder.find_spec(name, path)\n"
+        "        load = spec.loader.exec_module\n"
+        "        def loaded(module):\n"
+        "            load(module)\n"
+        "            solve = module.solve\n"
+        "            def deadly(job, *arguments, **options):\n"
+        "                if job['belt_machine']['force_N'] == 30.0:\n"
+        "                    import os\n"
+        "                    os._exit(1)\n"
+        "                return solve(job, *arguments, **options)\n"
+        "            module.solve = deadly\n"
+        "        spec.loader.exec_module = loaded\n"
+        "        return spec\n"
+        "sys.meta_path.insert(0, Finder())\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", f"{hook}:{os.environ.get('PYTHONPATH', '')}")
+    found = making.study(study_of(), tmp_path / "out", workers=2)
+    assert found.table["status"].tolist() == ["done", "error", "done", "done"]
+    assert found.broken_off == 1 and "worker that was given it died" in found.table["error"][1]
+    assert np.isnan(found.table["in_share"][1])
+    begun = time.monotonic()
+    assert making.study(study_of(), tmp_path / "out", workers=0).reused == 3
+    assert time.monotonic() - begun < 60

@@ -9,7 +9,10 @@ from ..base.files import at_key
 from ..engine import InputError, core
 from . import spacing
 
-BELOW = ("stock.below_design", "stock.negative_allowance")  # warnings of stock before something is added
+BELOW = (
+    "stock.below_design",
+    "stock.negative_allowance",
+)  # warnings of stock before something is added
 MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 
 

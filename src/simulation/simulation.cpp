@@ -125,6 +125,10 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     const double cell = contact_cell(field, process.wheel, resolution);
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
+    {
+        const Stopwatch watch(wall.build);
+        pressing.map().prepare(field);
+    }
     Grinding grinding(blocks, pressing, law, options, trace ? &*trace : nullptr);
     std::optional<ActuatedWheel> wheel;  // of a force control that takes time
     if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);

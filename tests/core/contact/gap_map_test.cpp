@@ -59,6 +59,45 @@ TEST(GapMap, CrownOpensTheGapTowardsTheEdges) {
     }
 }
 
+TEST(GapMap, AProfileOpensTheGapAsItDropsFromOneStretchToTheNext) {
+    const ContactWheel wheel{
+        80.0, 20.0, 0.0, {{-11.0, 0.4}, {-4.0, 0.0}, {2.0, 0.1}, {7.0, 0.0}, {11.0, 0.6}}};
+    const HeightField field = testing::plate(60.0, 60.0, 0.4);
+    const SampleBlocks blocks(field);
+    GapMap map(wheel, 1.0);
+    map.update(blocks, all_of(blocks), above(30.0, 30.0, 0.0), 3.0);
+    const ContactGrid& grid = map.grid();
+    for (int j = 0; j < grid.ny; ++j) {
+        // Cells over a kink have the mean of what lies round it.
+        EXPECT_NEAR(map.gap()[j * grid.nx + grid.nx / 2], wheel.drop(grid.y(j)), 3e-2) << j;
+    }
+}
+
+// Samples by themselves, as near edges, and eight at a time are the same.
+TEST(GapMap, SamplesAreWhereTheyAreHoweverTheyArePlaced) {
+    for (const ContactWheel& wheel :
+         {ContactWheel{50.0, 20.0, 0.0}, ContactWheel{50.0, 20.0, 40.0},
+          ContactWheel{50.0, 20.0, 0.0, {{-11.0, 0.4}, {0.0, 0.0}, {11.0, 0.6}}}}) {
+        const HeightField field = testing::cylinder(45.0, 60.0, 40.0, 0.3, 0.5);
+        HeightField leaning = field;  // all by themselves, along their normals still
+        leaning.rays = field.normal;
+        for (Vec3f& ray : leaning.rays) ray *= 1.0f + 1e-6f;
+        const Frame pose = above(0.0, 20.0, 0.3, 0.4);
+        const SampleBlocks regular(field), alone(leaning);
+        GapMap one(wheel, 1.0), other(wheel, 1.0);
+        one.update(regular, all_of(regular), pose, 0.6);
+        other.update(alone, all_of(alone), pose, 0.6);
+        ASSERT_EQ(one.grid(), other.grid());
+        EXPECT_EQ(one.samples(), other.samples());
+        for (int k = 0; k < one.grid().cells(); ++k) {
+            EXPECT_EQ(one.coverage()[k] > 0.0, other.coverage()[k] > 0.0);
+            if (!(one.coverage()[k] > 0.0)) continue;
+            EXPECT_NEAR(one.coverage()[k], other.coverage()[k], 1e-5);
+            EXPECT_NEAR(one.gap()[k], other.gap()[k], 2e-6);
+        }
+    }
+}
+
 TEST(GapMap, CoverageEndsWhereTheFaceEnds) {
     const ContactWheel wheel{80.0, 20.0, 0.0};
     const HeightField field = testing::plate(60.0, 60.0, 0.5);

@@ -33,6 +33,10 @@ class GapMap {
     /// mm beyond the wheel's side faces up to which samples are kept for what bulges out there.
     GapMap(const ContactWheel& wheel, double spacing, double beside = 0.0);
 
+    /// Looks once at the borders of a field and the form of its samples' patches, which `update`
+    /// does otherwise.
+    void prepare(const HeightField& field) { find_borders(field); }
+
     /// Maps the samples of the blocks `hits` (ascending) for the wheel at `work_from_contact`,
     /// which faces the work by the part of it beyond `ahead` mm from its axis. Samples that face
     /// away, that were missed by the stock's rays or that lie beyond the gap `reach` (mm) are left

@@ -1,15 +1,22 @@
-// What a step costs: localise, gap, contact, removal, on plates of 0.25, 1 and 4 million
-// samples at the same spacing. The counters are microseconds a step by phase; a step must cost what
-// the contact costs, so they should hardly change with the size of the field.
+// What a step costs: localise, gap, contact, removal, on plates of 0.25, 1, 4 and 16 million
+// samples at the same spacing, and on rough stock on a doubly curved face. The counters are
+// microseconds of wall time a step by phase, with trace and events beside the sum; bytes that the
+// samples in reach hold; and the step as a multiple of a limit that is measured in the same run:
+// the same samples read, changed and written once with 130 operations each, without any contact.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <memory>
 
+#include "base/lanes.h"
 #include "beltgrinding/simulation.h"
+#include "contact/placed_block.h"
 #include "contact/wheel_rim.h"
+#include "heightfield/sample_blocks.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -17,9 +24,66 @@ namespace {
 
 constexpr double kSpacing = 0.2;  // mm
 
-void step_cost(benchmark::State& state) {
+constexpr int kRead = 9, kWritten = 2;  // numbers of four bytes: 44 bytes a sample
+
+/// 130 operations on each of `count` (a multiple of 8) samples.
+BELTGRINDING_CLONES
+void touch(const float* in, float* out, std::size_t count) {
+    using namespace lanes;
+    for (std::size_t k = 0; k < count; k += kWide) {
+        Floats sums[4] = {load(in + k), load(in + count + k), load(in + 2 * count + k),
+                          load(in + 3 * count + k)};
+        for (std::size_t n = 4; n < kRead; ++n) {
+            const Floats more = load(in + n * count + k);
+            for (Floats& sum : sums) {
+                sum = sum * more + 0.5f;
+                sum = sum * more + 0.25f;
+                sum = sum * more + 0.125f;
+            }
+        }
+        store(out + k, sums[0] + sums[1] * sums[2]);
+        store(out + count + k, sums[2] + sums[3] * sums[0]);
+    }
+}
+
+/// us for `segments` samples, the quickest of some.
+double limit(double segments) {
+    const std::size_t count = 8 * static_cast<std::size_t>(segments / 8.0);
+    std::vector<float> in(kRead * count, 0.3f), out(kWritten * count);
+    double best = 1e9;
+    for (int k = 0; k < 50; ++k) {
+        const auto begin = std::chrono::steady_clock::now();
+        touch(in.data(), out.data(), count);
+        benchmark::DoNotOptimize(out.data());
+        benchmark::ClobberMemory();
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        best = std::min(best, 1e6 * took.count());
+    }
+    return best;
+}
+
+/// A saddle of 1 m and 0.6 m, with 0.3 mm of stock, rough by 0.1 mm over some mm.
+HeightField rough_saddle(double side) {
+    const auto shape = [=](double u, double v) {
+        const double x = u - 0.5 * side, y = v - 0.5 * side;
+        return Vec3(u, v, x * x / 2000.0 - y * y / 1200.0);
+    };
+    const auto normal = [=](double u, double v) {
+        return Vec3(-(u - 0.5 * side) / 1000.0, (v - 0.5 * side) / 600.0, 1.0).normalized();
+    };
+    HeightField field = testing::mapped_field(side, side, kSpacing, 0.3, shape, normal);
+    for (std::size_t k = 0; k < field.size(); ++k) {
+        const Vec3& p = field.point[k];
+        field.height[k] += 0.05 * std::sin(1.7 * p.x()) * std::cos(1.1 * p.y()) +
+                           0.05 * std::sin(0.6 * p.x() + 0.9 * p.y());
+        field.stock_height[k] = static_cast<float>(field.height[k]);
+    }
+    return field;
+}
+
+void run_steps(benchmark::State& state, bool rough) {
     const double side = kSpacing * std::sqrt(static_cast<double>(state.range(0)));
-    HeightField field = testing::plate(side, side, kSpacing, 0.3);
+    HeightField field = rough ? rough_saddle(side) : testing::plate(side, side, kSpacing, 0.3);
     ElasticFoundation foundation(0.5);
     WheelRimDesign design;
     design.layers = {{15.0, {5.0, 0.45}}};
@@ -34,7 +98,7 @@ void step_cost(benchmark::State& state) {
     std::vector<PathPose> poses(2);
     for (std::size_t k = 0; k < 2; ++k) {
         poses[k].base_from_tcp =
-            Eigen::Translation3d(k == 0 ? 20.0 : side - 20.0, 0.5 * side, 0.3) *
+            Eigen::Translation3d(k == 0 ? 0.4 * side : 0.6 * side, 0.5 * side, 0.3) *
             Eigen::AngleAxisd(M_PI, Vec3::UnitX());
     }
     const ToolPath path(poses, {});
@@ -44,6 +108,7 @@ void step_cost(benchmark::State& state) {
         simulate(first, path, elastic, law, options);
     }
     double steps = 0, localise = 0, gap = 0, contact = 0, removal = 0, segments = 0;
+    double trace = 0, events = 0;
     for (auto _ : state) {
         result = simulate(field, path, elastic, law, options);
         steps += static_cast<double>(result.steps.size());
@@ -51,6 +116,8 @@ void step_cost(benchmark::State& state) {
         gap += result.wall.gap;
         contact += result.wall.contact;
         removal += result.wall.removal;
+        trace += result.wall.trace;
+        events += result.wall.events;
         for (const StepRecord& step : result.steps) segments += step.segments;
         // The tree's build is no part of a step.
         state.SetIterationTime(result.wall.localise + result.wall.gap + result.wall.contact +
@@ -62,10 +129,30 @@ void step_cost(benchmark::State& state) {
     state.counters["gap_us"] = 1e6 * gap / steps;
     state.counters["contact_us"] = 1e6 * contact / steps;
     state.counters["removal_us"] = 1e6 * removal / steps;
+    state.counters["trace_us"] = 1e6 * trace / steps;
+    state.counters["events_us"] = 1e6 * events / steps;
+    state.counters["bytes"] =
+        segments / steps * static_cast<double>(sizeof(SampleBlocks::Block) + sizeof(PlacedBlock)) /
+        SampleBlocks::kLanes;
+    const double least = limit(segments / steps);
+    state.counters["limit_us"] = least;
+    state.counters["of_limit"] = state.counters["step_us"] / least;
 }
+
+void step_cost(benchmark::State& state) {
+    run_steps(state, false);
+}
+void step_rough(benchmark::State& state) {
+    run_steps(state, true);
+}
+BENCHMARK(step_rough)
+    ->ArgNames({"samples", "rim"})
+    ->Args({1'000'000, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
 BENCHMARK(step_cost)
     ->ArgNames({"samples", "rim"})
-    ->ArgsProduct({{250'000, 1'000'000, 4'000'000}, {0, 1}})
+    ->ArgsProduct({{250'000, 1'000'000, 4'000'000, 16'000'000}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
 

@@ -535,3 +535,10 @@ def test_threads_share_what_is_kept(folder):
         for thread in threads:
             thread.join()
     assert len(found) == 3 and found[0] == found[1] == found[2]
+
+
+def test_what_is_too_large_is_made_again():
+    stages = kept.Kept(1000)
+    for taken, made in ((200, 1), (300, 2)):
+        values = [stages.get("stage", lambda: [taken], list, lambda _: taken) for _ in range(2)]
+        assert (values[0] is values[1]) == (made == 1)

@@ -17,6 +17,9 @@ import numpy as np
 
 SHARE = 0.125  # of the machine's memory
 MOST = 2e9  # bytes, all together
+LARGEST = (
+    0.25  # of all, one value: a field of ten million samples is made again rather than held twice
+)
 LIMIT = "BELTGRINDING_KEPT_LIMIT_MB"  # of the environment; 0: nothing is kept
 
 
@@ -54,7 +57,8 @@ class Kept:
     def get(self, stage, parts, make, size):
         """The value of ``stage`` for ``parts()``, all that it is made from as ``digest`` takes it; by ``make()`` where
         it is not kept. ``size(value)``: bytes. What ``make`` raises is not kept, nor what was made while
-        ``parts()`` changed, as when a file is written to."""
+        ``parts()`` changed, as when a file is written to, nor what would take more than ``LARGEST`` of all.
+        """
         key = stage, digest(parts())
         with self._lock:
             found = self._values.get(key)
@@ -66,7 +70,7 @@ class Kept:
         taken = int(size(value))
         with self._lock:
             self.made[stage] = self.made.get(stage, 0) + 1
-        if taken <= self.most and key == (stage, digest(parts())):
+        if taken <= LARGEST * self.most and key == (stage, digest(parts())):
             self._put(key, value, taken)
         return value
 

@@ -113,6 +113,7 @@ class StudyDock(ObjectDock):
         layout.addWidget(self.note)
         self.picture = PictureLabel("studyPicture", self.enlarge)
         area = QtGui.QScrollArea()
+        area.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOn)  # else its coming and going resizes pictures without end
         area.setWidgetResizable(True)
         area.setFrameShape(QtGui.QFrame.NoFrame)
         held, inner = QtGui.QWidget(), QtGui.QVBoxLayout()

@@ -110,7 +110,7 @@ class Runner(Background):
         self.start = time.monotonic()
         self.recorded, self.then = recording, then
         self.shown = then is not None or job_data.child(job, deviation.Deviation) is not None
-        self.told = 0.0  # when the progress was
+        self.progress_at = 0.0  # s, when it was told last
         super().__init__(self.work, self._finish)
         self.timer.setInterval(END_POLL)
 
@@ -145,8 +145,8 @@ class Runner(Background):
         if self.job() is None:
             self.context.cancel()
         now = time.monotonic()
-        if self.thread.is_alive() and now - self.told > 0.001 * POLL:
-            self.told = now
+        if self.thread.is_alive() and now - self.progress_at > 0.001 * POLL:
+            self.progress_at = now
             self.progress(self.context.progress)
         super()._poll()
 

@@ -113,7 +113,8 @@ class StudyDock(ObjectDock):
         layout.addWidget(self.note)
         self.picture = PictureLabel("studyPicture", self.enlarge)
         area = QtGui.QScrollArea()
-        area.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOn)  # else its coming and going resizes pictures without end
+        # One that comes and goes changes the picture's width, thereby its height, thereby itself, without end.
+        area.setVerticalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOn)
         area.setWidgetResizable(True)
         area.setFrameShape(QtGui.QFrame.NoFrame)
         held, inner = QtGui.QWidget(), QtGui.QVBoxLayout()

@@ -10,9 +10,6 @@
 namespace beltgrinding {
 namespace {
 
-// A surface steeper than this against the wheel is its flank or back, which the wheel cannot press:
-// cosine of the angle between surface normal and wheel's radius. As in placed_block.cpp.
-constexpr double kSteepest = 0.2;
 // A face that faces the wheel less has been cut off where the wheel cuts the edge beside it.
 constexpr double kLeastFacing = 0.05;
 constexpr int kGridQuantum = 8;    // grid lengths are multiples, so that warm starts mostly fit

@@ -12,7 +12,6 @@ namespace {
 // Samples stand for about as much area as the cells that they share; where a gouge's walls leave
 // far less, no volume is squeezed out of what is left.
 constexpr double kLargestScale = 1.5;
-constexpr double kSteepest = 0.2;     // cosine of the angle between ray and wheel's radius
 constexpr double kOnEnvelope = 1e-5;  // mm: a sample as near to the wheel's envelope lies on it
 constexpr int kMaxSecants = 20;
 
@@ -68,6 +67,18 @@ double GapMap::down_to_envelope(const SampleBlocks& blocks, const Footprint& f, 
     return low;
 }
 
+GapMap::Footprint GapMap::footprint_of(const SampleBlocks& blocks, const PlacedBlock& placed,
+                                       int lane) {
+    Footprint f{};
+    f.position = std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane);
+    f.sample = blocks.sample(f.position);
+    f.own_gap = placed.own_gap[lane];
+    f.facing = placed.facing[lane];
+    f.area = blocks.field().area[f.sample];
+    f.cosine = f.area > 0.0f ? placed.weight[lane] / f.area : 1.0f;
+    return f;
+}
+
 double GapMap::remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate,
                       const Eigen::ArrayXd& beside, double duration, double approach) {
     const double volume = volume_rate(rate, beside) * duration;
@@ -82,7 +93,7 @@ double GapMap::remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate,
     double unscaled = 0.0;
     for (std::size_t k = 0; k < placed_count_; ++k) {
         float* lowering = &lowering_[k * kBlockLanes];
-        if (!interpolate(placed_[k], table_.data(), lowering)) continue;
+        if (!interpolate(placed_[k], table_.data(), 0.0f, lowering)) continue;
         active_[k] = 1;
         volumes[k] = volume_of(lowering, area_of(k));
         unscaled += volumes[k];
@@ -117,11 +128,7 @@ double GapMap::remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate,
             const double asked = lowering[lane];
             of_free -= asked * area[lane];
             if ((standing.onto >> lane & 1U) != 0) continue;
-            Footprint f{};
-            f.position = std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane);
-            f.sample = blocks.sample(f.position);
-            f.own_gap = placed.own_gap[lane];
-            f.facing = placed.facing[lane];
+            const Footprint f = footprint_of(blocks, placed, lane);
             const double down = down_to_envelope(blocks, f, approach, kLargestScale * asked);
             limited_.emplace_back(k * kBlockLanes + static_cast<std::size_t>(lane), down);
             const bool holds = down < scale * asked;
@@ -197,7 +204,7 @@ double GapMap::cut(SampleBlocks& blocks) const {
             const Vec3 ray = contact_from_work_.linear() * field.rays[f.sample].cast<double>();
             const double angle = f.s / wheel_.radius;
             cosine = -(ray.x() * std::sin(angle) + ray.z() * std::cos(angle));
-            cosine = std::max(cosine, kSteepest);
+            cosine = std::max<double>(cosine, kSteepest);
         }
         const double lowering = down_to_envelope(blocks, f, 0.0, -f.own_gap / cosine);
         if (lowering <= 0.0) return;
@@ -209,14 +216,7 @@ double GapMap::cut(SampleBlocks& blocks) const {
         for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             if (!(placed.own_gap[lane] < 0.0f)) continue;
-            Footprint f{};
-            f.position = std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane);
-            f.sample = blocks.sample(f.position);
-            f.own_gap = placed.own_gap[lane];
-            f.facing = placed.facing[lane];
-            f.area = field.area[f.sample];
-            f.cosine = f.area > 0.0f ? placed.weight[lane] / f.area : 1.0f;
-            cut_one(f);
+            cut_one(footprint_of(blocks, placed, lane));
         }
     }
     for (const Footprint& f : footprints_) {

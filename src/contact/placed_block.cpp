@@ -7,7 +7,6 @@ namespace {
 
 using namespace lanes;
 
-constexpr float kSteepest = 0.2f;  // as in gap_map.cpp
 // Square of the tangent of half the angle under the wheel up to which the series below holds.
 constexpr float kWidestAngle = 0.36f;
 
@@ -64,7 +63,6 @@ BELTGRINDING_INLINE void shape(const Placing& p, const Floats& y, Floats& drop, 
     }
 }
 
-template <bool kSigned>
 BELTGRINDING_INLINE Floats between(const PlacedBlock& placed, const Bilinear* table, int first) {
     Four rows[kWide];
     for (int k = 0; k < kWide; ++k) {
@@ -87,9 +85,7 @@ BELTGRINDING_INLINE Floats between(const PlacedBlock& placed, const Bilinear* ta
     const Floats d = __builtin_shufflevector(cd01, cd23, 2, 3, 10, 11, 6, 7, 14, 15);
     const Floats u = load(placed.u + first), v = load(placed.v + first);
     const Floats value = a + b * u + (c + d * u) * v;
-    const Floats whole = kept(value, mask_of(placed.regular, first));
-    if constexpr (kSigned) return whole;
-    return larger(whole, Floats{});
+    return kept(value, mask_of(placed.regular, first));
 }
 
 }  // namespace
@@ -246,21 +242,10 @@ void average_cells(const PlacedBlock& placed, int above, const float* limit, dou
 }
 
 BELTGRINDING_CLONES
-bool interpolate(const PlacedBlock& placed, const Bilinear* table, float* values) {
+bool interpolate(const PlacedBlock& placed, const Bilinear* table, float least, float* values) {
     Ints any{};
     for (int first = 0; first < kBlockLanes; first += kWide) {
-        const Floats value = between<false>(placed, table, first);
-        any |= value != 0.0f;
-        store(values + first, value);
-    }
-    return bits(any) != 0;
-}
-
-BELTGRINDING_CLONES
-bool interpolate_signed(const PlacedBlock& placed, const Bilinear* table, float* values) {
-    Ints any{};
-    for (int first = 0; first < kBlockLanes; first += kWide) {
-        const Floats value = between<true>(placed, table, first);
+        const Floats value = larger(between(placed, table, first), all(least));
         any |= value != 0.0f;
         store(values + first, value);
     }
@@ -270,7 +255,7 @@ bool interpolate_signed(const PlacedBlock& placed, const Bilinear* table, float*
 BELTGRINDING_CLONES
 void raise_to(const PlacedBlock& placed, const Bilinear* table, float* largest) {
     for (int first = 0; first < kBlockLanes; first += kWide) {
-        const Floats value = between<false>(placed, table, first);
+        const Floats value = between(placed, table, first);
         store(largest + first, larger(load(largest + first), value));
     }
 }

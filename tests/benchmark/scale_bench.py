@@ -26,7 +26,7 @@ MOST = 1_000_000
 HUGE_SAMPLES = 1e9  # a ship's propeller, 10 m2 at HUGE_SPACING
 HUGE_JOBS = 1e6
 WORKER_BYTES = 64e9  # memory of a worker
-STEP = ("localise", "gap", "contact", "removal", "refit", "trace", "events")  # phases of a step
+STEP = ("localise", "gap", "contact", "removal", "trace", "events")  # phases of a step
 HUGE_SPACING = 0.1  # mm
 RADIUS, DEEP = (
     100.0,

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -96,6 +97,19 @@ def test_a_recording_follows_all_programs_of_a_job(tmp_path):
         heights[samples] = changed
         np.testing.assert_array_equal(heights, recording.heights_at(frame))
         at = frame
+
+    # Before format 2 runs were samples, and there was no order: what is told of position p is of sample p then.
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        order = file["order"][()]
+        del file["order"]
+        file.attrs.modify("recording_format", np.int32(1))
+    older, _ = core.Recording.from_hdf5(str(tmp_path / "recording.h5"))
+    for frame in (5, read.last):
+        np.testing.assert_array_equal(older.heights_at(frame), read.heights_at(frame)[order])
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file.attrs.modify("recording_format", np.int32(3))
+    with pytest.raises(InputError, match="format 3"):
+        core.Recording.from_hdf5(str(tmp_path / "recording.h5"))
 
     small = core.Recording(recording.changes)  # bytes: a quarter of the heights'
     assert beltgrinding.run(job, recording=small).summary["samples"] == small.samples

@@ -1,6 +1,24 @@
 """The pieces that a report's sections are made of."""
 
-from .markup import element
+from .markup import Markup, element
+
+
+def whole_page(title, style, body, language, policy=None):
+    """A whole HTML text. ``style``: its CSS; ``body``: its elements; ``policy``: an element of its head."""
+    html = element(
+        "html",
+        element(
+            "head",
+            element("meta", charset="utf-8"),
+            policy,
+            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            element("title", title),
+            element("style", Markup(style)),
+        ),
+        element("body", body),
+        lang=language,
+    )
+    return "<!DOCTYPE html>\n" + html + "\n"
 
 
 def section(title, *children, **attributes):

@@ -2,8 +2,8 @@
 
 from ..base.resources import resources
 from . import charts, facts, findings, reproduction, view
-from .layout import facts as rows, section
-from .markup import Markup, element
+from .layout import facts as rows, section, whole_page
+from .markup import element
 
 
 def document(content, words, scale, spots, drawn, shown=None, lacking=None):
@@ -24,20 +24,9 @@ def document(content, words, scale, spots, drawn, shown=None, lacking=None):
         reproduction.repeat(content, words),
         findings.all_events(content, words),
     ]
-    html = element(
-        "html",
-        element(
-            "head",
-            element("meta", charset="utf-8"),
-            view.policy(scripts),
-            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            element("title", title),
-            element("style", Markup(style)),
-        ),
-        element("body", element("main", body), scripts),
-        lang=words.code,
+    return whole_page(
+        title, style, [element("main", body), scripts], words.code, view.policy(scripts)
     )
-    return "<!DOCTYPE html>\n" + html + "\n"
 
 
 def _pictures(content, words, scale, spots, drawn, shown, lacking):

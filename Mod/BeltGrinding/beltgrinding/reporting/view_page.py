@@ -9,7 +9,8 @@ from ..simulation import result_folder
 from ..simulation.result import Result
 from . import charts, findings, pictures, report, view as views, view_library, worst_spots
 from .language import Language
-from .markup import Markup, element
+from .layout import whole_page
+from .markup import element
 
 
 def view(result, output=None, language="en", title=None, context=None):
@@ -64,17 +65,5 @@ def _document(content, words, scale, shown, drawn):
         id="view-instead",
     )
     style = (resources() / "report" / "view_page.css").read_text(encoding="utf-8")
-    html = element(
-        "html",
-        element(
-            "head",
-            element("meta", charset="utf-8"),
-            views.policy(shown.scripts),
-            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            element("title", title),
-            element("style", Markup(shown.style + style)),
-        ),
-        element("body", head, shown.markup, instead, shown.scripts),
-        lang=words.code,
-    )
-    return "<!DOCTYPE html>\n" + html + "\n"
+    body = [head, shown.markup, instead, shown.scripts]
+    return whole_page(title, shown.style + style, body, words.code, views.policy(shown.scripts))

@@ -11,6 +11,7 @@ import threading
 import time
 from pathlib import Path
 
+from ..base.files import remove_tree
 from ..engine import InputError, core
 
 START_S = 60.0  # for a local cluster to start
@@ -135,7 +136,7 @@ class Local:
             process.wait()
             process.stdout.close()
         if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_tree(folder)
 
 
 def python():

@@ -2,14 +2,13 @@
 
 import hashlib
 import os
-import shutil
 import tempfile
 import time
 from pathlib import Path
 from typing import NamedTuple
 
 from ..base import schemas
-from ..base.files import absolute, at_key, in_file, json_bytes
+from ..base.files import absolute, at_key, in_file, json_bytes, remove_tree
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
 from ..job import inputs, load as jobs
@@ -190,7 +189,7 @@ def study(
         found = run(prepared, folder, context, told, workers, scheduler, again, chunk)
         return found._replace(folder=None)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_tree(folder)
 
 
 def run(

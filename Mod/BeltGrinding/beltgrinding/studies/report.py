@@ -11,8 +11,8 @@ from ..base.resources import resources
 from ..engine import core
 from ..reporting.facts import part_name
 from ..reporting.language import DASH, Language
-from ..reporting.layout import facts, section, table as html_table
-from ..reporting.markup import Markup, data_uri, element
+from ..reporting.layout import facts, section, table as html_table, whole_page
+from ..reporting.markup import data_uri, element
 from . import answers as answering, charts, checking, names
 from .making import Study
 
@@ -118,19 +118,7 @@ def document(found, study, pictures, words):
         _runs(found, study, words),
         _failed(found, words),
     ]
-    html = element(
-        "html",
-        element(
-            "head",
-            element("meta", charset="utf-8"),
-            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            element("title", title),
-            element("style", Markup(style)),
-        ),
-        element("body", element("main", body)),
-        lang=words.code,
-    )
-    return "<!DOCTYPE html>\n" + html + "\n"
+    return whole_page(title, style, element("main", body), words.code)
 
 
 def _head(found, title, words):

@@ -8,8 +8,8 @@ from ..base.plotting import GREEN, GREY, ORANGE, RED
 from ..base.resources import resources
 from ..reporting.facts import part_name
 from ..reporting.language import DASH, Language
-from ..reporting.layout import section, table as html_table
-from ..reporting.markup import Markup, data_uri, element
+from ..reporting.layout import section, table as html_table, whole_page
+from ..reporting.markup import data_uri, element
 from . import sorting
 
 REPORT = "parts.html"
@@ -69,19 +69,7 @@ def document(batch, job, share, words):
         element("img", src=data_uri(picture(batch, words), "image/png"), alt=words("Parts")),
         section(words("Parts"), _table(batch, words)),
     ]
-    html = element(
-        "html",
-        element(
-            "head",
-            element("meta", charset="utf-8"),
-            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            element("title", title),
-            element("style", Markup(style)),
-        ),
-        element("body", element("main", element("section", body))),
-        lang=words.code,
-    )
-    return "<!DOCTYPE html>\n" + html + "\n"
+    return whole_page(title, style, element("main", element("section", body)), words.code)
 
 
 def _table(batch, words):

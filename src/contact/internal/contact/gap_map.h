@@ -91,7 +91,8 @@ class GapMap {
         float values[kBlockLanes];
         for (std::size_t k = 0; k < placed_count_; ++k) {
             const PlacedBlock& placed = placed_[k];
-            if (!interpolate_signed(placed, table_.data(), values)) continue;
+            const float any = -std::numeric_limits<float>::infinity();
+            if (!interpolate(placed, table_.data(), any, values)) continue;
             const float* taken = taken_of(k);
             for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
                 if (values[lane] == 0.0f) continue;
@@ -193,6 +194,8 @@ class GapMap {
     const BorderPatch* border_patch(std::uint32_t sample) const;
     /// Before the footprint is put on the grid.
     Patch patch_of(const Footprint& f, const HeightField& field) const;
+    /// Of a regular lane, what the envelope needs to know.
+    static Footprint footprint_of(const SampleBlocks& blocks, const PlacedBlock& placed, int lane);
     /// Finds the four cells.
     void put_on_grid(Footprint& f) const;
     /// Of the regular lane of a placed block, mm: where it lies.

@@ -9,6 +9,9 @@ namespace beltgrinding {
 // may bring in inline functions that other units have as well.
 
 constexpr int kBlockLanes = 64;
+// A surface steeper than this against the wheel is its flank or back, which the wheel cannot press:
+// cosine of the angle between surface normal and wheel's radius.
+constexpr float kSteepest = 0.2f;
 
 /// A block of samples as the wheel sees it. Only lanes in `regular` have values: those of samples
 /// on whole cells, of one layer, under the wheel's width. The cells are the four that a sample lies
@@ -76,11 +79,9 @@ struct Bilinear {
     float a, b, c, d;
 };
 
-/// Values of the regular lanes by the table of their first cells, never below 0; 0 in the others.
-/// False if all are 0.
-bool interpolate(const PlacedBlock& placed, const Bilinear* table, float* values);
-/// The same for values of any sign.
-bool interpolate_signed(const PlacedBlock& placed, const Bilinear* table, float* values);
+/// Values of the regular lanes by the table of their first cells, none below `least`; 0 in the
+/// others. False if all are 0.
+bool interpolate(const PlacedBlock& placed, const Bilinear* table, float least, float* values);
 /// Raises `largest` to the interpolated values.
 void raise_to(const PlacedBlock& placed, const Bilinear* table, float* largest);
 

@@ -1,6 +1,5 @@
 """Plans a job in a thread of its own, polled by the window."""
 
-from ...engine import Cancelled
 from ...objects import plan as planned
 from .compat import translate
 from .runner import Runner
@@ -39,16 +38,6 @@ class PlanRunner(Runner):
         return self.task.find(self.data, context, self.rounds.append, self.words)
 
     def _store(self, found):
-        job = self.job()
-        obj = None if job is None else self.document.getObject(self.plan)
-        if obj is None:
-            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
-        self.document.openTransaction(translate("BeltGrinding", "Plan"))
-        try:
-            planned.store(obj, job, found)
-            obj.Proxy.update(obj)  # an input may have changed while it ran
-            self.document.commitTransaction()
-        except BaseException:
-            self.document.abortTransaction()
-            raise
+        step = translate("BeltGrinding", "Plan")
+        self._store_in(self.plan, step, lambda job, obj: planned.store(obj, job, found))
         return found

@@ -165,15 +165,37 @@ class Runner(Background):
         job = self.job()
         if job is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
-        self.document.openTransaction("Simulate")
-        try:
+
+        def write():
             simulation = api.store_result(job, result, self.fingerprint, files)
             if self.then is not None:
                 self.then(job)
-            self.document.commitTransaction()
             return simulation
+
+        try:
+            return self._in_one_step("Simulate", write)
+        finally:
+            deviation.forget_prepared()
+
+    def _store_in(self, name, step, store):
+        """``store(job, obj)`` for the object called ``name`` that is made out of a run, in one undo step."""
+        job = self.job()
+        obj = None if job is None else self.document.getObject(name)
+        if obj is None:
+            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
+
+        def write():
+            store(job, obj)
+            obj.Proxy.update(obj)  # an input may have changed while it ran
+
+        self._in_one_step(step, write)
+
+    def _in_one_step(self, name, write):
+        self.document.openTransaction(name)
+        try:
+            made = write()
+            self.document.commitTransaction()
+            return made
         except BaseException:
             self.document.abortTransaction()
             raise
-        finally:
-            deviation.forget_prepared()

@@ -1,6 +1,5 @@
 """Runs a study in a thread of its own, polled by the window; its runs are processes of their own where Dask is."""
 
-from ...engine import Cancelled
 from ...objects import study as studies
 from .compat import translate
 from .runner import Runner
@@ -24,16 +23,6 @@ class StudyRunner(Runner):
         self.told = progress
 
     def _store(self, found):
-        job = self.job()
-        obj = None if job is None else self.document.getObject(self.study)
-        if obj is None:
-            raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
-        self.document.openTransaction(translate("BeltGrinding", "Study"))
-        try:
-            studies.store(obj, found)
-            obj.Proxy.update(obj)  # an input may have changed while it ran
-            self.document.commitTransaction()
-        except BaseException:
-            self.document.abortTransaction()
-            raise
+        step = translate("BeltGrinding", "Study")
+        self._store_in(self.study, step, lambda _, obj: studies.store(obj, found))
         return found

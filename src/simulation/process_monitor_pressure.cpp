@@ -1,0 +1,171 @@
+// How the pressure lies across the wheel: uneven, on an edge, round a hollow.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "process_monitor.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr std::size_t kPause = 4;  // steps: noise at a threshold makes one event, not many
+// Share of an even distribution that the outermost cells must carry to be pressed: below, it is the
+// last of a pressure that fades out before the edge.
+constexpr double kPressedEdge = 0.25;
+constexpr double kOuterShare = 0.1;  // of the width: what the edge's load is told for
+// Times the even share: what carries no more is in use like the rest of the width, as of a cylinder
+// on a plane, and all is well.
+constexpr double kEven = 1.5;
+constexpr int kHollowCells = 2;  // that are not touched between touched ones, at least
+// By how much more than the rim a hollow must turn: a share of the rim's turn; rad where the rim is
+// straight.
+constexpr double kHollow = 0.02;
+constexpr double kSlopeReach = 2.0;  // cells over whose samples a slope is averaged
+
+}  // namespace
+
+void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressing) {
+    const ContactSolution& contact = pressing.solution();
+    const GapMap& map = pressing.map();
+    const ContactGrid& grid = map.grid();
+    std::vector<double> by_column(static_cast<std::size_t>(grid.ny), 0.0);  // share of the force
+    double centre = 0.0, total = 0.0;
+    for (int j = 0; j < grid.ny; ++j) {
+        const auto row = Eigen::seqN(j * grid.nx, grid.nx);
+        const Eigen::ArrayXd force = contact.pressure(row) * map.coverage()(row);
+        const double sum = force.sum();
+        if (!(sum > 0.0)) continue;
+        by_column[static_cast<std::size_t>(j)] = sum;
+        total += sum;
+        centre +=
+            (force * Eigen::ArrayXd::LinSpaced(grid.nx, grid.s(0), grid.s(grid.nx - 1))).sum();
+    }
+    if (!(total > 0.0)) return;
+    for (double& share : by_column) share /= total;
+    centre /= total;
+    note_edges(index, pressing, by_column);
+    const double tilt = std::abs(centre) / process_.wheel.radius;
+    if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
+    if (Event* event = note("tilted_contact", index, kDegrees * tilt)) {
+        event->limit = kDegrees * limits_.tilt;
+        const Arguments arguments = {{"angle", kDegrees * tilt}};
+        if (centre > 0.0) {
+            event->facts = {{"event.tilted_along",
+                             "the wheel touches {angle:.1f} deg round its rim from the programmed "
+                             "contact point, along the belt's travel",
+                             arguments}};
+        } else {
+            event->facts = {{"event.tilted_against",
+                             "the wheel touches {angle:.1f} deg round its rim from the programmed "
+                             "contact point, against it",
+                             arguments}};
+        }
+        put(*event, pressing, centre, 0.0);
+    }
+}
+
+void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
+                                const std::vector<double>& by_column) {
+    const ContactGrid& grid = pressing.map().grid();
+    const double pressed = kPressedEdge / grid.ny;
+    const std::array<bool, 2> on = {by_column.front() > pressed, by_column.back() > pressed};
+    if (!on[0] && !on[1]) return;
+    std::array<double, 2> outer = {0.0, 0.0};
+    const int columns = std::max(1, static_cast<int>(std::lround(kOuterShare * grid.ny)));
+    for (int j = 0; j < columns; ++j) {
+        outer[0] += by_column[static_cast<std::size_t>(j)];
+        outer[1] += by_column[static_cast<std::size_t>(grid.ny - 1 - j)];
+    }
+    const double even = static_cast<double>(columns) / grid.ny;
+    const auto more = static_cast<std::size_t>(outer[1] > outer[0] ? 1 : 0);
+    if (outer[more] <= kEven * even) return;
+    const double share = 100.0 * outer[more];
+    // One for each pass.
+    Event* event = events_.note("edge_contact", pass_ * (kPause + 1), steps_[index], share,
+                                static_cast<int>(more));
+    if (event == nullptr) return;
+    event->limit = 100.0 * even;
+    const Arguments arguments = {{"share", share}, {"even", event->limit}};
+    if (more == 1) {
+        event->facts = {{"event.edge_at_plus_y",
+                         "the wheel presses with its edge at +y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    } else {
+        event->facts = {{"event.edge_at_minus_y",
+                         "the wheel presses with its edge at -y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    }
+    put(*event, pressing, 0.0, more == 1 ? grid.y(grid.ny - 1) : grid.y(0));
+}
+
+// A stretch of cells without pressure between pressed ones, in a row along the rim or across it. It
+// is the surface's form, not a groove that was ground before, if the design's normals at both ends
+// turn towards each other by more than the rim's do. With theta and alpha half the turn of the
+// rim's and of the surface's normals, an arc of radius rho over the same chord has rho sin alpha =
+// R sin theta.
+void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bool across) {
+    const GapMap& map = pressing.map();
+    const ContactGrid& grid = map.grid();
+    const Eigen::ArrayXd& pressure = pressing.solution().pressure;
+    const int lines = across ? grid.nx : grid.ny, cells = across ? grid.ny : grid.nx;
+    int longest = 0, at_line = 0, at_end = 0;
+    for (int line = 0; line < lines; ++line) {
+        int open = -1;  // cells since the last pressed one; -1: none yet
+        for (int cell = 0; cell < cells; ++cell) {
+            const int k = across ? cell * grid.nx + line : line * grid.nx + cell;
+            if (pressure[k] > 0.0) {
+                if (open > longest) longest = open, at_line = line, at_end = cell;
+                open = 0;
+            } else if (open >= 0) {
+                ++open;
+            }
+        }
+    }
+    if (longest < kHollowCells) return;
+    const auto place = [&](double cell) {
+        const double s = across ? grid.s(at_line) : grid.s(0) + cell * grid.ds;
+        const double y = across ? grid.y(0) + cell * grid.dy : grid.y(at_line);
+        return Eigen::Vector2d(s, y);
+    };
+    const int begin = at_end - longest - 1;
+    const Eigen::Vector2d from = place(begin), to = place(at_end), middle = 0.5 * (from + to);
+    const double reach = kSlopeReach * std::max(grid.ds, grid.dy);
+    const int axis = across ? 1 : 0;
+    const double closing = std::atan(map.slope_near(from.x(), from.y(), reach)[axis]) -
+                           std::atan(map.slope_near(to.x(), to.y(), reach)[axis]);
+    const double span = (to - from).norm();
+    const double radius = across ? process_.wheel.crown_radius : process_.wheel.radius;
+    const double turn = radius > 0.0 ? 0.5 * span / radius : 0.0;
+    // Also false where a slope is not known.
+    if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
+    const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * span;
+    const double hollow = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
+    Event* event = note("wheel_too_large", index, hollow, across ? 1 : 0);
+    if (event == nullptr) return;
+    if (radius > 0.0) event->limit = radius;
+    const Arguments arguments = {{"radius", hollow}, {"span", span}};
+    if (across) {
+        event->facts = {{"event.hollow_across",
+                         "across the wheel, the surface is hollow with a radius of about "
+                         "{radius:.3g} mm: the wheel spans {span:.3g} mm without touching",
+                         arguments}};
+    } else {
+        event->facts = {{"event.hollow_along",
+                         "along the belt, the surface is hollow with a radius of about "
+                         "{radius:.3g} mm: the wheel spans {span:.3g} mm without touching",
+                         arguments}};
+    }
+    put(*event, pressing, middle.x(), middle.y());  // for the face
+    // No sample is in reach there: it is the rim's point over the hollow.
+    const double angle = middle.x() / process_.wheel.radius;
+    const double r = process_.wheel.radius - process_.wheel.drop(middle.y());
+    event->point = steps_[index].work_from_contact *
+                   Vec3(r * std::sin(angle), middle.y(),
+                        pressing.approach() - process_.wheel.radius + r * std::cos(angle));
+}
+
+}  // namespace beltgrinding

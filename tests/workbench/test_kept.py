@@ -467,20 +467,22 @@ def test_what_was_used_longest_ago_goes_first():
     stages = kept.Kept(100)
     made = []
 
-    def value(name, size=40):
+    def value(name, size=25):
         return stages.get("one", lambda: name, lambda: made.append(name) or name, lambda _: size)
 
-    for name in "abab":
+    for name in "abcdabcd":
         assert value(name) == name
-    assert made == ["a", "b"] and stages.bytes == 80
+    assert made == ["a", "b", "c", "d"] and stages.bytes == 100
     value("a")
-    value("c")  # drops b
-    value("a")
-    value("b")
-    assert made == ["a", "b", "c", "b"] and stages.bytes == 80
+    value("e")  # drops b
+    for name in "acde":
+        value(name)
+    assert made[4:] == ["e"]
+    value("b")  # drops a
+    assert made[4:] == ["e", "b"] and stages.bytes == 100
     value("large", 101)
     value("large", 101)
-    assert made[-2:] == ["large", "large"] and stages.bytes == 80
+    assert made[-2:] == ["large", "large"] and stages.bytes == 100
     stages.forget()
     assert stages.bytes == 0 and value("a") == "a" and made[-1] == "a"
 

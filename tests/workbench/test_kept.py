@@ -479,7 +479,11 @@ def test_what_was_used_longest_ago_goes_first():
         value(name)
     assert made[4:] == ["e"]
     value("b")  # drops a
+    for name in "cdeb":
+        value(name)
     assert made[4:] == ["e", "b"] and stages.bytes == 100
+    value("a")
+    assert made[4:] == ["e", "b", "a"] and stages.bytes == 100
     value("large", 101)
     value("large", 101)
     assert made[-2:] == ["large", "large"] and stages.bytes == 100

@@ -17,6 +17,7 @@ constexpr double kFull = 0.999;
 constexpr double kGraded = 0.001;   // of the samples away from borders: fewer small ones are chance
 constexpr double kDenser = 0.6;     // of the field's spacing: where curvature asks for more samples
 constexpr double kStraight = 1e-6;  // less: a spike, which has no way along
+constexpr int kEdgeMatters = 2;     // cells from what may bear pressure
 
 }  // namespace
 
@@ -193,33 +194,94 @@ void GapMap::for_patch(const EdgePatch& patch, Visit visit) const {
     }
 }
 
+template <class Nearest>
+void GapMap::find_pressable(const Nearest* nearest, double pressable) {
+    const int nx = grid_.nx, ny = grid_.ny;
+    const auto cells = static_cast<std::size_t>(grid_.cells());
+    pressable_.clear();
+    matters_.assign(cells, 1);
+    if (!(pressable < kNone)) return;
+    pressable_.resize(cells);
+    for (std::size_t k = 0; k < cells; ++k) pressable_[k] = nearest[k] <= pressable ? 1 : 0;
+    // Along, then across.
+    wider_.assign(cells, 0);
+    for (int j = 0; j < ny; ++j) {
+        const std::uint8_t* from = &pressable_[static_cast<std::size_t>(j * nx)];
+        std::uint8_t* to = &wider_[static_cast<std::size_t>(j * nx)];
+        for (int by = -kEdgeMatters; by <= kEdgeMatters; ++by)
+            for (int i = std::max(0, -by); i < std::min(nx, nx - by); ++i) to[i] |= from[i + by];
+    }
+    std::fill(matters_.begin(), matters_.end(), std::uint8_t{0});
+    for (int j = 0; j < ny; ++j) {
+        std::uint8_t* to = &matters_[static_cast<std::size_t>(j * nx)];
+        for (int b = std::max(0, j - kEdgeMatters); b <= std::min(ny - 1, j + kEdgeMatters); ++b) {
+            const std::uint8_t* from = &wider_[static_cast<std::size_t>(b * nx)];
+            for (int i = 0; i < nx; ++i) to[i] |= from[i];
+        }
+    }
+}
+
+bool GapMap::map_smooth(double pressable) {
+    const auto cells = static_cast<std::size_t>(grid_.cells());
+    low_.assign(cells, std::numeric_limits<float>::infinity());
+    high_.assign(cells, -std::numeric_limits<float>::infinity());
+    inhabited_.assign(cells, 0);
+    const int above = grid_.ny > 1 ? grid_.nx : 0;
+    const CellSums sums{gap_.data(), weight_.data(), low_.data(), high_.data(), inhabited_.data()};
+    for (std::size_t k = 0; k < placed_count_; ++k) gather_cells(placed_[k], above, sums);
+    for (const Footprint& f : footprints_) {
+        if (!f.on_grid || f.inside <= 0.0f) continue;
+        inhabited_[static_cast<std::size_t>(own_cell(f))] = 1;
+        for_cells(f, [&](int cell, float share, double carried) {
+            const double weight = static_cast<double>(share) * f.inside * f.area * f.cosine;
+            gap_[cell] += weight * carried;
+            weight_[cell] += weight;
+            const auto k = static_cast<std::size_t>(cell);
+            low_[k] = std::min(low_[k], static_cast<float>(carried));
+            high_[k] = std::max(high_[k], static_cast<float>(carried));
+        });
+    }
+    find_pressable(low_.data(), pressable);
+    const auto nx = static_cast<std::size_t>(grid_.nx);
+    const auto layer = static_cast<float>(layer_);
+    for (std::size_t k = 0; k < cells; ++k) {
+        if (high_[k] - low_[k] > layer) return false;
+        if (matters_[k] == 0) continue;
+        if (inhabited_[k] == 0) return false;
+        const auto steps = [&](std::size_t next) {
+            return inhabited_[next] != 0 &&
+                   std::max(high_[k], high_[next]) - std::min(low_[k], low_[next]) > layer;
+        };
+        if (k % nx + 1 < nx && steps(k + 1)) return false;
+        if (k + nx < cells && steps(k + nx)) return false;
+    }
+    kind_.assign(cells, kWhole);
+    patches_.clear();
+    for (std::size_t k = 0; k < cells; ++k) {
+        const auto cell = static_cast<Eigen::Index>(k);
+        const bool some = weight_[cell] > 0.0;
+        coverage_.share[cell] = some ? 1.0 : 0.0;
+        gap_[cell] = some ? gap_[cell] / weight_[cell] : kNone;
+    }
+    share_cells();
+    return true;
+}
+
 void GapMap::mark_edges(double pressable) {
     const int nx = grid_.nx, ny = grid_.ny;
     kind_.assign(nearest_.size(), kWhole);
-    // Calls visit(cell) for those up to `steps` away from a cell.
-    const auto round = [&](int cell, int steps, auto visit) {
-        const int i = cell % nx, j = cell / nx;
-        for (int b = std::max(0, j - steps); b <= std::min(ny - 1, j + steps); ++b)
-            for (int a = std::max(0, i - steps); a <= std::min(nx - 1, i + steps); ++a)
-                visit(static_cast<std::size_t>(b * nx + a));
-    };
-    pressable_.clear();
-    beside_pressable_.assign(nearest_.size(), 1);
-    if (pressable < kNone) {
-        pressable_.assign(nearest_.size(), 0);
-        std::fill(beside_pressable_.begin(), beside_pressable_.end(), std::uint8_t{0});
-        for (int cell = 0; cell < nx * ny; ++cell) {
-            if (!(nearest_[static_cast<std::size_t>(cell)] <= pressable)) continue;
-            pressable_[static_cast<std::size_t>(cell)] = 1;
-            round(cell, 1, [&](std::size_t k) { beside_pressable_[k] = 1; });
-        }
-    }
+    find_pressable(nearest_.data(), pressable);
     // Marks the cells round those that `is` tells, up to `steps` away.
     const auto spread = [&](auto is, std::uint8_t kind, int steps) {
         wider_ = kind_;
-        for (int cell = 0; cell < nx * ny; ++cell)
-            if (is(cell))
-                round(cell, steps, [&](std::size_t k) { wider_[k] = std::max(wider_[k], kind); });
+        for (int cell = 0; cell < nx * ny; ++cell) {
+            if (!is(cell)) continue;
+            const int i = cell % nx, j = cell / nx;
+            for (int b = std::max(0, j - steps); b <= std::min(ny - 1, j + steps); ++b)
+                for (int a = std::max(0, i - steps); a <= std::min(nx - 1, i + steps); ++a)
+                    wider_[static_cast<std::size_t>(b * nx + a)] =
+                        std::max(wider_[static_cast<std::size_t>(b * nx + a)], kind);
+        }
         kind_ = wider_;
     };
     bool any = false;
@@ -234,12 +296,9 @@ void GapMap::mark_edges(double pressable) {
             const bool edge = nearest == kNone || farthest_[k] - nearest > layer_ ||
                               (cell % nx + 1 < nx && steps(k + 1)) ||
                               (cell + nx < nx * ny && steps(k + static_cast<std::size_t>(nx)));
-            if (!edge) return false;
-            bool matters = false;
-            round(cell, 1,
-                  [&](std::size_t near) { matters = matters || beside_pressable_[near] != 0; });
-            any = any || matters;
-            return matters;
+            if (!edge || matters_[k] == 0) return false;
+            any = true;
+            return true;
         },
         kEdge, 1);
     if (!any) return;
@@ -263,7 +322,7 @@ void GapMap::part_edges(const SampleBlocks& blocks) {
                         std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane));
             if (footprints_.size() == before) continue;
             put_on_grid(footprints_.back());
-            footprints_.back().nearest = true;
+            footprints_.back().on_grid = footprints_.back().nearest = true;
         }
     }
 }
@@ -278,7 +337,7 @@ void GapMap::cover(const HeightField& field) {
     }
     for (std::size_t k = 0; k < footprints_.size(); ++k) {
         const Footprint& f = footprints_[k];
-        if (kind_[static_cast<std::size_t>(own_cell(f))] == kWhole) continue;
+        if (!f.on_grid || kind_[static_cast<std::size_t>(own_cell(f))] == kWhole) continue;
         Footprint physical = f;
         physical.slope_s /= static_cast<float>(grid_.ds);
         physical.slope_y /= static_cast<float>(grid_.dy);
@@ -315,6 +374,7 @@ void GapMap::average_gap() {
     for (std::size_t k = 0; k < placed_count_; ++k)
         average_cells(placed_[k], above, limit_.data(), gap_.data(), weight_.data());
     for (const Footprint& f : footprints_) {
+        if (!f.on_grid) continue;
         for_cells(f, [&](int cell, float share, double carried) {
             if (carried - nearest_[static_cast<std::size_t>(cell)] > layer_) return;
             const double weight = static_cast<double>(share) * f.inside * f.area * f.cosine;

@@ -45,6 +45,7 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     grid_.ds = spacing;
     grid_.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
     grid_.dy = wheel.width / grid_.ny;
+    layer_ = kLayer * std::max(grid_.ds, grid_.dy);
     const double half = 0.5 * wheel.width;
     for (const double y : {-half, half})
         steepest_flank_ = std::max(steepest_flank_, std::abs(wheel.drop_slope(y)));
@@ -63,14 +64,11 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
 void GapMap::fit_grid(double half_length) {
     const int half = static_cast<int>(std::ceil(half_length / grid_.ds)) + 1;
     grid_.nx = 2 * ((half + kGridQuantum - 1) / kGridQuantum * kGridQuantum) + 1;
-    layer_ = kLayer * std::max(grid_.ds, grid_.dy);
     clear_grid();
 }
 
 void GapMap::clear_grid() {
     const Eigen::Index n = grid_.cells();
-    nearest_.assign(static_cast<std::size_t>(n), kNone);
-    farthest_.assign(static_cast<std::size_t>(n), -kNone);
     fit(gap_, n);
     fit(weight_, n);
     gap_.setZero();
@@ -97,6 +95,7 @@ void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> h
     find_borders(blocks.field());
     contact_from_work_ = work_from_contact.inverse();
     reach_gap_ = reach;
+    seen_gap_ = reach + layer_;  // else the surface had edges where its gap is `reach`
     ahead_ = ahead;
     footprints_.clear();
     beside_patches_.clear();
@@ -106,7 +105,8 @@ void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> h
     for (std::size_t k = 0; k < placed_count_; ++k)
         half_length = std::max<double>(half_length, placed_[k].farthest);
     for (const Footprint& f : footprints_)
-        if (f.inside > 0.0f) half_length = std::max<double>(half_length, std::abs(f.s));
+        if (f.inside > 0.0f && f.own_gap <= reach)
+            half_length = std::max<double>(half_length, std::abs(f.s));
     fit_grid(half_length);
     for (std::size_t k = 0; k < placed_count_; ++k)
         number_cells(placed_[k], grid_.nx, (grid_.nx - 1) / 2);
@@ -123,6 +123,7 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
     placing.radius = static_cast<float>(wheel_.radius);
     placing.half_width = static_cast<float>(half_width);
     placing.reach = static_cast<float>(reach_gap_);
+    placing.seen = static_cast<float>(seen_gap_);
     placing.width_limit = static_cast<float>(half_width + 0.5 * spacing + beside_);
     placing.side_limit = static_cast<float>(half_width - spacing);
     placing.ahead = static_cast<float>(ahead_);
@@ -156,10 +157,11 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
         for (std::uint64_t lanes = placed.special | block.leaning; lanes != 0; lanes &= lanes - 1)
             place_alone(blocks, std::size_t{number} * kBlockLanes +
                                     static_cast<std::size_t>(std::countr_zero(lanes)));
-        samples_ += static_cast<std::size_t>(std::popcount(placed.regular));
+        samples_ += static_cast<std::size_t>(std::popcount(placed.in_reach & placed.regular));
         if (placed.regular != 0) ++placed_count_;
     }
-    samples_ += footprints_.size();
+    for (const Footprint& f : footprints_)
+        if (f.own_gap <= reach_gap_) ++samples_;
     has_taken_.assign(placed_count_, 0);
 }
 
@@ -180,7 +182,7 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
     const double r = std::sqrt(top.x() * top.x() + along * along);
     const double y = std::clamp(top.y(), -half_width, half_width);
     const double gap = r - (radius - wheel_.drop(y));
-    if (gap > reach_gap_) return;
+    if (gap > seen_gap_) return;
     Vec3 normal = rotation * field.normal[sample].cast<double>();
     const double sine = top.x() / r;
     const double cosine = along / r;
@@ -221,12 +223,18 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
 }
 
 void GapMap::map(const SampleBlocks& blocks, double pressable) {
+    for (Footprint& f : footprints_)
+        f.on_grid = f.nearest = std::abs(f.s) <= 0.5 * (grid_.nx - 1) * grid_.ds;
+    if (map_smooth(pressable)) return;
+    gap_.setZero();
+    weight_.setZero();
+    nearest_.assign(static_cast<std::size_t>(grid_.cells()), kNone);
+    farthest_.assign(nearest_.size(), -kNone);
     const int above = grid_.ny > 1 ? grid_.nx : 0;
     for (std::size_t k = 0; k < placed_count_; ++k)
         range_cells(placed_[k], above, nearest_.data(), farthest_.data());
-    for (Footprint& f : footprints_) {
-        f.nearest = true;
-        if (f.inside <= 0.0f) continue;
+    for (const Footprint& f : footprints_) {
+        if (f.inside <= 0.0f || !f.on_grid) continue;
         const bool right = f.u >= 0.5f, up = f.v >= 0.5f;
         const double carried = f.gap + (right ? f.slope_s : 0.0) + (up ? f.slope_y : 0.0);
         const auto own = static_cast<std::size_t>(own_cell(f));

@@ -292,20 +292,16 @@ Eigen::Vector2d GapMap::slope_near(double s, double y, double reach) const {
         sum += Eigen::Vector2d(slope_s / grid_.ds, slope_y / grid_.dy);
         ++count;
     };
-    std::vector<std::uint8_t> near(static_cast<std::size_t>(grid_.cells()), 0);  // first cells
-    const double far = reach + std::hypot(grid_.ds, grid_.dy);
-    for (int cell = 0; cell < grid_.cells(); ++cell) {
-        const int i = cell % grid_.nx, j = cell / grid_.nx;
-        near[static_cast<std::size_t>(cell)] = std::hypot(grid_.s(i) - s, grid_.y(j) - y) <= far;
-    }
+    const auto column = static_cast<float>(s / grid_.ds + 0.5 * (grid_.nx - 1));
+    const auto row = static_cast<float>(y / grid_.dy + 0.5 * (grid_.ny - 1));
     for (std::size_t k = 0; k < placed_count_; ++k) {
         const PlacedBlock& placed = placed_[k];
-        for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            if (near[static_cast<std::size_t>(placed.cell[lane])] == 0) continue;
-            const Eigen::Vector2d at = place_of(placed, lane);
-            if (std::hypot(at.x() - s, at.y() - y) <= reach)
-                add(placed.slope_s[lane], placed.slope_y[lane]);
+        std::uint64_t lanes =
+            lanes_near(placed, grid_.nx, column, row, static_cast<float>(grid_.ds),
+                       static_cast<float>(grid_.dy), static_cast<float>(reach));
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            add(placed.slope_s[lane], placed.slope_y[lane]);
         }
     }
     for (const Footprint& f : footprints_)

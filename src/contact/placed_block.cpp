@@ -63,6 +63,23 @@ BELTGRINDING_INLINE void shape(const Placing& p, const Floats& y, Floats& drop, 
     }
 }
 
+/// The cell of the four that each sample lies in.
+BELTGRINDING_INLINE Ints own_cells(const PlacedBlock& placed, int first, int above) {
+    const Ints right = load(placed.u + first) >= 0.5f, up = load(placed.v + first) >= 0.5f;
+    return load(placed.cell + first) - right + (up & above);
+}
+
+/// By sample, its weight in the four cells and its gap carried to their centres.
+BELTGRINDING_INLINE void share_out(const PlacedBlock& placed, int first, Four* weights,
+                                   Four* carried) {
+    const Floats u = load(placed.u + first), v = load(placed.v + first);
+    const Floats w = load(placed.weight + first), g = load(placed.gap + first);
+    const Floats slope_s = load(placed.slope_s + first), slope_y = load(placed.slope_y + first);
+    const Floats wu = w * u, rest = w - wu;
+    turn(rest * (1.0f - v), wu * (1.0f - v), rest * v, wu * v, weights);
+    turn(g, g + slope_s, g + slope_y, g + slope_s + slope_y, carried);
+}
+
 BELTGRINDING_INLINE Floats between(const PlacedBlock& placed, const Bilinear* table, int first) {
     Four rows[kWide];
     for (int k = 0; k < kWide; ++k) {
@@ -94,7 +111,7 @@ BELTGRINDING_CLONES
 void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
     const float* m = p.rotation;
     const float radius = p.radius, by_ds = 1.0f / p.ds, by_dy = 1.0f / p.dy;
-    out.regular = out.special = 0;
+    out.regular = out.special = out.in_reach = 0;
     Floats farthest{};
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const Floats h = load(in.height + first);
@@ -120,16 +137,18 @@ void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
         const Floats n_tangential = n_x * cosine - n_z * sine;
         const Floats away = magnitude(y);
         const Floats lowest = along - (h + p.depth) * n_z;  // the segment's other end
-        const Ints in_reach = (along > 0.0f) & (gap <= p.reach) & (n_radial <= -kSteepest) &
-                              (away <= p.width_limit) & ((along >= p.ahead) | (lowest >= p.ahead));
+        const Ints seen = (along > 0.0f) & (gap <= p.seen) & (n_radial <= -kSteepest) &
+                          (away <= p.width_limit) & ((along >= p.ahead) | (lowest >= p.ahead));
         const Floats tangent = x / (along + r);  // of half the angle
         const Floats q = tangent * tangent;
-        const Ints special = in_reach & ((away > p.side_limit) | (q > kWidestAngle));
-        const Ints regular = in_reach & ~special;
+        const Ints special = seen & ((away > p.side_limit) | (q > kWidestAngle));
+        const Ints regular = seen & ~special;
+        const Ints in_reach = regular & (gap <= p.reach);
         out.regular |= bits(regular) << first;
         out.special |= bits(special) << first;
+        out.in_reach |= bits(in_reach) << first;
         const Floats s = kept(2.0f * radius * tangent * angle_by(q), regular);
-        farthest = larger(farthest, magnitude(s));
+        farthest = larger(farthest, kept(magnitude(s), in_reach));
         const Floats at_s = s * by_ds;
         const Ints cut = __builtin_convertvector(at_s, Ints);
         const Ints column = cut + (__builtin_convertvector(cut, Floats) > at_s);
@@ -161,10 +180,14 @@ void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
 
 BELTGRINDING_CLONES
 void number_cells(PlacedBlock& placed, int columns, int middle) {
+    std::uint64_t regular = 0;
     for (int first = 0; first < kBlockLanes; first += kWide) {
-        const Ints cell = load(placed.row + first) * columns + load(placed.cell + first) + middle;
-        store(placed.cell + first, cell & mask_of(placed.regular, first));
+        const Ints column = load(placed.cell + first) + middle;
+        const Ints here = mask_of(placed.regular, first) & (column >= 0) & (column < columns - 1);
+        regular |= bits(here) << first;
+        store(placed.cell + first, (load(placed.row + first) * columns + column) & here);
     }
+    placed.regular = regular;
 }
 
 BELTGRINDING_CLONES
@@ -182,7 +205,7 @@ void range_cells(const PlacedBlock& placed, int above, double* nearest, double* 
         const Ints right = load(placed.u + first) >= 0.5f, up = load(placed.v + first) >= 0.5f;
         alignas(32) std::int32_t own[kWide];
         alignas(32) float gap[kWide];
-        store(own, load(placed.cell + first) - right + (up & above));
+        store(own, own_cells(placed, first, above));
         store(gap, load(placed.gap + first) + kept(load(placed.slope_s + first), right) +
                        kept(load(placed.slope_y + first), up));
         for (int k = 0; k < kWide; ++k) {
@@ -195,6 +218,46 @@ void range_cells(const PlacedBlock& placed, int above, double* nearest, double* 
                 low = gap[k] < low ? gap[k] : low;
                 high = gap[k] > high ? gap[k] : high;
             }
+        }
+    }
+    flush();
+}
+
+BELTGRINDING_CLONES
+void gather_cells(const PlacedBlock& placed, int above, const CellSums& sums) {
+    std::int32_t at = -1;
+    Four weights{}, gaps{}, low{}, high{};
+    const auto flush = [&]() __attribute__((always_inline)) {
+        if (at < 0) return;
+        const std::int32_t cells[4] = {at, at + 1, at + above, at + above + 1};
+        for (int k = 0; k < 4; ++k) {
+            const std::int32_t cell = cells[k];
+            sums.weight[cell] += static_cast<double>(weights[k]);
+            sums.gap[cell] += static_cast<double>(gaps[k]);
+            sums.low[cell] = low[k] < sums.low[cell] ? low[k] : sums.low[cell];
+            sums.high[cell] = high[k] > sums.high[cell] ? high[k] : sums.high[cell];
+        }
+    };
+    for (int first = 0; first < kBlockLanes; first += kWide) {
+        const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
+        if (lanes == 0) continue;
+        Four by_lane[kWide], carried[kWide];
+        share_out(placed, first, by_lane, carried);
+        alignas(32) std::int32_t own[kWide];
+        store(own, own_cells(placed, first, above));
+        for (int k = 0; k < kWide; ++k) {
+            if ((lanes >> k & 1U) == 0) continue;
+            sums.inhabited[own[k]] = 1;
+            if (const std::int32_t cell = placed.cell[first + k]; cell != at) {
+                flush();
+                at = cell;
+                weights = gaps = Four{};
+                low = high = carried[k];
+            }
+            weights += by_lane[k];
+            gaps += by_lane[k] * carried[k];
+            low = carried[k] < low ? carried[k] : low;
+            high = carried[k] > high ? carried[k] : high;
         }
     }
     flush();
@@ -216,13 +279,8 @@ void average_cells(const PlacedBlock& placed, int above, const float* limit, dou
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
         if (lanes == 0) continue;
-        const Floats u = load(placed.u + first), v = load(placed.v + first);
-        const Floats w = load(placed.weight + first), g = load(placed.gap + first);
-        const Floats slope_s = load(placed.slope_s + first), slope_y = load(placed.slope_y + first);
-        const Floats wu = w * u, rest = w - wu;
         Four by_lane[kWide], carried[kWide];
-        turn(rest * (1.0f - v), wu * (1.0f - v), rest * v, wu * v, by_lane);
-        turn(g, g + slope_s, g + slope_y, g + slope_s + slope_y, carried);
+        share_out(placed, first, by_lane, carried);
         for (int k = 0; k < kWide; ++k) {
             if ((lanes >> k & 1U) == 0) continue;
             if (const std::int32_t cell = placed.cell[first + k]; cell != at) {
@@ -239,6 +297,22 @@ void average_cells(const PlacedBlock& placed, int above, const float* limit, dou
         }
     }
     flush();
+}
+
+BELTGRINDING_CLONES
+std::uint64_t lanes_near(const PlacedBlock& placed, int columns, float column, float row, float ds,
+                         float dy, float reach) {
+    std::uint64_t lanes = 0;
+    for (int first = 0; first < kBlockLanes; first += kWide) {
+        const Ints rows = load(placed.row + first);
+        const Ints at = load(placed.cell + first) - rows * columns;
+        const Floats s =
+            (__builtin_convertvector(at, Floats) + load(placed.u + first) - column) * ds;
+        const Floats y =
+            (__builtin_convertvector(rows, Floats) + load(placed.v + first) - row) * dy;
+        lanes |= bits(s * s + y * y <= reach * reach) << first;
+    }
+    return lanes & placed.regular;
 }
 
 BELTGRINDING_CLONES

@@ -39,8 +39,9 @@ class GapMap {
 
     /// Maps the samples of the blocks `hits` (ascending) for the wheel at `work_from_contact`,
     /// which faces the work by the part of it beyond `ahead` mm from its axis. Samples that face
-    /// away, that were missed by the stock's rays or that lie beyond the gap `reach` (mm) are left
-    /// out.
+    /// away or that were missed by the stock's rays are left out. The grid is as long as the
+    /// samples within the gap `reach` (mm) lie; of the others in these blocks those that lie on it
+    /// and go on with the same layer are mapped as well.
     ///
     /// Edges of what is mapped are looked at near cells with a gap up to `pressable` mm only:
     /// `holds_for` tells whether that was enough, `look_at_all_edges` does the rest.
@@ -57,7 +58,7 @@ class GapMap {
     /// As `Coverage::share`.
     const Eigen::ArrayXd& coverage() const { return coverage_.share; }
     bool empty() const { return samples_ == 0; }
-    /// Samples that were mapped.
+    /// Samples in reach.
     std::size_t samples() const { return samples_; }
     /// Smallest gap, mm; +inf when empty.
     double lowest() const { return gap_.size() > 0 ? gap_.minCoeff() : kNone; }
@@ -141,6 +142,7 @@ class GapMap {
         float facing;            // cosine of the wheel's radius there against the contact's z
         float area;              // mm2, of the design surface
         float taken;             // share of what the cells' rate asked for that the envelope let go
+        bool on_grid;            // else it is beyond what is in reach
         bool nearest;            // belongs to the layer nearest to the wheel
     };
     /// What a sample stands for, as a rectangle: middle and half its sides, mm.
@@ -182,6 +184,12 @@ class GapMap {
     void place_alone(const SampleBlocks& blocks, std::size_t position);
     /// The rest of `update`, once all samples are placed.
     void map(const SampleBlocks& blocks, double pressable);
+    /// The same where no edge, step or second layer is near what may bear pressure; false, with
+    /// nothing of use done, where one may be.
+    bool map_smooth(double pressable);
+    /// Which cells may bear pressure, their gaps (`nearest`, mm, by cell) being up to `pressable`.
+    template <class Nearest>
+    void find_pressable(const Nearest* nearest, double pressable);
     /// Regular samples near edges are placed by themselves from here on.
     void part_edges(const SampleBlocks& blocks);
     /// Keeps the footprint's patch if that reaches beyond the side faces.
@@ -257,9 +265,11 @@ class GapMap {
     std::vector<PlacedBlock> placed_;  // `placed_count_` of them are in use
     std::size_t placed_count_ = 0, samples_ = 0;
     std::vector<ProfileStretch> profile_;
-    double reach_gap_ = 0.0, ahead_ = 0.0;        // mm
-    std::vector<std::uint8_t> pressable_;         // by cell; empty: all edges were looked at
-    std::vector<std::uint8_t> beside_pressable_;  // by cell: the same, or one beside it
+    double reach_gap_ = 0.0, seen_gap_ = 0.0, ahead_ = 0.0;  // mm
+    std::vector<std::uint8_t> pressable_;  // by cell; empty: all edges were looked at
+    std::vector<std::uint8_t> matters_;  // by cell: so near to a pressable one that an edge counts
+    std::vector<float> low_, high_;      // mm, by cell, of what is in its mean
+    std::vector<std::uint8_t> inhabited_;  // by cell: a sample lies in it
     std::vector<float> limit_;             // mm, by cell: what lies deeper is another layer's
     mutable std::vector<Bilinear> table_;  // by cell
     std::vector<float> lowering_;          // mm, of regular lanes

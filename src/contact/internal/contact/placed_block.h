@@ -26,7 +26,8 @@ struct alignas(64) PlacedBlock {
     std::int32_t cell[kBlockLanes];  // the first; before `number_cells` its column from the middle
     std::int32_t row[kBlockLanes];
     std::uint64_t regular, special;  // lanes; special ones are to be placed one by one
-    float farthest;                  // mm, largest |s| of the regular ones
+    std::uint64_t in_reach;          // regular ones with a gap within `Placing::reach`
+    float farthest;                  // mm, largest |s| of those
     std::uint32_t block;
 };
 
@@ -39,7 +40,8 @@ struct ProfileStretch {
 struct Placing {
     float rotation[9];  // contact_from_work, by rows
     float radius, half_width;
-    float reach;        // gaps beyond are left out
+    float reach;        // gaps beyond are not asked for
+    float seen;         // gaps beyond are left out
     float width_limit;  // |y| beyond is left out
     float side_limit;   // |y| beyond is special
     float ahead;        // from the wheel's axis: no part of the segment beyond is left out
@@ -62,8 +64,20 @@ struct SampleArrays {
 /// Fills `out` but for `block`.
 void place_block(const Placing& placing, const SampleArrays& in, PlacedBlock& out);
 
-/// Makes cells of columns and rows, `columns` in a row, the middle one being number `middle`.
+/// Makes cells of columns and rows, `columns` in a row, the middle one being number `middle`. Lanes
+/// beyond the last column are regular no longer.
 void number_cells(PlacedBlock& placed, int columns, int middle);
+
+/// What samples tell of the four cells that each lies between, by cell.
+struct CellSums {
+    double* gap;              // mm, by weight
+    double* weight;           // mm2
+    float *low, *high;        // mm, of what is in that mean
+    std::uint8_t* inhabited;  // 1: a sample lies in the cell itself
+};
+
+/// Adds all regular samples to `sums`.
+void gather_cells(const PlacedBlock& placed, int above, const CellSums& sums);
 
 /// Lowers `nearest` and raises `farthest` (mm, by cell) to the gaps of the samples in each cell.
 /// `above`: cells to the next row, 0 if there is one row.
@@ -82,6 +96,10 @@ struct Bilinear {
 /// Values of the regular lanes by the table of their first cells, none below `least`; 0 in the
 /// others. False if all are 0.
 bool interpolate(const PlacedBlock& placed, const Bilinear* table, float least, float* values);
+/// Regular lanes within `reach` cells (along: of `ds`, across: of `dy` mm) of column and row.
+std::uint64_t lanes_near(const PlacedBlock& placed, int columns, float column, float row, float ds,
+                         float dy, float reach);
+
 /// Raises `largest` to the interpolated values.
 void raise_to(const PlacedBlock& placed, const Bilinear* table, float* largest);
 

@@ -285,11 +285,13 @@ std::optional<std::size_t> GapMap::sample_near(double s, double y) const {
     return found;
 }
 
-Eigen::Vector2d GapMap::slope_near(double s, double y, double reach) const {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+GapMap::MeanSlope GapMap::slope_near(const SampleBlocks& blocks, double s, double y,
+                                     double reach) const {
+    MeanSlope mean{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
     int count = 0;
-    const auto add = [&](double slope_s, double slope_y) {
-        sum += Eigen::Vector2d(slope_s / grid_.ds, slope_y / grid_.dy);
+    const auto add = [&](const Eigen::Vector2d& place, double slope_s, double slope_y) {
+        mean.place += place;
+        mean.slope += Eigen::Vector2d(slope_s / grid_.ds, slope_y / grid_.dy);
         ++count;
     };
     const auto column = static_cast<float>(s / grid_.ds + 0.5 * (grid_.nx - 1));
@@ -300,13 +302,17 @@ Eigen::Vector2d GapMap::slope_near(double s, double y, double reach) const {
             lanes_near(placed, grid_.nx, column, row, static_cast<float>(grid_.ds),
                        static_cast<float>(grid_.dy), static_cast<float>(reach));
         for (; lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            add(placed.slope_s[lane], placed.slope_y[lane]);
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            // Beyond the outermost cells' centres, weights do not tell how far.
+            const std::size_t position = std::size_t{placed.block} * kBlockLanes + lane;
+            const double across = (contact_from_work_ * blocks.top(position)).y();
+            add({place_of(placed, lane).x(), across}, placed.slope_s[lane], placed.slope_y[lane]);
         }
     }
     for (const Footprint& f : footprints_)
-        if (f.nearest && std::hypot(f.s - s, f.y - y) <= reach) add(f.slope_s, f.slope_y);
-    return sum / count;
+        if (f.nearest && std::hypot(f.s - s, f.y - y) <= reach)
+            add({f.s, f.y}, f.slope_s, f.slope_y);
+    return {mean.place / count, mean.slope / count};
 }
 
 }  // namespace beltgrinding

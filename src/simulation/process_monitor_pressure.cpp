@@ -135,15 +135,19 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     const Eigen::Vector2d from = place(begin), to = place(at_end), middle = 0.5 * (from + to);
     const double reach = kSlopeReach * std::max(grid.ds, grid.dy);
     const int axis = across ? 1 : 0;
-    const double closing = std::atan(map.slope_near(from.x(), from.y(), reach)[axis]) -
-                           std::atan(map.slope_near(to.x(), to.y(), reach)[axis]);
-    const double span = (to - from).norm();
+    const GapMap::MeanSlope one = map.slope_near(blocks_, from.x(), from.y(), reach);
+    const GapMap::MeanSlope other = map.slope_near(blocks_, to.x(), to.y(), reach);
+    const double closing = std::atan(one.slope[axis]) - std::atan(other.slope[axis]);
+    const double span = (to - from).norm(), chord = other.place[axis] - one.place[axis];
     const double radius = across ? process_.wheel.crown_radius : process_.wheel.radius;
-    const double turn = radius > 0.0 ? 0.5 * span / radius : 0.0;
+    const double turn = radius > 0.0 ? 0.5 * chord / radius : 0.0;
     // Also false where a slope is not known.
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
-    const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * span;
-    const double hollow = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
+    const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * chord;
+    const double in_section = half_chord / std::sin(std::min(turn + 0.5 * closing, M_PI_2));
+    // The wheel's section leans against the surface's normal by this tangent (Meusnier's theorem).
+    const double leaning = 0.5 * (one.slope[1 - axis] + other.slope[1 - axis]);
+    const double hollow = in_section * std::sqrt(1.0 + leaning * leaning);
     Event* event = note("wheel_too_large", index, hollow, across ? 1 : 0);
     if (event == nullptr) return;
     if (radius > 0.0) event->limit = radius;

@@ -118,9 +118,14 @@ class GapMap {
     /// is empty.
     std::optional<std::size_t> sample_near(double s, double y) const;
 
-    /// Mean slopes of the design surface's gap along s and y, over the samples within `reach` mm of
-    /// (s, y); NaN where there is none. By the samples' own normals: grinding does not change them.
-    Eigen::Vector2d slope_near(double s, double y, double reach) const;
+    /// Of the samples near a place: the mean of where they lie (s, y; mm), which at the surface's
+    /// border is not that place, and of the slopes of the design surface's gap along s and y.
+    struct MeanSlope {
+        Eigen::Vector2d place, slope;
+    };
+    /// Over the samples within `reach` mm of (s, y); NaN where there is none. By the samples' own
+    /// normals: grinding does not change them. `blocks`: those of the last update.
+    MeanSlope slope_near(const SampleBlocks& blocks, double s, double y, double reach) const;
 
   private:
     static constexpr double kNone = std::numeric_limits<double>::infinity();

@@ -276,6 +276,26 @@ Eigen::ArrayXd recentre(const Eigen::ArrayXd& values, const ContactGrid& from,
     return result;
 }
 
+Eigen::ArrayXd tilt_by_approach(const ContactWheel& wheel, const ContactGrid& grid,
+                                const Eigen::ArrayXd& gap) {
+    Eigen::ArrayXd tilt = Eigen::ArrayXd::Zero(grid.cells());
+    for (int i = 0; i < grid.nx; ++i) {
+        const double angle = grid.s(i) / wheel.radius;
+        const double sine = std::sin(angle), less = 1.0 - std::cos(angle);
+        for (int j = 0; j < grid.ny; ++j) {
+            const int cell = j * grid.nx + i;
+            if (!std::isfinite(gap[cell])) continue;
+            const bool left = i > 0 && std::isfinite(gap[cell - 1]);
+            const bool right = i + 1 < grid.nx && std::isfinite(gap[cell + 1]);
+            const double rise =
+                (right ? gap[cell + 1] : gap[cell]) - (left ? gap[cell - 1] : gap[cell]);
+            const int steps = (left ? 1 : 0) + (right ? 1 : 0);
+            tilt[cell] = less - (steps > 0 ? sine * rise / (steps * grid.ds) : 0.0);
+        }
+    }
+    return tilt;
+}
+
 Eigen::ArrayXd profile_drop(const ContactWheel& wheel, const ContactGrid& grid) {
     Eigen::ArrayXd drop(grid.ny);
     for (int j = 0; j < grid.ny; ++j) drop[j] = wheel.drop(grid.y(j));

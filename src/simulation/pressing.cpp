@@ -13,9 +13,11 @@ namespace {
 // mm beyond the wheel's surface in which the gap is mapped: more than the approach may change
 // between two placements of the wheel, and enough for whole cells around the contact.
 constexpr double kMargin = 0.2;
-// mm: below this change of approach the radial gap need not be mapped anew (it would change by
-// the approach times 1 - cos of the contact's half angle, 0.4 % at 5 degrees).
+// mm: below this change of approach the gap need not be mapped anew: what the approach does to it
+// away from the wheel's middle is added to first order.
 constexpr double kPlacement = 0.05;
+// mm: where that was added for another approach, the pressed cells' gaps are wrong by no more.
+constexpr double kTilted = 1e-5;
 // mm: cells with larger gaps bear no pressure, as a rule, where the wheel stands as at the last
 // pose; else edges are looked at once more.
 constexpr double kPressable = 0.03;
@@ -88,9 +90,21 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     problem.drop = profile_drop(process_.wheel, grid);
     problem.tolerance = tolerance_;
     const auto solve_once = [&] {
-        problem.gap = map_.gap();
         problem.coverage = map_.coverage();
-        solution_ = contact_->solve(problem, warm_ ? &start : nullptr);
+        const Eigen::ArrayXd tilt = tilt_by_approach(process_.wheel, grid, map_.gap());
+        double approach = warm_ ? std::clamp(stands_at_ - placed_, -kPlacement, kPlacement) : 0.0;
+        for (bool again = true;;) {
+            gap_ = map_.gap() + approach * tilt;
+            problem.gap = gap_;
+            solution_ = contact_->solve(problem, start.size() > 0 ? &start : nullptr);
+            if (!again || !(std::abs(solution_.approach) <= kPlacement)) break;
+            if (solution_.pressure.size() != tilt.size()) break;  // a rigid tool
+            const double most = (solution_.pressure > 0.0).select(tilt.abs(), 0.0).maxCoeff();
+            if (std::abs(solution_.approach - approach) * most <= kTilted) break;
+            approach = solution_.approach;
+            start = solution_.pressure;
+            again = false;
+        }
     };
     solve_once();
     if (!map_.holds_for(solution_.pressure)) {
@@ -98,6 +112,7 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
         solve_once();
     }
     warm_ = solution_.force > 0.0;
+    stands_at_ = placed_ + solution_.approach;
     displaced_ = displaced(grid, solution_, problem.coverage, model_.beside());
     map_.reach_beside(displaced_);
 }
@@ -194,7 +209,7 @@ std::optional<Pressing::Pressed> Pressing::with_force(double force) {
     if (!process_.force_control || state_ != State::kPressed || !contact_) return std::nullopt;
     const Stopwatch watch(times_.contact);
     ContactProblem problem;
-    problem.gap = map_.gap();
+    problem.gap = gap_;
     problem.drop = profile_drop(process_.wheel, map_.grid());
     problem.coverage = map_.coverage();
     problem.force_control = true;

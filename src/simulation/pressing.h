@@ -110,6 +110,8 @@ class Pressing {
     double growth_;        // mm
     double held_at_ = 0.0, give_ = 0.0;  // mm along z; mm/N
     std::optional<double> localised_;    // mm along z: where `hold` last looked for segments
+    Eigen::ArrayXd gap_;                 // mm, by cell, of the last solution
+    double stands_at_ = 0.0;             // mm along z, by that
     bool warm_ = false;
     State state_ = State::kNoContact;  // of the last time that it was pressed
     double largest_indentation_;

@@ -47,6 +47,33 @@ TEST(GapMap, GivesTheRadialGapOfAPlateAtAnyAngle) {
     }
 }
 
+TEST(GapMap, WhatAnApproachDoesToItIsKnownWithoutMappingAnew) {
+    const ContactWheel wheel{80.0, 20.0, 0.0};
+    const double approach = 0.04;
+    // A plate, which lies askew to the wheel away from its middle, and a ridge across its feed.
+    for (const HeightField& field :
+         {testing::plate(80.0, 80.0, 0.5, 0.2), testing::cylinder(30.0, 60.0, 80.0, 0.5)}) {
+        const SampleBlocks blocks(field);
+        const bool flat = field.height[0] > 0.0;
+        const double x = flat ? 40.0 : 4.0, z = flat ? 0.2 : -0.2;
+        GapMap map(wheel, 1.0), moved(wheel, 1.0);
+        map.update(blocks, all_of(blocks), above(x, 40.0, z), 1.0);
+        moved.update(blocks, all_of(blocks), above(x, 40.0, z - approach), 1.0);
+        const ContactGrid& grid = map.grid();
+        ASSERT_EQ(grid, moved.grid());
+        const Eigen::ArrayXd tilt = tilt_by_approach(wheel, grid, map.gap());
+        double most = 0.0, left = 0.0;
+        for (int k = 0; k < grid.cells(); ++k) {
+            if (std::abs(grid.s(k % grid.nx)) > (flat ? 8.0 : 4.5)) continue;  // all in reach
+            const double change = moved.gap()[k] - (map.gap()[k] - approach);
+            most = std::max(most, std::abs(change));
+            left = std::max(left, std::abs(change - approach * tilt[k]));
+        }
+        EXPECT_GT(most, 5e-5);
+        EXPECT_LT(left, 0.1 * most);
+    }
+}
+
 TEST(GapMap, CrownOpensTheGapTowardsTheEdges) {
     const ContactWheel wheel{80.0, 20.0, 60.0};
     const HeightField field = testing::plate(60.0, 60.0, 0.4);

@@ -2,6 +2,7 @@
 
 import ast
 import json
+import shutil
 import sys
 from pathlib import Path
 
@@ -325,6 +326,17 @@ def ground_study(tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="module")
+def two_figures(ground_study, tmp_path_factory):
+    """The same in another folder, asked for two figures: of each there are several pictures."""
+    folder = tmp_path_factory.mktemp("two") / "study"
+    shutil.copytree(ground_study, folder)
+    given = json.loads((folder / "study.json").read_text())
+    given["answers"]["figures"] = ["removed_volume_mm3", "in_share"]
+    (folder / "study.json").write_text(json.dumps(given))
+    return folder
+
+
 def test_a_ground_study_has_its_report(ground_study):
     found = report.write_answers(ground_study)
     assert json.loads((ground_study / report.ANSWERS).read_text()) == found
@@ -342,9 +354,9 @@ def test_a_ground_study_has_its_report(ground_study):
     assert "Tolerance yield" in html and html.count("data:image/png") == len(pictures)
 
 
-def test_the_report_speaks_german(ground_study):
-    report.write_answers(ground_study, "de")
-    html = (ground_study / report.REPORT).read_text()
+def test_the_report_speaks_german(two_figures):
+    report.write_answers(two_figures, "de")
+    html = (two_figures / report.REPORT).read_text()
     assert "Ausbeute nach der Toleranz" in html and "standardisierter Koeffizient" in html
     for english in ("Tolerance yield", "what varies", "first level", "Latin hypercube"):
         assert english not in html

@@ -58,26 +58,33 @@ def example(tmp_path_factory):
     return out
 
 
+@pytest.fixture(scope="module")
+def ground(example):
+    """(the result of the example's job, the folder that it is written to)."""
+    result = beltgrinding.run(example / "job.json")
+    result.write(example / "out")
+    return result, example / "out"
+
+
 def test_the_program_says_what_the_raster_path_meant(example):
     program = read_program(example / "blade_pressure_side.src")
     assert not program.problems
     assert len(program.motions) == 10 * 27
 
 
-def test_the_job_grinds_the_pressure_side(example):
-    summary = beltgrinding.run(example / "job.json").summary
+def test_the_job_grinds_the_pressure_side(ground):
+    summary = ground[0].summary
     assert 6000 < summary["design_area_mm2"] < 8000
     assert 0.3 < summary["removed_volume_mm3"] / summary["stock_volume_mm3"] < 1.5
     assert abs(summary["deviation_mm"]["p50"]) < 0.15
     assert summary["in_tolerance_area_share"] > 0.2
 
 
-def test_the_manuals_report_is_that_of_the_example(example):
+def test_the_manuals_report_is_that_of_the_example(example, ground):
     weasyprint = pytest.importorskip("weasyprint")
     if not shutil.which("pdftoppm"):
         pytest.skip("pdftoppm is not installed")
-    beltgrinding.run(example / "job.json").write(example / "out")
-    beltgrinding.report(example / "out", pdf=example / "report.pdf", title="Compressor blade")
+    beltgrinding.report(ground[1], pdf=example / "report.pdf", title="Compressor blade")
     command = ["pdftoppm", "-png", "-r", "80", "-f", "1", "-l", "1", "-singlefile"]
     subprocess.run([*command, "report.pdf", "page"], cwd=example, check=True)
     page = np.asarray(Image.open(example / "page.png").convert("RGB"))
@@ -88,11 +95,10 @@ def test_the_manuals_report_is_that_of_the_example(example):
 
 
 @pytest.mark.skipif(browser.program() is None, reason="Chromium is not installed")
-def test_the_manuals_view_is_that_of_the_example(example):
+def test_the_manuals_view_is_that_of_the_example(ground):
     """The page of the view is small, and looks as the manual shows it."""
-    beltgrinding.run(example / "job.json").write(example / "seen")
-    page = beltgrinding.view(example / "seen", title="Compressor blade")
-    report = beltgrinding.report(example / "seen", title="Compressor blade")
+    page = beltgrinding.view(ground[1], title="Compressor blade")
+    report = beltgrinding.report(ground[1], title="Compressor blade")
     assert page.stat().st_size < 3e6 and report.stat().st_size < 4e6
     with browser.Browser(size=(1200, 720)) as found:
         shown = found.open(page, size=(1200, 720))

@@ -240,7 +240,13 @@ def test_a_scheduler_that_restarts_loses_no_run(tmp_path, by_hand, serial):
     assert restarted and (tmp_path / "out" / table.FILE).read_bytes() == serial
 
 
+def loops():
+    """How many threads of Dask's clients run."""
+    return sum(thread.name == "IO loop" for thread in threading.enumerate())
+
+
 def test_a_scheduler_that_is_not_there_or_alone_is_told(tmp_path, by_hand, monkeypatch):
+    before = loops()
     monkeypatch.setattr(cluster, "WAIT_S", 3.0)
     with pytest.raises(InputError, match="has no workers; start some"):
         making.study(study_of(), tmp_path / "a", scheduler=by_hand.address)
@@ -254,6 +260,8 @@ def test_a_scheduler_that_is_not_there_or_alone_is_told(tmp_path, by_hand, monke
         making.study(study_of(), tmp_path / "c", scheduler="nonsense://1")
     left = table.Table.read(tmp_path / "b" / table.FILE)
     assert (left["status"] == table.OPEN).all()
+    # A connection that failed leaves no thread, for which the program's end would wait.
+    assert loops() == before
 
 
 # What a worker answers ---------------------------------------------------------------------------------

@@ -74,7 +74,7 @@ def _run(distributed, where, tasks, blob, taken, context, told):
                 if restarts > RESTARTS:
                     raise _gone(where, len(waiting) + len(suspects))
             where.start(context)
-            client = _connected(distributed, where, len(waiting) + len(suspects), context)
+            client = _connected(where, len(waiting) + len(suspects), context)
             session = _Session(
                 distributed,
                 client,
@@ -95,15 +95,13 @@ def _run(distributed, where, tasks, blob, taken, context, told):
         where.close()
 
 
-def _connected(distributed, where, open_runs, context):
+def _connected(where, open_runs, context):
     """A client. Raises InputError where nobody answers, Cancelled."""
     end, reason = time.monotonic() + WAIT_S, None
     while time.monotonic() < end:
         context.throw_if_cancelled()
         try:
-            return distributed.Client(
-                where.address, timeout=clusters.ANSWER_S, set_as_default=False
-            )
+            return clusters.client(where.address)
         except (OSError, ValueError, TimeoutError) as error:
             reason = error
             if isinstance(error, ValueError):  # the address is none
@@ -210,7 +208,7 @@ class _Session:
                 self.client.cancel(futures, force=True)
             self.client.close(timeout=clusters.ANSWER_S)
         except Exception:  # of a connection that is gone; nothing is to be saved
-            pass
+            self.client.status = "closed"  # else Dask tries it again when the program ends
 
     def _look(self):
         """Who works, and whether it is still the same scheduler."""

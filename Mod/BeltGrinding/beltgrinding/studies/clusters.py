@@ -36,6 +36,23 @@ def distributed():
     return package
 
 
+def client(address):
+    """A client of a scheduler. Raises OSError, ValueError, TimeoutError where none answers."""
+    package = distributed()
+
+    class Client(package.Client):
+        def start(self, **options):
+            try:
+                super().start(**options)
+            except BaseException:
+                # Dask leaves its thread running, or closes it when the program ends: then it waits in vain.
+                self.status = "connecting"
+                self.close(timeout=ANSWER_S)
+                raise
+
+    return Client(address, timeout=ANSWER_S, set_as_default=False)
+
+
 class There:
     """A scheduler that the user has started, at an ``address`` such as tcp://10.0.0.1:8786."""
 

@@ -1,0 +1,144 @@
+"""tools/test passes all suites, two at a time, and adds up their figures; ctest and pytest are played."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from support.freecad import ROOT
+
+SETUP = f"""root=$(cd "$(dirname "${{BASH_SOURCE[0]}}")/.." && pwd)
+build=$root/build/release
+python=$root/bin/python
+packages_build=() packages_run=() packages_test=() BELTGRINDING_SHARED=$root
+say() {{ printf '%s\\n' "$*" >&2; }}
+install_missing() {{ :; }}
+build_all() {{ :; }}
+"""
+# The report's path follows its option; a file PLAYED/SUITE is what the suite does in place of passing one test.
+PLAY = f"""#!/usr/bin/env bash
+case $1 in
+*.py) exec {sys.executable} "$@" ;;
+esac
+while (($# > 1)); do
+    case $1 in
+    --junitxml | --output-junit) report=$2 ;;
+    esac
+    shift
+done
+name=$(basename "$report" .xml)
+echo "begin $name" >>"$PLAYED/order"
+echo "said by $name"
+echo '<t><testcase name="a"/></t>' >"$report"
+status=0
+[ ! -e "$PLAYED/$name" ] || source "$PLAYED/$name" || status=$?
+echo "end $name" >>"$PLAYED/order"
+exit "$status"
+"""
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """Starts a copy of tools/test whose suites are given here, {name: bash}."""
+    checkout = tmp_path / "checkout"
+    for path in ("tools/test", "tests/support/count.py", "tests/support/skips.py"):
+        (checkout / path).parent.mkdir(parents=True, exist_ok=True)
+        (checkout / path).write_text((ROOT / path).read_text("utf-8"))
+    (checkout / "tests" / "allowed_skips.toml").write_text("skip = []\n")
+    (checkout / "tools" / "setup.sh").write_text(SETUP)
+    (checkout / "bin").mkdir()
+    for name in ("python", "ctest"):
+        (checkout / "bin" / name).write_text(PLAY)
+        (checkout / "bin" / name).chmod(0o755)
+    for folder in ROOT.glob("tests/*/"):
+        if any(folder.glob("test_*.py")):
+            (checkout / "tests" / folder.name).mkdir(exist_ok=True)
+
+    def start(**suites):
+        for name, text in suites.items():
+            (tmp_path / name).write_text(text)
+        path = f"{checkout / 'bin'}:{os.environ['PATH']}"
+        return subprocess.Popen(
+            ["bash", checkout / "tools" / "test"],
+            env={**os.environ, "PATH": path, "PLAYED": str(tmp_path)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def run(**suites):
+        """(status, lines of stdout, what was said besides)."""
+        process = start(**suites)
+        told, besides = process.communicate(timeout=60)
+        return process.returncode, told.splitlines(), besides
+
+    run.start, run.folder = start, tmp_path
+    return run
+
+
+def suites_of():
+    """The suites that there are: folders of tests for pytest, and the C++ tests."""
+    return {path.parent.name for path in ROOT.glob("tests/*/test_*.py")} | {"core"}
+
+
+def test_every_suite_is_passed_two_at_a_time(checkout):
+    status, lines, _ = checkout(gui="sleep 1", workbench="sleep 1")
+    assert status == 0
+    # One test of each, and both formatters.
+    assert lines[-1] == f"{len(suites_of()) + 2} passed, 0 failed, 0 skipped"
+    order = (checkout.folder / "order").read_text().splitlines()
+    assert {line.removeprefix("end ") for line in order if line.startswith("end")} == suites_of()
+    assert set(order[:2]) == {"begin gui", "begin workbench"}
+    for name in suites_of():
+        at = next(k for k, line in enumerate(lines) if line.startswith(f"== {name}: "))
+        assert re.search(r": \d+ s, of processors \d+ s", lines[at])
+        assert f"said by {name}" in lines[at + 1 : at + 3]
+
+
+def test_failures_and_skips_are_counted(checkout):
+    cases = '<testcase name="a"/><testcase name="b"><failure/></testcase>'
+    cases += '<testcase name="c"><skipped/></testcase>'
+    status, lines, _ = checkout(fuzz=f"echo '<t>{cases}</t>' >\"$report\"; false")
+    assert status == 1
+    assert lines[-1] == f"{len(suites_of()) + 2} passed, 1 failed, 1 skipped"
+
+
+@pytest.mark.parametrize(
+    "ends, passed",
+    [('rm "$report"', 0), ('rm "$report"; exit 3', 0), ("kill -9 $$", 1), ("exit 5", 1)],
+)
+def test_a_suite_that_ends_badly_is_a_failure(checkout, ends, passed):
+    status, lines, besides = checkout(house=ends)
+    assert status == 1 and "The suite house ended" in besides
+    assert lines[-1] == f"{len(suites_of()) + 1 + passed} passed, 1 failed, 0 skipped"
+
+
+def test_a_skip_of_the_cpp_tests_that_may_not_be_is_a_failure(checkout, monkeypatch):
+    monkeypatch.setenv("BELTGRINDING_STRICT", "1")
+    skipped = '<t><testcase name="a"/><testcase name="b"><skipped/></testcase></t>'
+    status, lines, besides = checkout(core=f"echo '{skipped}' >\"$report\"")
+    assert status == 1 and "b skipped, and that is not in" in besides
+    assert lines[-1] == f"{len(suites_of()) + 2} passed, 1 failed, 0 skipped"
+
+
+def test_an_interrupt_reaches_the_suites(checkout):
+    """As Ctrl-C does: to all processes of the terminal's group, none of which ignores it."""
+    process = checkout.start(
+        gui='trap "echo $name >>$PLAYED/interrupted; exit 130" INT; sleep 60 & wait',
+        workbench='trap "echo $name >>$PLAYED/interrupted; exit 130" INT; sleep 60 & wait',
+    )
+    order, end = checkout.folder / "order", time.monotonic() + 30
+    while not order.exists() or len(order.read_text().splitlines()) < 2:
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    time.sleep(0.3)  # until both wait
+    os.killpg(process.pid, signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode != 0
+    told = (checkout.folder / "interrupted").read_text().split()
+    assert sorted(told) == ["gui", "workbench"]

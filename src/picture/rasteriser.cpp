@@ -83,15 +83,14 @@ void Rasteriser::project(std::span<const Mesh> meshes, const RunContext& context
     for (std::size_t k = 0; k < meshes.size(); ++k) {
         const std::span<const Vec3> vertices = meshes[k].vertices;
         Corner* to = corners_.data() + first_corner_[k];
-        parallel_blocks(vertices.size(), kVerticesOfTask, context,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                const Vec3 p = vertices[i] - grid_.corner;
-                                to[i] = {static_cast<float>(p.dot(right)),
-                                         static_cast<float>(p.dot(down)),
-                                         static_cast<float>(p.dot(grid_.into))};
-                            }
-                        });
+        parallel_blocks(
+            vertices.size(), kVerticesOfTask, context, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const Vec3 p = vertices[i] - grid_.corner;
+                    to[i] = {static_cast<float>(p.dot(right)), static_cast<float>(p.dot(down)),
+                             static_cast<float>(p.dot(grid_.into))};
+                }
+            });
     }
 }
 
@@ -116,7 +115,8 @@ void Rasteriser::sort_into_bands(const RunContext& context) {
             const float top = std::max(std::min({a.y, b.y, c.y}), 0.0F);
             const float bottom = std::min(std::max({a.y, b.y, c.y}), last_row);
             // Of dense samples many lie between two rays.
-            if (!(std::ceil(left) <= std::floor(right)) || !(std::ceil(top) <= std::floor(bottom)) ||
+            if (!(std::ceil(left) <= std::floor(right)) ||
+                !(std::ceil(top) <= std::floor(bottom)) ||
                 std::max({a.depth, b.depth, c.depth}) < nearest) {
                 reached_[i] = {0, 0};
                 continue;
@@ -172,8 +172,8 @@ void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
     const float left = std::ceil(std::max(std::min({a.x, b.x, c.x}), 0.0F));
     const float right = std::floor(std::min(std::max({a.x, b.x, c.x}), last_column));
     const auto from_row = static_cast<float>(first_row);
-    const float to_row = std::min(static_cast<float>(first_row + band_),
-                                  static_cast<float>(grid_.rows - 1));
+    const float to_row =
+        std::min(static_cast<float>(first_row + band_), static_cast<float>(grid_.rows - 1));
     const float top = std::ceil(std::max(std::min({a.y, b.y, c.y}), from_row));
     const float bottom = std::floor(std::min(std::max({a.y, b.y, c.y}), to_row));
     const double depth = a.depth, to_b = static_cast<double>(b.depth) - depth,

@@ -46,7 +46,8 @@ class Rasteriser {
 
     std::uint32_t bands() const { return bands_; }
     /// What the rays of band `b` meet, row by row: rows band * b to band * (b + 1), the last
-    /// included as it is the next band's first; (band + 1) * columns in all. Safe from many threads.
+    /// included as it is the next band's first; (band + 1) * columns in all. Safe from many
+    /// threads.
     void rasterise(std::uint32_t b, std::span<RayHit> hits) const;
 
   private:
@@ -63,12 +64,12 @@ class Rasteriser {
 
     RayGrid grid_{};
     std::uint32_t band_ = 0, bands_ = 0;
-    std::vector<Corner> corners_;                     // of all meshes
-    std::vector<std::span<const Triangle>> meshes_;   // their triangles
-    std::vector<std::uint32_t> first_, first_corner_; // of each mesh; first_ has an end
+    std::vector<Corner> corners_;                      // of all meshes
+    std::vector<std::span<const Triangle>> meshes_;    // their triangles
+    std::vector<std::uint32_t> first_, first_corner_;  // of each mesh; first_ has an end
     std::vector<Bands> reached_;                       // by each triangle
-    std::vector<std::uint32_t> order_;                // triangles by band
-    std::vector<std::size_t> begin_;                  // of each band in order_, and the end
+    std::vector<std::uint32_t> order_;                 // triangles by band
+    std::vector<std::size_t> begin_;                   // of each band in order_, and the end
 };
 
 }  // namespace beltgrinding

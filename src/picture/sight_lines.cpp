@@ -56,22 +56,21 @@ std::vector<SightLines::Item> SightLines::along_curve(const Box& extents) const 
     const Vec3 scale = (kSteps - 1) * extents.sizes().cwiseMax(1e-9).cwiseInverse() / 3.0;
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
         const Mesh& mesh = meshes_[k];
-        parallel_blocks(mesh.triangles.size(), kTrianglesOfTask, {},
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                const Triangle& t = mesh.triangles[i];
-                                const Vec3 place = (mesh.vertices[t[0]] + mesh.vertices[t[1]] +
-                                                    mesh.vertices[t[2]] - 3.0 * low)
-                                                       .cwiseProduct(scale);
-                                const auto step = [&](int axis) {
-                                    return spread(std::min(
-                                        static_cast<std::uint32_t>(std::max(place[axis], 0.0)),
-                                        kSteps - 1));
-                                };
-                                const auto number = static_cast<std::uint32_t>(first_[k] + i);
-                                items[number] = {step(0) << 2U | step(1) << 1U | step(2), number};
-                            }
-                        });
+        parallel_blocks(
+            mesh.triangles.size(), kTrianglesOfTask, {}, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const Triangle& t = mesh.triangles[i];
+                    const Vec3 place = (mesh.vertices[t[0]] + mesh.vertices[t[1]] +
+                                        mesh.vertices[t[2]] - 3.0 * low)
+                                           .cwiseProduct(scale);
+                    const auto step = [&](int axis) {
+                        return spread(std::min(
+                            static_cast<std::uint32_t>(std::max(place[axis], 0.0)), kSteps - 1));
+                    };
+                    const auto number = static_cast<std::uint32_t>(first_[k] + i);
+                    items[number] = {step(0) << 2U | step(1) << 1U | step(2), number};
+                }
+            });
     }
     resize_large(sorted, items.size());
     for (unsigned shift = 0; shift < 30; shift += 10) {  // a radix sort keeps the order of equals
@@ -175,8 +174,7 @@ bool SightLines::hidden(const Vec3& point, const Way& way, double near) const {
 }
 
 /// Moeller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
-bool SightLines::met(std::uint32_t triangle, const Vec3& point, const Way& way,
-                     double near) const {
+bool SightLines::met(std::uint32_t triangle, const Vec3& point, const Way& way, double near) const {
     std::size_t k = 0;
     while (triangle >= first_[k + 1]) ++k;
     const Triangle& t = meshes_[k].triangles[triangle - first_[k]];

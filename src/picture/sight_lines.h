@@ -49,10 +49,10 @@ class SightLines {
     bool met(std::uint32_t triangle, const Vec3& point, const Way& way, double near) const;
 
     std::vector<Mesh> meshes_;
-    std::vector<std::uint32_t> first_;   // triangle of each mesh, and the end
-    std::vector<std::uint32_t> order_;   // triangles along the curve, eight a leaf
+    std::vector<std::uint32_t> first_;       // triangle of each mesh, and the end
+    std::vector<std::uint32_t> order_;       // triangles along the curve, eight a leaf
     std::vector<std::vector<Node>> levels_;  // from the root; the last level's branches are leaves
-    Vec3 origin_;                        // of the boxes' single precision
+    Vec3 origin_;                            // of the boxes' single precision
 };
 
 }  // namespace beltgrinding

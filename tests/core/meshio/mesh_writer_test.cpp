@@ -16,18 +16,41 @@
 namespace beltgrinding {
 namespace {
 
+/// What `write` writes; its memory is marked before, so that a byte left out shows.
+template <class Write>
+std::string written(Write&& write) {
+    std::string bytes;
+    write([&bytes](std::size_t size) {
+        bytes.assign(size, '\xAA');
+        return bytes.data();
+    });
+    return bytes;
+}
+
 TEST(DeviationPly, HasTheSizeThatItsHeaderSays) {
     const HeightField field = testing::plate(4.0, 3.0, 1.0, 0.2);
-    const std::string ply = deviation_ply(field, {}, true);
+    const std::string ply =
+        written([&](const FileMemory& memory) { deviation_ply(field, {}, true, "", memory); });
     const std::size_t body = ply.find("end_header\n") + 11;
     EXPECT_EQ(ply.size() - body, 20 * field.size() + 13 * field.triangles.size());
     EXPECT_NE(ply.find("property float deviation"), std::string::npos);
     float z = 0;
     std::memcpy(&z, ply.data() + body + 8, 4);
     EXPECT_FLOAT_EQ(z, 0.2F);
-    const std::string plain = mesh_ply(field, false);
+    const std::string plain =
+        written([&](const FileMemory& memory) { mesh_ply(field, false, memory); });
     std::memcpy(&z, plain.data() + plain.find("end_header\n") + 11 + 8, 4);
     EXPECT_FLOAT_EQ(z, 0.0F);
+}
+
+TEST(MeshStl, FillsItsHeader) {
+    GroundMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    const std::string stl = written([&](const FileMemory& memory) { mesh_stl(mesh, memory); });
+    ASSERT_EQ(stl.size(), 134U);
+    EXPECT_EQ(stl.find('\xAA'), std::string::npos);
+    EXPECT_EQ(stl.substr(0, 30), std::string("belt-ground part, millimetres\0", 30));
 }
 
 TEST(ThreeMf, LeavesTheProgramsLocaleAsItWas) {

@@ -19,6 +19,7 @@ constexpr std::size_t kTrianglesOfTask = 1U << 15U;
 constexpr double kLeast = 1e-20;     // of a direction's components: their inverse is finite
 constexpr float kSlack = 1.000002F;  // of a box's far end, for the rounding of both ends
 constexpr double kPad = 2e-7;        // of the extents, by which a box is wider, for its rounding
+constexpr double kWider = 1e-12;     // of a triangle: no line slips through between two
 
 /// The lowest ten bits, two zeros between each and the next.
 std::uint32_t spread(std::uint32_t bits) {
@@ -52,7 +53,7 @@ SightLines::SightLines(std::vector<Mesh> meshes, const Box& extents)
 std::vector<SightLines::Item> SightLines::along_curve(const Box& extents) const {
     std::vector<Item> items, sorted;
     resize_large(items, first_.back());
-    const Vec3 low = extents.min();
+    const Vec3& low = extents.min();
     const Vec3 scale = (kSteps - 1) * extents.sizes().cwiseMax(1e-9).cwiseInverse() / 3.0;
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
         const Mesh& mesh = meshes_[k];
@@ -185,10 +186,10 @@ bool SightLines::met(std::uint32_t triangle, const Vec3& point, const Way& way, 
     if (det == 0.0) return false;
     const Vec3 from = point - a;
     const double u = from.dot(p) / det;
-    if (!(u >= 0.0 && u <= 1.0)) return false;
+    if (!(u >= -kWider && u <= 1.0 + kWider)) return false;
     const Vec3 q = from.cross(ab);
     const double v = way.direction_.dot(q) / det;
-    if (!(v >= 0.0 && u + v <= 1.0)) return false;
+    if (!(v >= -kWider && u + v <= 1.0 + kWider)) return false;
     return ac.dot(q) / det >= near;
 }
 

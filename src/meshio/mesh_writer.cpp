@@ -1,5 +1,6 @@
 #include "meshio/mesh_writer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -48,7 +49,7 @@ void ply(const char* title, std::size_t vertices, Vertex vertex,
         "\nproperty list uchar int vertex_indices\nend_header\n";
     const std::size_t size = coloured ? kPlyColoured : kPlyPlain;
     char* const first = memory(head.size() + size * vertices + kPlyFace * triangles.size());
-    std::memcpy(first, head.data(), head.size());
+    std::copy(head.begin(), head.end(), first);
     char* const points = first + head.size();
     parallel_blocks(vertices, kOfTask, {}, [&](std::size_t begin, std::size_t end) {
         char* out = points + size * begin;

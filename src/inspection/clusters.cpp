@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <unordered_map>
+#include <utility>
 
 #include "inspection/zones.h"
 #include "mesh/topology.h"
@@ -35,18 +37,25 @@ Members connected(const HeightField& field, const std::vector<double>& beyond) {
         if (side(i) != 0) out.push_back(i);
     }
     for (const BorderPair& pair : border_pairs(field, out)) join(pair.a, pair.b);
-    std::vector<std::uint32_t> root(field.size(), Verdict::kNone);
-    for (const std::uint32_t i : out) root[i] = sets.find(i);
-    std::sort(out.begin(), out.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return root[a] != root[b] ? root[a] < root[b] : a < b;
-    });
+    // By root, then ascending: roots are numbers of samples, so a count of each sorts them.
+    std::vector<std::uint32_t> root(out.size());
+    std::vector<std::uint32_t> next(field.size(), 0);
+    for (std::size_t k = 0; k < out.size(); ++k) ++next[root[k] = sets.find(out[k])];
     Members members;
-    for (std::size_t k = 0; k < out.size(); ++k) {
-        if (k == 0 || root[out[k]] != root[out[k - 1]]) members.begin.push_back(k);
+    std::uint32_t so_far = 0;
+    for (std::uint32_t& place : next) {
+        if (place > 0) members.begin.push_back(so_far);
+        so_far += std::exchange(place, so_far);
     }
     members.begin.push_back(out.size());
-    members.sample = std::move(out);
+    members.sample.resize(out.size());
+    for (std::size_t k = 0; k < out.size(); ++k) members.sample[next[root[k]]++] = out[k];
     return members;
+}
+
+/// Appends what is not the last one.
+void append_other(std::vector<std::uint32_t>& values, std::uint32_t value) {
+    if (values.empty() || values.back() != value) values.push_back(value);
 }
 
 std::vector<std::uint32_t> sorted_unique(std::vector<std::uint32_t> values) {
@@ -80,32 +89,32 @@ std::vector<MotionShare> motions_of(const HeightField& field,
                                     const Cluster& cluster) {
     const RemovalTrace& trace = field.trace;
     if (trace.empty()) return {};
-    struct Part {
-        std::uint32_t motion;
-        double area, depth;
+    std::vector<MotionShare> shares;
+    std::unordered_map<std::uint32_t, std::size_t> places;  // in shares, by motion
+    std::uint32_t recent = 0;
+    std::size_t place = 0;
+    const auto add = [&](std::uint32_t motion, double area, double depth) {
+        if (motion != recent || shares.empty()) {  // neighbours mostly have the same
+            const auto found = places.try_emplace(motion, shares.size());
+            if (found.second) shares.push_back({motion, 0.0, 0.0});
+            recent = motion;
+            place = found.first->second;
+        }
+        shares[place].share += area / cluster.area;
+        shares[place].depth = std::max(shares[place].depth, depth);
     };
-    std::vector<Part> parts;
     for (const std::uint32_t i : samples) {
         if (trace.first[i] == RemovalTrace::kNever) continue;
         const std::uint32_t dominant = trace.dominant[i];
-        parts.push_back({dominant, field.area[i], trace.dominant_depth[i]});
+        add(dominant, field.area[i], trace.dominant_depth[i]);
         if (!cluster.above) continue;
         const std::uint32_t first = trace.first[i], last = trace.last[i];
-        if (first != dominant) parts.push_back({first, field.area[i], 0.0});
-        if (last != dominant && last != first) parts.push_back({last, field.area[i], 0.0});
+        if (first != dominant) add(first, field.area[i], 0.0);
+        if (last != dominant && last != first) add(last, field.area[i], 0.0);
     }
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const Part& a, const Part& b) { return a.motion < b.motion; });
-    std::vector<MotionShare> shares;
-    for (const Part& part : parts) {
-        if (shares.empty() || shares.back().motion != part.motion) {
-            shares.push_back({part.motion, 0.0, 0.0});
-        }
-        shares.back().share += part.area / cluster.area;
-        shares.back().depth = std::max(shares.back().depth, part.depth);
-    }
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const MotionShare& a, const MotionShare& b) { return a.share > b.share; });
+    std::sort(shares.begin(), shares.end(), [](const MotionShare& a, const MotionShare& b) {
+        return a.share != b.share ? a.share > b.share : a.motion < b.motion;
+    });
     return shares;
 }
 
@@ -143,8 +152,8 @@ void find_clusters(const HeightField& field, const std::vector<double>& beyond,
             cluster.volume += field.area[i] * std::abs(beyond[i]);
             cluster.centroid += field.area[i] * field.point[i];
             cluster.box.extend(field.point[i]);
-            cluster.faces.push_back(field.face[i]);
-            cluster.zones.push_back(verdict.zone[i]);
+            append_other(cluster.faces, field.face[i]);
+            append_other(cluster.zones, verdict.zone[i]);
             if (!field.trace.empty() && !field.trace.touched(i)) {
                 cluster.untouched_area += field.area[i];
             }

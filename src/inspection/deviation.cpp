@@ -6,10 +6,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "beltgrinding/error.h"
 
 namespace beltgrinding {
 namespace {
+
+constexpr std::size_t kSamplesOfTask = 1U << 15U;
 
 struct Colour {
     double r, g, b;
@@ -190,10 +193,12 @@ std::uint32_t ColourScale::missed_colour() const {
 std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale) {
     validate(scale.tolerance);
     std::vector<std::uint32_t> colours(field.size());
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        colours[i] =
-            (field.flags[i] & kMissed) != 0 ? scale.missed_colour() : scale.colour(field.height[i]);
-    }
+    parallel_blocks(field.size(), kSamplesOfTask, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            colours[i] = (field.flags[i] & kMissed) != 0 ? scale.missed_colour()
+                                                         : scale.colour(field.height[i]);
+        }
+    });
     return colours;
 }
 

@@ -1,6 +1,7 @@
 #include "inspection/section.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -14,6 +15,7 @@ namespace {
 constexpr double kOnPlane = 1e-7;    // mm; a sample so near lies on the plane
 constexpr double kSamePoint = 1e-7;  // mm
 constexpr double kNoDirection = 1e-9;
+constexpr std::size_t kTogether = 64;  // samples, or triangles, that one box holds
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Where the plane crosses the edge of two samples, `share` of the way from the first.
@@ -29,33 +31,51 @@ struct Segment {
     Crossing from, to;
 };
 
-Crossing crossing(std::uint32_t a, std::uint32_t b, const std::vector<double>& distance) {
-    if (a > b) std::swap(a, b);
-    return {a, b, std::clamp(distance[a] / (distance[a] - distance[b]), 0.0, 1.0)};
-}
+/// Distances of samples from a plane, above it positive.
+class PlaneDistances {
+  public:
+    PlaneDistances(const HeightField& field, const Vec3& origin, const Vec3& normal)
+        : field_(field), origin_(origin), normal_(normal) {}
+    double operator[](std::uint32_t i) const {
+        const double d = normal_.dot(field_.point[i] - origin_);
+        return std::abs(d) < kOnPlane ? 0.0 : d;
+    }
+    /// Whether the plane comes within `reach` mm of the box.
+    bool nears(const Box& box, double reach) const {
+        const double radius = normal_.cwiseAbs().dot(0.5 * box.sizes());
+        return std::abs(normal_.dot(box.center() - origin_)) <= radius + reach;
+    }
 
-/// The segments of all triangles, along plane normal x surface normal. Samples on the plane count
-/// as above it or, with `touching_below`, as below.
-std::vector<Segment> segments(const HeightField& field, const std::vector<double>& distance,
-                              bool touching_below) {
-    std::vector<char> above(distance.size());
-    for (std::size_t i = 0; i < above.size(); ++i) {
-        above[i] = touching_below ? distance[i] > 0.0 : distance[i] >= 0.0;
-    }
-    std::vector<Segment> result;
-    for (const Triangle& t : field.triangles) {
+  private:
+    const HeightField& field_;
+    Vec3 origin_, normal_;
+};
+
+/// Appends the segments of the triangles from `begin` to `end`, along plane normal x surface
+/// normal. Samples on the plane count as above it or, with `touching_below`, as below.
+void append_segments(const HeightField& field, const PlaneDistances& plane, bool touching_below,
+                     std::size_t begin, std::size_t end, std::vector<Segment>& segments) {
+    for (std::size_t k = begin; k < end; ++k) {
+        const Triangle& t = field.triangles[k];
+        std::array<double, 3> distance{};
+        std::array<bool, 3> above{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            distance[i] = plane[t[i]];
+            above[i] = touching_below ? distance[i] > 0.0 : distance[i] >= 0.0;
+        }
         // Counter-clockwise triangles: above lies on the left of plane normal x normal.
-        if (above[t[0]] == above[t[1]] && above[t[1]] == above[t[2]]) continue;
-        const auto through =
-            triangle_crossing({above[t[0]] != 0, above[t[1]] != 0, above[t[2]] != 0});
+        if (above[0] == above[1] && above[1] == above[2]) continue;
+        const auto through = triangle_crossing(above);
         if (!through) continue;
-        Segment s;
-        s.face = field.face[t[0]];
-        s.from = crossing(t[through->leaves[0]], t[through->leaves[1]], distance);
-        s.to = crossing(t[through->enters[0]], t[through->enters[1]], distance);
-        result.push_back(s);
+        const auto crossing = [&](const auto& edge) {
+            const std::size_t p = t[edge[0]] < t[edge[1]] ? edge[0] : edge[1];
+            const std::size_t q = p == edge[0] ? edge[1] : edge[0];
+            const double share = distance[p] / (distance[p] - distance[q]);
+            return Crossing{t[p], t[q], std::clamp(share, 0.0, 1.0)};
+        };
+        segments.push_back(
+            {field.face[t[0]], crossing(through->leaves), crossing(through->enters)});
     }
-    return result;
 }
 
 double mix(double a, double b, double share) {
@@ -231,23 +251,33 @@ std::uint32_t nearest_sample(const HeightField& field, const Vec3& p) {
     return best;
 }
 
+/// `boxes`: round each `kTogether` triangles; null: all triangles are looked at.
 std::vector<SectionPiece> cut_by_plane(const HeightField& field, const Vec3& origin,
-                                       const Vec3& normal) {
+                                       const Vec3& normal, const std::vector<Box>* boxes) {
     if (field.triangles.empty())
         throw InputError("section.no_triangles",
                          "section: the height field has no triangles between its samples");
-    std::vector<double> distance(field.size());
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        const double d = normal.dot(field.point[i] - origin);
-        distance[i] = std::abs(d) < kOnPlane ? 0.0 : d;
-        low = std::min(low, distance[i]);
-        high = std::max(high, distance[i]);
-    }
-    std::vector<SectionPiece> pieces = join(field, segments(field, distance, false));
+    const PlaneDistances plane(field, origin, normal);
+    const auto cut = [&](bool touching_below) {
+        std::vector<Segment> segments;
+        const std::size_t count = field.triangles.size();
+        for (std::size_t begin = 0; begin < count; begin += kTogether) {
+            if (boxes != nullptr && !plane.nears((*boxes)[begin / kTogether], 2.0 * kOnPlane))
+                continue;
+            append_segments(field, plane, touching_below, begin, std::min(begin + kTogether, count),
+                            segments);
+        }
+        return join(field, segments);
+    };
+    std::vector<SectionPiece> pieces = cut(false);
     // A border that lies on the plane is met from one of the two sides only.
-    if (pieces.empty()) pieces = join(field, segments(field, distance, true));
+    if (pieces.empty()) pieces = cut(true);
     if (pieces.empty()) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::uint32_t i = 0; i < field.size(); ++i) {
+            low = std::min(low, plane[i]);
+            high = std::max(high, plane[i]);
+        }
         throw InputError("section.misses",
                          "section: the plane misses the faces; along its normal they lie from "
                          "{low:g} to {high:g} mm: move it there",
@@ -256,16 +286,48 @@ std::vector<SectionPiece> cut_by_plane(const HeightField& field, const Vec3& ori
     return pieces;
 }
 
-}  // namespace
-
-Section section_by_plane(const HeightField& field, const Vec3& origin, const Vec3& normal) {
+Section whole_section(const HeightField& field, const Vec3& origin, const Vec3& normal,
+                      const std::vector<Box>* boxes) {
     if (!origin.allFinite() || !normal.allFinite() || normal.norm() < kNoDirection)
         throw InputError("section.no_plane",
                          "section: a plane needs a point and a normal other than 0");
     Section section{origin, normal.normalized(), {}};
-    section.pieces = cut_by_plane(field, section.origin, section.normal);
+    section.pieces = cut_by_plane(field, section.origin, section.normal, boxes);
     arrange(section.pieces, section.pieces.size());
     return section;
+}
+
+}  // namespace
+
+Section section_by_plane(const HeightField& field, const Vec3& origin, const Vec3& normal) {
+    return whole_section(field, origin, normal, nullptr);
+}
+
+SectionIndex::SectionIndex(const HeightField& field) : field_(field) {
+    samples_.resize((field.size() + kTogether - 1) / kTogether);
+    for (std::size_t i = 0; i < field.size(); ++i) samples_[i / kTogether].extend(field.point[i]);
+    triangles_.resize((field.triangles.size() + kTogether - 1) / kTogether);
+    for (std::size_t t = 0; t < field.triangles.size(); ++t) {
+        for (const std::uint32_t i : field.triangles[t])
+            triangles_[t / kTogether].extend(field.point[i]);
+    }
+}
+
+Section SectionIndex::section_by_plane(const Vec3& origin, const Vec3& normal) const {
+    return whole_section(field_, origin, normal, &triangles_);
+}
+
+std::vector<std::uint32_t> SectionIndex::near_plane(const Vec3& origin, const Vec3& normal,
+                                                    double reach) const {
+    const PlaneDistances plane(field_, origin, normal);
+    std::vector<std::uint32_t> found;
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+        if (!plane.nears(samples_[k], reach)) continue;
+        const std::size_t end = std::min((k + 1) * kTogether, field_.size());
+        for (auto i = static_cast<std::uint32_t>(k * kTogether); i < end; ++i)
+            if (std::abs(plane[i]) <= reach) found.push_back(i);
+    }
+    return found;
 }
 
 Section section_between(const HeightField& field, const Vec3& from, const Vec3& to) {
@@ -282,7 +344,7 @@ Section section_between(const HeightField& field, const Vec3& from, const Vec3& 
     }
     Section section{from, normal.normalized(), {}};
     std::vector<SectionPiece>& pieces = section.pieces;
-    pieces = cut_by_plane(field, section.origin, section.normal);
+    pieces = cut_by_plane(field, section.origin, section.normal, nullptr);
 
     const Place begin = nearest_place(pieces, from);
     auto [head, tail] = cut(pieces[begin.piece], begin);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/large_memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "inspection/section.h"
@@ -25,6 +26,7 @@ constexpr double kSameDirection = 0.8660254038;  // cosine of 30 degrees
 constexpr double kAcrossDirection = 0.5;         // and its sine
 constexpr double kStraight = 1.2;                // way of the path by distance, within one pass
 constexpr double kNearest = 1.5;    // spacings within which a profile's point has a sample
+constexpr double kOffPlane = 1.01;  // of that distance, for what rounding puts off the plane
 constexpr double kNoLength = 1e-9;  // mm
 
 /// What the path says of each motion.
@@ -79,13 +81,27 @@ struct Face {
 std::vector<Face> split(const HeightField& field) {
     const std::uint32_t last =
         field.face.empty() ? 0 : *std::max_element(field.face.begin(), field.face.end());
-    std::vector<std::uint32_t> slot(std::size_t{last} + 1, 0), index(field.size());
+    std::vector<std::size_t> samples(std::size_t{last} + 1, 0), triangles(samples.size(), 0);
+    for (const std::uint32_t face : field.face) ++samples[face];
+    for (const Triangle& t : field.triangles) ++triangles[field.face[t[0]]];
+    std::vector<std::uint32_t> slot(samples.size(), 0), index(field.size());
     std::vector<Face> faces;
     for (std::size_t i = 0; i < field.size(); ++i) {
-        std::uint32_t& at = slot[field.face[i]];
+        const std::uint32_t number = field.face[i];
+        std::uint32_t& at = slot[number];
         if (at == 0) {
             faces.emplace_back();
-            faces.back().field.spacing = field.spacing;
+            HeightField& f = faces.back().field;
+            f.spacing = field.spacing;
+            reserve_large(f.point, samples[number]);
+            reserve_large(f.normal, samples[number]);
+            reserve_large(f.stock_height, samples[number]);
+            reserve_large(f.height, samples[number]);
+            reserve_large(f.face, samples[number]);
+            f.flags.reserve(samples[number]);
+            reserve_large(f.triangles, triangles[number]);
+            reserve_large(faces.back().trace.last, samples[number]);
+            reserve_large(faces.back().trace.dominant, samples[number]);
             at = static_cast<std::uint32_t>(faces.size());
         }
         Face& face = faces[at - 1];
@@ -119,37 +135,32 @@ struct Profile {
 class FaceProfiles {
   public:
     FaceProfiles(const Face& face, const Feed& feed)
-        : face_(face), feed_(feed), grid_(face.field.point, numbers(), reach()) {}
+        : face_(face), feed_(feed), index_(face.field) {
+        for (std::uint32_t i = 0; i < face.field.size(); ++i) {
+            if (feed_at(i)) ground_.push_back(i);
+        }
+    }
 
     /// Profiles through samples spread over the face.
     std::vector<Profile> profiles(bool along, const RunContext& context) const {
-        std::vector<std::uint32_t> ground;
-        for (std::uint32_t i = 0; i < face_.field.size(); ++i) {
-            if (feed_at(i)) ground.push_back(i);
-        }
-        const std::size_t count = std::min(kProfiles, ground.size());
+        const std::size_t count = std::min(kProfiles, ground_.size());
         std::vector<Profile> found(count);
         parallel_blocks(count, 1, context, [&](std::size_t k, std::size_t) {
-            found[k] = through(ground[(2 * k + 1) * ground.size() / (2 * count)], along);
+            found[k] = through(ground_[(2 * k + 1) * ground_.size() / (2 * count)], along);
         });
         std::erase_if(found, [](const Profile& profile) { return profile.s.size() < 2; });
         return found;
     }
 
   private:
-    std::vector<std::uint32_t> numbers() const {
-        std::vector<std::uint32_t> all(face_.field.size());
-        for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-        return all;
-    }
     double reach() const { return kNearest * face_.field.spacing; }
     std::optional<Vec3> feed_at(std::uint32_t i) const {
         if ((face_.field.flags[i] & kMissed) != 0) return {};
         return feed_.direction(face_.trace.dominant[i], face_.field.normal[i].cast<double>());
     }
-    std::optional<std::uint32_t> nearest(const Vec3& p) const {
+    std::optional<std::uint32_t> nearest(const PointGrid& grid, const Vec3& p) const {
         std::optional<std::uint32_t> best;
-        grid_.near(p, [&](std::uint32_t i) {
+        grid.near(p, [&](std::uint32_t i) {
             const auto distance = [&](std::uint32_t j) {
                 return (face_.field.point[j] - p).squaredNorm();
             };
@@ -161,18 +172,20 @@ class FaceProfiles {
 
     const Face& face_;
     const Feed& feed_;
-    PointGrid grid_;
+    SectionIndex index_;
+    std::vector<std::uint32_t> ground_;  // samples whose feed is known
 };
 
 Profile FaceProfiles::through(std::uint32_t seed, bool along) const {
     const Vec3 p = face_.field.point[seed], n = face_.field.normal[seed].cast<double>();
     const Vec3 feed = *feed_at(seed);
-    std::vector<SectionPiece> pieces;
+    Section section;
     try {
-        pieces = section_by_plane(face_.field, p, along ? n.cross(feed) : feed).pieces;
+        section = index_.section_by_plane(p, along ? n.cross(feed) : feed);
     } catch (const InputError&) {
         return {};  // a sliver without a triangle
     }
+    const std::vector<SectionPiece>& pieces = section.pieces;
     std::size_t best = 0, at = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -184,10 +197,14 @@ Profile FaceProfiles::through(std::uint32_t seed, bool along) const {
     if (pieces.empty()) return {};
     const SectionPiece& piece = pieces[best];
     const std::size_t count = piece.point.size();
+    // The profile lies in the plane: only samples near that can be near the profile.
+    const PointGrid grid(face_.field.point,
+                         index_.near_plane(section.origin, section.normal, kOffPlane * reach()),
+                         reach());
     // The motion that was last on point i, if the profile may go there.
     const auto motion = [&](std::size_t i) -> std::optional<std::uint32_t> {
         if (std::isnan(piece.height[i])) return {};
-        const auto sample = nearest(piece.point[i]);
+        const auto sample = nearest(grid, piece.point[i]);
         const auto direction = sample ? feed_at(*sample) : std::nullopt;
         if (!direction) return {};
         const Vec3 tangent =

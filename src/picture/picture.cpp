@@ -7,28 +7,33 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "base/large_memory.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
-#include "rays/ray_scene.h"
+#include "rasteriser.h"
+#include "sight_lines.h"
 
 namespace beltgrinding {
 namespace {
 
-constexpr std::size_t kMostPixels = 8192;  // a side
-constexpr std::size_t kRays = 2;           // a pixel, in both directions
-constexpr std::size_t kRowsOfTask = 8;     // pixels
-constexpr std::size_t kPointsOfTask = 16;  // of lines of sight
-constexpr std::size_t kWaysOfTask = 8;     // along which the farthest is sought
-constexpr float kAmbient = 0.5F;           // share of the light that comes from everywhere
+constexpr std::size_t kMostPixels = 8192;   // a side
+constexpr std::size_t kRays = 2;            // a pixel, in both directions
+constexpr std::size_t kRowsOfTask = 8;      // pixels
+constexpr std::size_t kVerticesOfBox = 64;  // that are passed over together
+constexpr std::size_t kPointsOfTask = 16;   // of lines of sight
+constexpr std::size_t kWaysOfTask = 8;      // along which the farthest is sought
+constexpr float kAmbient = 0.5F;            // share of the light that comes from everywhere
 constexpr float kCreaseCosine = 0.82F;  // 35 degrees: beyond the facets of a smooth triangulation
 constexpr float kDepthJump = 6.0F;      // rays' distances that a surface leaps at an outline
 constexpr float kOutline = 0.35F;       // what an outline leaves of the colour
 constexpr float kBackground = 255.0F;
+constexpr float kLeastFacing = 0.05F;  // cosine: a steeper surface counts as this steep
+constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+const Vec3f kNone = Vec3f::Zero();
 
 void validate(const ColouredSurface& surface) {
     for (const Vec3& v : surface.vertices) {
@@ -65,54 +70,171 @@ struct Spot {
     float depth = std::numeric_limits<float>::quiet_NaN();  // mm beyond the target's plane
     Vec3f normal = Vec3f::Zero();                           // of the facet, towards the camera
     Vec3f colour = Vec3f::Constant(kBackground);            // lit
+    std::uint32_t triangle = kNoTriangle;
+    bool facing = true;  // not so steep that it would leap within one triangle
     bool met() const { return !std::isnan(depth); }
 };
 
-/// The camera's axes, in single precision: right, down and into the picture.
+/// A camera's rays, and its axes in single precision.
 struct View {
+    RayGrid grid;
     Vec3f right, down, into, light;
-    Vec3f origin;     // of the ray through the picture's upper left corner
-    float step = 0;   // mm between neighbouring rays
-    float start = 0;  // mm from the target's plane back to the rays' origins
+    float step = 0;  // mm between neighbouring rays
+};
+
+/// Lights what rays meet. Neighbouring rays often meet the same triangle, of which it keeps what
+/// they have in common.
+class Shader {
+  public:
+    Shader(const std::vector<ColouredSurface>& surfaces, const View& view)
+        : surfaces_(surfaces), view_(view) {}
+    Spot operator()(const RayHit& hit) {
+        Spot spot;
+        if (!hit.met()) return spot;
+        if (hit.triangle != triangle_) take(hit.triangle);
+        const float u = hit.u, v = hit.v, w = 1.0F - u - v;
+        spot.depth = hit.depth;
+        spot.triangle = hit.triangle;
+        spot.normal = facet_;
+        spot.facing = facing_;
+        Vec3f lit = facet_;
+        if (smooth_) {
+            lit = w * normals_[0] + u * normals_[1] + v * normals_[2];
+            const float length = lit.norm();
+            lit = length > 1e-6F ? Vec3f((1.0F / length) * lit) : facet_;
+            if (lit.dot(view_.into) > 0.0F) lit = -lit;
+        }
+        const Vec3f colour =
+            plain_ ? colours_[0] : Vec3f(w * colours_[0] + u * colours_[1] + v * colours_[2]);
+        spot.colour =
+            (kAmbient + (1.0F - kAmbient) * std::max(lit.dot(view_.light), 0.0F)) * colour;
+        return spot;
+    }
+
+  private:
+    void take(std::uint32_t triangle) {
+        triangle_ = triangle;
+        std::size_t k = 0;
+        for (; triangle >= surfaces_[k].triangles.size(); ++k)
+            triangle -= static_cast<std::uint32_t>(surfaces_[k].triangles.size());
+        const ColouredSurface& surface = surfaces_[k];
+        const Triangle& t = surface.triangles[triangle];
+        const Vec3& a = surface.vertices[t[0]];
+        const Vec3 ab = surface.vertices[t[1]] - a, ac = surface.vertices[t[2]] - a;
+        facet_ = ab.cross(ac).normalized().cast<float>();
+        if (facet_.dot(view_.into) > 0.0F) facet_ = -facet_;
+        facing_ = -facet_.dot(view_.into) >= kLeastFacing;
+        smooth_ = !surface.normals.empty();
+        plain_ = surface.colours.size() == 1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (smooth_) normals_[i] = surface.normals[t[i]];
+            colours_[i] = rgb_of(surface.colours[plain_ ? 0 : t[i]]);
+        }
+    }
+
+    const std::vector<ColouredSurface>& surfaces_;
+    const View& view_;
+    std::uint32_t triangle_ = kNoTriangle;
+    bool smooth_ = false, plain_ = false, facing_ = false;
+    Vec3f facet_ = Vec3f::Zero();
+    std::array<Vec3f, 3> normals_{kNone, kNone, kNone}, colours_ = normals_;
 };
 
 /// True if an outline runs between neighbouring rays, `side` (right or down) apart.
 bool outlined(const Spot& a, const Spot& b, const Vec3f& side, const View& view) {
+    if (a.triangle == b.triangle && a.facing) return false;
     if (!a.met() || !b.met()) return a.met() != b.met();
     if (a.normal.dot(b.normal) < kCreaseCosine) return true;
     const auto slope = [&](const Spot& s) {  // depth gained on the way to the neighbour, at most
-        const float facing = std::max(-s.normal.dot(view.into), 0.05F);
+        const float facing = std::max(-s.normal.dot(view.into), kLeastFacing);
         return std::abs(s.normal.dot(side)) / facing;
     };
     const float leap = std::abs(a.depth - b.depth) / view.step;
     return leap > kDepthJump + 2.0F * std::max(slope(a), slope(b));
 }
 
+/// What a band of rows is drawn in.
+struct Band {
+    std::vector<RayHit> hits;
+    std::vector<Spot> spots;  // of a row of pixels, and a row of rays below
+};
+
+/// Work space that is used again: the pages of new memory cost more than what is drawn in it.
+template <class Space>
+class Spare {
+  public:
+    std::unique_ptr<Space> take() {
+        const std::scoped_lock lock(mutex_);
+        if (spaces_.empty()) return std::make_unique<Space>();
+        std::unique_ptr<Space> one = std::move(spaces_.back());
+        spaces_.pop_back();
+        return one;
+    }
+    void give_back(std::unique_ptr<Space> one) {
+        const std::scoped_lock lock(mutex_);
+        spaces_.push_back(std::move(one));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Space>> spaces_;
+};
+
+/// Nearest whole number of what is not negative.
+std::uint8_t byte_of(float value) {
+    const auto whole = static_cast<int>(value);
+    return static_cast<std::uint8_t>(whole + (value - static_cast<float>(whole) >= 0.5F ? 1 : 0));
+}
+
+/// Draws row `y` of pixels from the spots of its rows of rays and of the next one.
+void draw_row(const View& view, std::span<const Spot> spots, std::size_t y, Picture& picture) {
+    const std::size_t columns = view.grid.columns;
+    for (std::size_t x = 0; x < picture.width; ++x) {
+        Vec3f sum = Vec3f::Zero();
+        float depth = std::numeric_limits<float>::quiet_NaN();
+        for (std::size_t k = 0; k < kRays * kRays; ++k) {
+            const std::size_t at = k / kRays * columns + x * kRays + k % kRays;
+            const Spot& spot = spots[at];
+            const bool line = outlined(spot, spots[at + 1], view.right, view) ||
+                              outlined(spot, spots[at + columns], view.down, view);
+            sum += line ? Vec3f(kOutline * spot.colour) : spot.colour;
+            if (spot.met() && !(depth < spot.depth)) depth = spot.depth;
+        }
+        const std::size_t pixel = y * picture.width + x;
+        picture.depth[pixel] = depth;
+        for (int k = 0; k < 3; ++k) {
+            const float mean = sum[k] / static_cast<float>(kRays * kRays);
+            picture.rgb[3 * pixel + static_cast<std::size_t>(k)] =
+                byte_of(std::clamp(mean, 0.0F, 255.0F));
+        }
+    }
+}
+
 }  // namespace
 
 struct Renderer::Scene {
     std::vector<ColouredSurface> surfaces;
-    Vec3 origin = Vec3::Zero();  // of the rays' single precision
     Box extents;
-    std::optional<RayScene> rays;
 
-    void build();
-    /// What a row of rays meets, `y` rays down.
-    void row(const View& view, float y, std::span<Spot> spots) const;
-    Spot spot(const View& view, const RayScene::Hit& hit) const;
     View view_of(const Camera& camera, std::size_t width, std::size_t height) const;
+    /// Made when first asked for: many a picture needs none.
+    const SightLines& lines() const;
+
+    Spare<Rasteriser> rasterisers;
+    Spare<Band> bands;
+
+  private:
+    mutable std::once_flag asked;
+    mutable std::optional<SightLines> made;
 };
 
-void Renderer::Scene::build() {
-    std::vector<TriangleMesh> meshes(surfaces.size());
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        reserve_large(meshes[k].triangles, surfaces[k].triangles.size());
-        meshes[k].triangles = surfaces[k].triangles;
-        reserve_large(meshes[k].vertices, surfaces[k].vertices.size());
-        for (const Vec3& v : surfaces[k].vertices)
-            meshes[k].vertices.push_back((v - origin).cast<float>());
-    }
-    rays.emplace(meshes, RayScene::Build::kQuick);
+const SightLines& Renderer::Scene::lines() const {
+    std::call_once(asked, [this] {
+        std::vector<SightLines::Mesh> meshes;
+        for (const ColouredSurface& one : surfaces) meshes.push_back({one.vertices, one.triangles});
+        made.emplace(std::move(meshes), extents);
+    });
+    return *made;
 }
 
 View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size_t height) const {
@@ -136,55 +258,19 @@ View Renderer::Scene::view_of(const Camera& camera, std::size_t width, std::size
     view.down = down.cast<float>();
     view.light = (-into - 0.35 * across - 0.5 * down).normalized().cast<float>();
     const double step = camera.height / static_cast<double>(height * kRays);
-    // The rays begin in front of everything.
-    const double start = std::min(
+    const auto from_middle = [step](std::size_t pixels) {
+        return step * (0.5 - 0.5 * static_cast<double>(pixels * kRays));
+    };
+    view.grid.corner = camera.target + from_middle(width) * across + from_middle(height) * down;
+    view.grid.right = step * across;
+    view.grid.down = step * down;
+    view.grid.into = into;
+    view.grid.start = std::min(
         camera.near, (extents.center() - camera.target).norm() + extents.diagonal().norm());
-    const Vec3 corner = camera.target - origin - start * into -
-                        0.5 * step * static_cast<double>(width * kRays) * across -
-                        0.5 * step * static_cast<double>(height * kRays) * down;
-    view.origin = corner.cast<float>();
+    view.grid.columns = static_cast<std::uint32_t>(width * kRays + 1);  // one more, for outlines
+    view.grid.rows = static_cast<std::uint32_t>(height * kRays + 1);
     view.step = static_cast<float>(step);
-    view.start = static_cast<float>(start);
     return view;
-}
-
-void Renderer::Scene::row(const View& view, float y, std::span<Spot> spots) const {
-    std::array<Vec3f, RayScene::kTogether> from;
-    std::array<RayScene::Hit, RayScene::kTogether> hits;
-    for (std::size_t first = 0; first < spots.size(); first += from.size()) {
-        const std::size_t count = std::min(from.size(), spots.size() - first);
-        for (std::size_t i = 0; i < count; ++i) {
-            const float x = static_cast<float>(first + i) + 0.5F;
-            from[i] = view.origin + x * view.step * view.right + y * view.step * view.down;
-        }
-        rays->first_together({from.data(), count}, view.into, 0.0F,
-                             std::numeric_limits<float>::infinity(), {hits.data(), count});
-        for (std::size_t i = 0; i < count; ++i) spots[first + i] = spot(view, hits[i]);
-    }
-}
-
-Spot Renderer::Scene::spot(const View& view, const RayScene::Hit& hit) const {
-    Spot spot;
-    if (hit.distance < 0.0F) return spot;
-    const ColouredSurface& surface = surfaces[hit.mesh];
-    const Triangle& t = surface.triangles[hit.triangle];
-    const float u = hit.u, v = hit.v, w = 1.0F - u - v;
-    spot.depth = hit.distance - view.start;
-    spot.normal = hit.normal.normalized();
-    if (spot.normal.dot(view.into) > 0.0F) spot.normal = -spot.normal;
-    Vec3f lit = spot.normal;
-    if (!surface.normals.empty()) {
-        lit = w * surface.normals[t[0]] + u * surface.normals[t[1]] + v * surface.normals[t[2]];
-        lit = lit.norm() > 1e-6F ? Vec3f(lit.normalized()) : spot.normal;
-        if (lit.dot(view.into) > 0.0F) lit = -lit;
-    }
-    const bool one = surface.colours.size() == 1;
-    const Vec3f colour =
-        one ? rgb_of(surface.colours[0])
-            : Vec3f(w * rgb_of(surface.colours[t[0]]) + u * rgb_of(surface.colours[t[1]]) +
-                    v * rgb_of(surface.colours[t[2]]));
-    spot.colour = (kAmbient + (1.0F - kAmbient) * std::max(lit.dot(view.light), 0.0F)) * colour;
-    return spot;
 }
 
 Renderer::Renderer(std::vector<ColouredSurface> surfaces, const RunContext& context)
@@ -197,9 +283,6 @@ Renderer::Renderer(std::vector<ColouredSurface> surfaces, const RunContext& cont
     }
     if (!any) throw InputError("picture.empty", "picture: there is nothing to be drawn");
     scene_->surfaces = std::move(surfaces);
-    scene_->origin = scene_->extents.center();
-    context.throw_if_cancelled();
-    scene_->build();
     context.throw_if_cancelled();
 }
 
@@ -214,41 +297,49 @@ const Box& Renderer::extents() const {
 std::vector<std::uint8_t> Renderer::seen(const std::vector<Vec3>& points,
                                          const std::vector<Vec3>& directions, double slack) const {
     std::vector<std::uint8_t> seen(points.size() * directions.size());
-    std::vector<Vec3f> ways;
+    std::vector<SightLines::Way> ways;
     ways.reserve(directions.size());
-    for (const Vec3& direction : directions) ways.push_back(direction.normalized().cast<float>());
-    const auto near = static_cast<float>(slack);
+    for (const Vec3& direction : directions) ways.emplace_back(direction.normalized());
+    const SightLines& lines = scene_->lines();
     parallel_blocks(points.size(), kPointsOfTask, {}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
-            const Vec3f from = (points[p] - scene_->origin).cast<float>();
-            for (std::size_t d = 0; d < ways.size(); ++d) {
-                const RayScene::Hit hit = scene_->rays->first(
-                    from, ways[d], near, std::numeric_limits<float>::infinity());
-                seen[p * ways.size() + d] = hit.distance < 0.0F ? 1 : 0;
-            }
+            for (std::size_t d = 0; d < ways.size(); ++d)
+                seen[p * ways.size() + d] = lines.hidden(points[p], ways[d], slack) ? 0 : 1;
         }
     });
     return seen;
 }
 
 std::vector<Vec3> Renderer::farthest(const std::vector<Vec3>& directions) const {
+    const auto along = [](const Vec3& way, const Vec3& p) {  // in this order for boxes as well
+        return (way.x() * p.x() + way.y() * p.y()) + way.z() * p.z();
+    };
     std::vector<Vec3> found;
     for (const ColouredSurface& surface : scene_->surfaces) {
         const std::vector<Vec3>& vertices = surface.vertices;
         if (vertices.empty()) continue;
+        std::vector<Box> boxes((vertices.size() + kVerticesOfBox - 1) / kVerticesOfBox);
+        for (std::size_t v = 0; v < vertices.size(); ++v)
+            boxes[v / kVerticesOfBox].extend(vertices[v]);
         std::vector<std::array<std::size_t, 2>> ends(directions.size());
+        const auto look = [&](std::size_t d, std::size_t end, const Vec3& way) {
+            double most = -std::numeric_limits<double>::infinity();
+            for (std::size_t b = 0; b < boxes.size(); ++b) {
+                const Vec3 corner = (way.array() > 0.0).select(boxes[b].max(), boxes[b].min());
+                if (!(along(way, corner) > most)) continue;  // rounding keeps the order
+                const std::size_t first = b * kVerticesOfBox;
+                for (std::size_t v = first; v < std::min(first + kVerticesOfBox, vertices.size());
+                     ++v) {
+                    const double here = along(way, vertices[v]);
+                    if (here > most) most = here, ends[d][end] = v;
+                }
+            }
+        };
         parallel_blocks(directions.size(), kWaysOfTask, {},
                         [&](std::size_t begin, std::size_t end) {
-                            const std::size_t count = end - begin;
-                            std::array<double, kWaysOfTask> low{}, high{};
-                            low.fill(std::numeric_limits<double>::infinity());
-                            high.fill(-std::numeric_limits<double>::infinity());
-                            for (std::size_t v = 0; v < vertices.size(); ++v) {
-                                for (std::size_t d = 0; d < count; ++d) {
-                                    const double along = directions[begin + d].dot(vertices[v]);
-                                    if (along < low[d]) low[d] = along, ends[begin + d][0] = v;
-                                    if (along > high[d]) high[d] = along, ends[begin + d][1] = v;
-                                }
+                            for (std::size_t d = begin; d < end; ++d) {
+                                look(d, 0, -directions[d]);
+                                look(d, 1, directions[d]);
                             }
                         });
         std::vector<std::size_t> all;
@@ -265,38 +356,30 @@ Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t he
     const View view = scene_->view_of(camera, width, height);
     Picture picture{width, height, std::vector<std::uint8_t>(3 * width * height),
                     std::vector<float>(width * height)};
-    const std::size_t columns = width * kRays + 1;  // one more, for the outlines
+    const std::size_t columns = view.grid.columns;
+    std::vector<Rasteriser::Mesh> meshes;
+    for (const ColouredSurface& one : scene_->surfaces)
+        meshes.push_back({one.vertices, one.triangles});
+    std::unique_ptr<Rasteriser> rasteriser = scene_->rasterisers.take();
+    rasteriser->lay_out(meshes, view.grid, kRowsOfTask * kRays, context);
     parallel_blocks(height, kRowsOfTask, context, [&](std::size_t begin, std::size_t end) {
-        const std::size_t rows = (end - begin) * kRays + 1;
-        std::vector<Spot> spots(rows * columns);
-        for (std::size_t r = 0; r < rows; ++r) {
-            if (context.cancelled()) return;
-            scene_->row(view, static_cast<float>(begin * kRays + r) + 0.5F,
-                        {spots.data() + r * columns, columns});
-        }
+        std::unique_ptr<Band> band = scene_->bands.take();
+        band->hits.resize((kRowsOfTask * kRays + 1) * columns);
+        band->spots.resize((kRays + 1) * columns);
+        rasteriser->rasterise(static_cast<std::uint32_t>(begin / kRowsOfTask), band->hits);
+        Shader shade(scene_->surfaces, view);
+        const RayHit* hit = band->hits.data();
+        for (std::size_t i = 0; i < columns; ++i) band->spots[i] = shade(*hit++);
         for (std::size_t y = begin; y < end; ++y) {
-            for (std::size_t x = 0; x < width; ++x) {
-                Vec3f sum = Vec3f::Zero();
-                float depth = std::numeric_limits<float>::quiet_NaN();
-                for (std::size_t k = 0; k < kRays * kRays; ++k) {
-                    const std::size_t at =
-                        ((y - begin) * kRays + k / kRays) * columns + x * kRays + k % kRays;
-                    const Spot& spot = spots[at];
-                    const bool line = outlined(spot, spots[at + 1], view.right, view) ||
-                                      outlined(spot, spots[at + columns], view.down, view);
-                    sum += line ? Vec3f(kOutline * spot.colour) : spot.colour;
-                    if (spot.met() && !(depth < spot.depth)) depth = spot.depth;
-                }
-                const std::size_t pixel = y * width + x;
-                picture.depth[pixel] = depth;
-                for (int k = 0; k < 3; ++k) {
-                    const float mean = sum[k] / static_cast<float>(kRays * kRays);
-                    picture.rgb[3 * pixel + static_cast<std::size_t>(k)] =
-                        static_cast<std::uint8_t>(std::lround(std::clamp(mean, 0.0F, 255.0F)));
-                }
-            }
+            for (std::size_t i = columns; i < band->spots.size(); ++i)
+                band->spots[i] = shade(*hit++);
+            draw_row(view, band->spots, y, picture);
+            std::copy_n(band->spots.end() - static_cast<std::ptrdiff_t>(columns), columns,
+                        band->spots.begin());
         }
+        scene_->bands.give_back(std::move(band));
     });
+    scene_->rasterisers.give_back(std::move(rasteriser));
     return picture;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/large_memory.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/geometry.h"
 
@@ -41,6 +42,26 @@ py::array_t<Scalar> own(std::vector<Scalar>&& data) {
     auto* moved = new std::vector<Scalar>(std::move(data));
     const py::capsule owner(moved, [](void* p) { delete static_cast<std::vector<Scalar>*>(p); });
     return py::array_t<Scalar>(static_cast<py::ssize_t>(moved->size()), moved->data(), owner);
+}
+
+/// Python bytes that `write` fills where they lie: it is given a function that takes how many they
+/// are and gives their memory. It runs without Python's lock.
+template <class Write>
+py::bytes bytes_from(Write&& write) {
+    py::object made;
+    {
+        const py::gil_scoped_release release;
+        write([&made](std::size_t size) {
+            const py::gil_scoped_acquire lock;
+            made = py::reinterpret_steal<py::object>(
+                PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(size)));
+            if (!made) throw py::error_already_set();
+            char* const memory = PyBytes_AS_STRING(made.ptr());
+            expect_large_use(memory, size);
+            return memory;
+        });
+    }
+    return py::reinterpret_borrow<py::bytes>(made);
 }
 
 /// A rigid transform from a 4 x 4 matrix; `name` stands for it in messages, after `context`.

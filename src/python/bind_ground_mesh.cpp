@@ -61,12 +61,17 @@ void bind_ground_mesh(py::module_& m) {
                  d["warnings"] = to_list(mesh.warnings);
                  return d;
              })
-        .def("stl", [](const GroundMesh& mesh) { return py::bytes(mesh_stl(mesh)); })
+        .def("stl",
+             [](const GroundMesh& mesh) {
+                 return bytes_from([&](const FileMemory& memory) { mesh_stl(mesh, memory); });
+             })
         .def(
             "ply",
             [](const GroundMesh& mesh, const Scale& scale) {
                 const auto colours = scale_of(scale);
-                return py::bytes(mesh_ply(mesh, colours ? &*colours : nullptr));
+                return bytes_from([&](const FileMemory& memory) {
+                    mesh_ply(mesh, colours ? &*colours : nullptr, memory);
+                });
             },
             py::arg("scale") = py::none(),
             "Binary PLY; scale: (lower, upper, limit) of the colours, mm.")

@@ -126,13 +126,18 @@ void bind_inspection(py::module_& m) {
         "deviation_ply",
         [](const HeightField& field, double lower, double upper, double limit, bool ground,
            const std::string& run) {
-            return py::bytes(deviation_ply(field, scale_of(lower, upper, limit), ground, run));
+            const ColourScale scale = scale_of(lower, upper, limit);
+            return bytes_from([&](const FileMemory& memory) {
+                deviation_ply(field, scale, ground, run, memory);
+            });
         },
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
         py::arg("ground") = true, py::arg("run") = "");
     m.def(
         "mesh_ply",
-        [](const HeightField& field, bool ground) { return py::bytes(mesh_ply(field, ground)); },
+        [](const HeightField& field, bool ground) {
+            return bytes_from([&](const FileMemory& memory) { mesh_ply(field, ground, memory); });
+        },
         py::arg("field"), py::arg("ground") = true);
 }
 

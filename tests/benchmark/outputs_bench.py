@@ -6,10 +6,13 @@ Writes JSON in Google Benchmark's form to BELTGRINDING_BENCH_OUT. A plate of 500
 20 lanes by a real run, so that motions, trace and time series are there. Figures in s of wall time, the
 median of three, ``_cpu`` of processor time:
 
-- verdict: in tolerance or not, worst clusters, waviness (``verdict.of_result``);
+- verdict: in tolerance or not, worst clusters, waviness (``verdict.of_result``); of it verdict_judge and
+  verdict_waviness, which run side by side;
 - mesh: the samples as a coloured mesh, PLY (deviation.ply of every result);
 - ground_mesh: the whole part as one closed mesh with the deviation's colours, PLY;
 - report: the HTML report with its pictures and 3D view, from a result in memory to the file's bytes;
+- of it report_pictures, report_view (the 3D view's data, made beside the pictures) and report_page (text, tables,
+  charts; two of them are made, one without the view);
 - write, read: all files of the result, and back;
 - total: verdict, mesh and report, one after the other.
 """
@@ -29,7 +32,7 @@ from beltgrinding.engine import core
 from beltgrinding.inspection import closed_mesh, verdict
 from beltgrinding.job import workpiece
 from beltgrinding.job.tolerances import colour_scale
-from beltgrinding.reporting import report
+from beltgrinding.reporting import page, pictures, report, view, worst_spots
 from beltgrinding.reporting.language import Language
 from beltgrinding.simulation.result import Result
 from ground_plate import plate_job
@@ -49,11 +52,29 @@ def works(result, folder):
     def read():
         return Result.read(folder)
 
+    words, content, made = Language("en"), report.load(result), {}
+    spots = worst_spots.worst(result.field, scale[:2], content.verdict)
+
+    def drawn():
+        made["pictures"] = pictures.draw(result.field, scale, content.shape, spots)
+
+    def turned():
+        sides = {name: made["pictures"][name].view for name in ("front", "back")}
+        made["view"] = view.view(content, scale, spots, sides, words)
+
+    def paged():
+        return page.document(content, words, scale, spots, made["pictures"], made["view"])
+
     return {
         "verdict": lambda: verdict.of_result(result, shape),
+        "verdict_judge": lambda: verdict.judge(result.job, result.field),
+        "verdict_waviness": lambda: verdict.waviness(result.field, result.motions),
         "mesh": lambda: core.deviation_ply(result.field, *scale, True, "bench"),
         "ground_mesh": lambda: closed_mesh.ground_mesh(result).ply(scale),
         "report": reported,
+        "report_pictures": drawn,
+        "report_view": turned,
+        "report_page": paged,
         "write": lambda: result.write(folder),
         "read": read,
     }
@@ -81,6 +102,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         made = works(result, Path(folder) / "result")
         if arguments.profile:
+            if arguments.profile in ("report_view", "report_page"):
+                made["report_pictures"]()
+            if arguments.profile == "report_page":
+                made["report_view"]()
             with cProfile.Profile() as profile:
                 made[arguments.profile]()
             pstats.Stats(profile).sort_stats("cumulative").print_stats(60)

@@ -6,8 +6,10 @@ Writes Google Benchmark's JSON to BELTGRINDING_BENCH_OUT. Figures in ms, the med
 - first: the first simulation, from the button to the coloured mesh;
 - force, feed, tolerance: from the new value's assignment to the document's coloured mesh of the new result;
 - drawn: of these, until the 3D view has drawn it as well (without a graphics card the rasteriser's time);
+- _cpu: processor time of all threads until then; of a part that of its own thread, of the run that of all;
 - the parts of such a change, of the force: change (the document's recomputation), collect (the job's data),
-  the run's own phases, files (of the document), mesh, store, show, wait (for the window to look).
+  the run's own phases, files (of the document), mesh, store, show, wait (for the window to look); of store
+  and show, keep (FreeCAD takes the files) and colour (it takes mesh and colours).
 """
 
 import json
@@ -23,7 +25,7 @@ from PySide import QtCore, QtGui
 
 from beltgrinding.gui.panels import simulation_panel
 from beltgrinding.gui.common import runner
-from beltgrinding.objects import api, deviation, job_inputs, simulation
+from beltgrinding.objects import api, deviation, job_inputs, result_files, simulation
 
 CHANGES = int(os.environ.get("BELTGRINDING_CHANGES", "5"))  # of each value
 TARGET = 300.0  # ms that a change may take
@@ -34,8 +36,11 @@ PARTS = (  # name, where it is, function
     ("mesh", deviation, "prepare"),
     ("files", simulation, "files_of"),
     ("store", api, "store_result"),
+    ("keep", result_files, "store"),
     ("show", simulation_panel, "lay_deviation"),
+    ("colour", deviation, "show"),
 )
+INSIDE = ("keep", "colour")  # of other parts
 
 
 class Clock:
@@ -48,11 +53,13 @@ class Clock:
 
     def _timed(self, name, function):
         def timed(*arguments, **named):
-            begin = time.perf_counter()
+            used = time.process_time if name == "run" else time.thread_time
+            begin, before = time.perf_counter(), used()
             try:
                 return function(*arguments, **named)
             finally:
                 self.add(name, 1000.0 * (time.perf_counter() - begin))
+                self.add(f"{name}_cpu", 1000.0 * (used() - before))
 
         return timed
 
@@ -81,24 +88,29 @@ def draw():
 
 
 def change(clock, panel, assign):
-    """(ms until the mesh has its colours, ms until it is drawn, ms by part)."""
+    """(ms until the mesh has its colours, until it is drawn, processor time until the first, ms by part)."""
     job = panel.job
     clock.took = {}
     found = next(one for one in job.Document.Objects if one.Name.startswith("Deviation"))
     before = list(found.VertexColors) if hasattr(found, "VertexColors") else []
-    begin = time.perf_counter()
+    begin, before_it = time.perf_counter(), time.process_time()
     assign()
     job.Document.recompute()
     clock.add("change", 1000.0 * (time.perf_counter() - begin))
+    clock.add("change_cpu", 1000.0 * (time.process_time() - before_it))
     ended(panel)
     coloured = 1000.0 * (time.perf_counter() - begin)
+    used = 1000.0 * (time.process_time() - before_it)
     draw()
     drawn = 1000.0 * (time.perf_counter() - begin)
     assert list(found.VertexColors) != before, "the colours are those of before"
-    clock.add("wait", coloured - sum(clock.took.values()))
+    walls = (
+        ms for part, ms in clock.took.items() if part not in INSIDE and not part.endswith("_cpu")
+    )
+    clock.add("wait", coloured - sum(walls))
     for name, seconds in clock.phases.items():
         clock.add(f"run_{name}", 1000.0 * seconds)
-    return coloured, drawn, clock.took
+    return coloured, drawn, used, clock.took
 
 
 def main():
@@ -142,9 +154,10 @@ def main():
         took = [change(clock, panel, one) for one in changes]
         figures[name] = statistics.median(one[0] for one in took)
         figures[f"{name}_drawn"] = statistics.median(one[1] for one in took)
+        figures[f"{name}_cpu"] = statistics.median(one[2] for one in took)
         if name == "force":
-            for part in took[0][2]:
-                parts[part] = statistics.median(one[2].get(part, 0.0) for one in took)
+            for part in took[0][3]:
+                parts[part] = statistics.median(one[3].get(part, 0.0) for one in took)
     figures.update({f"part_{name}": ms for name, ms in parts.items()})
     for name, value in figures.items():
         print(f"rerun/{name:24} {value:10.1f} ms")

@@ -47,3 +47,41 @@ beltgrinding.simulate(job)
 assert simulation.Fingerprint and (simulation.Proxy.field(simulation).height == heights).all()
 """
     )
+
+
+def test_the_steps_of_a_recording_come_back_as_they_were(freecad):
+    freecad.run(
+        BLOCK
+        + """
+import tempfile
+import numpy as np
+from beltgrinding.engine import core
+from beltgrinding.objects import api, job_inputs, result_files, simulation as simulations
+from beltgrinding.simulation import run as runs
+
+doc = FreeCAD.newDocument("steps")
+job = make(block(doc))
+result = runs.run(job_inputs.to_data(job, tempfile.mkdtemp()), None, core.Recording())
+assert len(result.steps["time"]) > 10
+simulation = api.store_result(job, result, "x")
+
+def compare(simulation):
+    recording, steps = simulation.Proxy.recording(simulation)
+    assert recording.bytes > 0 and set(steps) == set(result.steps)
+    for name, values in result.steps.items():
+        assert (steps[name] == values).all() and steps[name].flags.writeable, name
+        assert steps[name].dtype == np.array(values.tolist()).dtype, name
+
+compare(simulation)
+doc.saveAs(str(Path("steps.FCStd").resolve()))
+FreeCAD.closeDocument(doc.Name)
+doc = FreeCAD.openDocument(str(Path("steps.FCStd").resolve()))
+simulation = next(o for o in doc.Objects if hasattr(o, "FileSums"))
+compare(simulation)
+
+# An older version wrote them as lists of numbers.
+older = {"steps": {name: values.tolist() for name, values in result.steps.items()}}
+result_files.store(simulation, {"Recording": result.recording.hdf5(json.dumps(older))})
+compare(simulation)
+"""
+    )

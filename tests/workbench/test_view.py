@@ -187,6 +187,25 @@ def large_field(count):
     return field, k
 
 
+@pytest.mark.parametrize(
+    "count, most", [(1, 1), (50, 7), (4000, 30_000), (4000, 40_000), (300, 2**60)]
+)
+def test_keys_are_numbered_as_sorting_numbers_them(count, most):
+    keys = np.random.default_rng(count).integers(0, most, count)
+    first, number = view_mesh._numbered(keys)
+    _, expected, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    assert (first == expected).all() and (number == inverse).all()
+
+
+@pytest.mark.parametrize("corners", [3, 40, 2**21, 2**21 + 1, 2**31])
+def test_proper_triangles_are_each_there_once(corners):
+    triangles = np.random.default_rng(3).integers(0, corners, (500, 3))
+    triangles[:10] = corners - 1 - np.arange(3)  # the largest numbers, many times
+    triangles = np.vstack([triangles, np.roll(triangles, 1, axis=1), triangles[:, [0, 1, 1]]])
+    found = {t[k:] + t[:k] for t in map(tuple, triangles.tolist()) for k in [t.index(min(t))] if len(set(t)) == 3}  # fmt: skip
+    assert [tuple(t) for t in view_mesh.proper_triangles(triangles).tolist()] == sorted(found)
+
+
 def test_a_million_samples_are_thinned_honestly(ground):
     field, deepest = large_field(1_000_000)
     assert field.size > 900_000
@@ -224,8 +243,8 @@ def test_no_result_makes_a_page_that_cannot_be_sent(ground, monkeypatch):
     made = view_data.data(content, colour_scale(result.job), [], SIDES, words)
     assert len(made.arrays) <= 150_000 and made.about["samples"] < field.size
     scale = colour_scale(result.job)
-    drawn = pictures.draw(result.field, scale, content.shape, [], near=False)
-    markup = views.view(content, scale, [], drawn, words).markup
+    drawn = pictures.draw(result.field, scale, content.shape, [], near=False, beside=dict)
+    markup = views.view(content, scale, [], drawn["beside"], words).markup
     nth = round(field.size / made.about["samples"])
     assert f"samples, every {words.ordinal(nth)} on average" in markup
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
 
 #include "base/threads.h"
 #include "beltgrinding/error.h"
@@ -170,6 +172,126 @@ TEST(Renderer, KnowsItsFarthestVertices) {
     const std::vector<Vec3> expected{{-2, -2, 1}, {2, 2, 1}, {-10, -10, 0}, {10, 10, 0}};
     EXPECT_EQ(renderer.farthest(ways), expected);
     EXPECT_TRUE(renderer.farthest({}).empty());
+}
+
+/// Triangles of all sizes and ways round, in no order, among them flat ones and slivers.
+ColouredSurface tangle(std::uint32_t count) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(-10.0, 10.0), size(-1.0, 1.0);
+    ColouredSurface surface;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3 middle(place(random), place(random), place(random));
+        const double reach = i % 10 == 0 ? 8.0 : 0.6;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const Vec3 away(size(random), size(random), i % 3 == 0 ? 0.0 : size(random));
+            surface.vertices.push_back(middle + reach * away);
+            surface.colours.push_back(std::uint32_t(random()) | 255U);
+        }
+        if (i % 7 == 0) surface.vertices.back() = surface.vertices[3 * std::size_t{i}];
+        surface.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return surface;
+}
+
+/// mm along the ray to each triangle that it meets; `sure`: none is met near its border.
+std::vector<double> distances(const ColouredSurface& surface, const Vec3& from, const Vec3& way,
+                              bool& sure) {
+    constexpr double kBorder = 1e-3;
+    std::vector<double> found;
+    for (const Triangle& t : surface.triangles) {
+        Eigen::Matrix3d sides;
+        sides << surface.vertices[t[1]] - surface.vertices[t[0]],
+            surface.vertices[t[2]] - surface.vertices[t[0]], -way;
+        if (std::abs(sides.determinant()) < 1e-12) continue;
+        const Vec3 at = sides.inverse() * (from - surface.vertices[t[0]]);
+        const double inside = std::min({at.x(), at.y(), 1.0 - at.x() - at.y()});
+        if (std::abs(inside) < kBorder) sure = false;
+        if (inside > 0.0) found.push_back(at.z());
+    }
+    return found;
+}
+
+TEST(Renderer, DrawsWhatEveryTriangleByItselfWouldShow) {
+    const ColouredSurface surface = tangle(400);
+    Camera camera{{1, -2, 0.5}, {0.3, 0.5, -1}, {0.1, 0.2, 1}, 24.0};
+    for (const double near : {std::numeric_limits<double>::infinity(), 3.0}) {
+        camera.near = near;
+        const Picture picture = Renderer({surface}).render(camera, 90, 70);
+        const Vec3 into = camera.direction.normalized();
+        const Vec3 right = into.cross(camera.up).normalized(), down = into.cross(right);
+        const double ray = camera.height / 140.0;
+        std::size_t compared = 0, met = 0;
+        for (std::size_t y = 0; y < 70; ++y) {
+            for (std::size_t x = 0; x < 90; ++x) {
+                double nearest = std::numeric_limits<double>::infinity();
+                bool sure = true;
+                for (int k = 0; k < 4; ++k) {
+                    const Vec3 from = camera.target +
+                                      ray * (2.0 * double(x) + 0.5 + k % 2 - 90.0) * right +
+                                      ray * (2.0 * double(y) + 0.5 + k / 2 - 70.0) * down;
+                    for (const double d : distances(surface, from, into, sure)) {
+                        if (std::abs(d + near) < 1e-3) sure = false;
+                        if (d >= -near) nearest = std::min(nearest, d);
+                    }
+                }
+                if (!sure) continue;
+                ++compared;
+                if (std::isinf(nearest)) {
+                    EXPECT_TRUE(std::isnan(depth(picture, x, y))) << x << " " << y;
+                } else {
+                    ++met;
+                    EXPECT_NEAR(depth(picture, x, y), nearest, 1e-4) << x << " " << y;
+                }
+            }
+        }
+        EXPECT_GT(compared, 3000U);
+        EXPECT_GT(met, 2000U);
+    }
+}
+
+TEST(Renderer, LeavesNoGapBetweenNeighbours) {
+    // A fan around a point on a ray, its spokes along rows and diagonals of rays: whoever meets an
+    // edge must be drawn, on whichever side.
+    ColouredSurface fan{{{0.05, 0.05, 0}}, {}, {}, {kRed}};
+    constexpr std::uint32_t kSpokes = 64;
+    for (std::uint32_t k = 0; k < kSpokes; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kSpokes;
+        fan.vertices.emplace_back(0.05 + 20 * std::cos(angle), 0.05 + 20 * std::sin(angle),
+                                  0.3 * (k % 2));
+        fan.triangles.push_back({0, 1 + k, 1 + (k + 1) % kSpokes});
+    }
+    const Picture picture = Renderer({fan}).render(kFromAbove, 100, 100);
+    for (std::size_t at = 0; at < picture.depth.size(); ++at)
+        ASSERT_FALSE(std::isnan(picture.depth[at])) << at;
+}
+
+TEST(Renderer, SeesWhatEveryTriangleByItselfWouldHide) {
+    const ColouredSurface surface = tangle(3000);
+    const ColouredSurface other = square(4.0, 1.0, 2.0, kBlue);
+    const Renderer renderer({surface, other});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-12.0, 12.0), part(-1.0, 1.0);
+    std::vector<Vec3> points, ways{{0, 0, 1}, {0, -3, 0}, {1, 0, 0}};
+    for (int k = 0; k < 60; ++k) points.emplace_back(place(random), place(random), place(random));
+    for (int k = 0; k < 20; ++k) ways.emplace_back(part(random), part(random), part(random));
+    const std::vector<std::uint8_t> seen = renderer.seen(points, ways, 0.25);
+    std::size_t compared = 0, hidden = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        for (std::size_t d = 0; d < ways.size(); ++d) {
+            bool sure = true, clear = true;
+            for (const ColouredSurface* one : {&surface, &other})
+                for (const double far : distances(*one, points[p], ways[d].normalized(), sure)) {
+                    if (std::abs(far - 0.25) < 1e-3) sure = false;
+                    if (far > 0.25) clear = false;
+                }
+            if (!sure && clear) continue;
+            ++compared;
+            if (!clear) ++hidden;
+            EXPECT_EQ(seen[p * ways.size() + d], clear ? 1 : 0) << p << " " << d;
+        }
+    }
+    EXPECT_GT(hidden, 200U);
+    EXPECT_GT(compared - hidden, 100U);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 """Pictures of a ground part without a display: front, back, and close-ups of the worst spots.
 
-Rays are cast by ``core.Renderer``; the colours are the deviation's. A view knows where every point of
+``core.Renderer`` draws them; the colours are the deviation's. A view knows where every point of
 the part is on the picture, so that marks and captions can be laid over it.
 """
 

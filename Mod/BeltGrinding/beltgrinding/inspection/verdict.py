@@ -40,9 +40,9 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
     zones = job["inspection"].get("zones", [])
     rest = job["inspection"]["tolerance_mm"]
     with ThreadPoolExecutor(1) as beside:  # each uses one processor, and holds up no other Python
-        waviness = beside.submit(_waviness, field, motions, context)
+        waves = beside.submit(waviness, field, motions, context)
         found = judge(job, field)
-        waves = {face["face"]: face for face in waviness.result()}
+        waves = {face["face"]: face for face in waves.result()}
     traced = field.trace is not None
 
     faces = []
@@ -320,7 +320,8 @@ def _empty(zone, spacing):
     )
 
 
-def _waviness(field, motions, context):
+def waviness(field, motions, context=None):
+    """What core.waviness says by ``motions``, as ``motions.of_paths`` gives them; None: not known."""
     ends, begins = np.zeros((0, 3)), np.zeros(0, dtype=bool)
     if motions is not None:
         ends, begins = motions["point"], motions["pose"] == 0

@@ -1,5 +1,6 @@
 """The result of a simulation in the document: the stored height field, the events, the figures."""
 
+import base64
 import json
 from pathlib import Path
 
@@ -82,7 +83,7 @@ class Simulation(Proxy):
             return None
         recording, attributes = core.Recording.from_hdf5_bytes(data, obj.Recording)
         steps = json.loads(attributes)["steps"]
-        return recording, {name: np.array(values) for name, values in steps.items()}
+        return recording, {name: _unpacked(values) for name, values in steps.items()}
 
     def motions(self, obj):
         """As ``beltgrinding.motions`` has them; None where an older version made the result."""
@@ -100,13 +101,26 @@ class Simulation(Proxy):
         return event_lists.complete(json.loads(obj.EventData or "[]"))
 
 
+def _packed(values):
+    """[kind, Base64] of an array (n,): as text, numbers take longer than all else of the file."""
+    kind = {"b": "|b1", "f": "<f8"}.get(values.dtype.kind, "<i8")
+    return [kind, base64.b64encode(values.astype(kind).tobytes()).decode()]
+
+
+def _unpacked(values):
+    """The array of ``_packed``, or of the list of numbers of an older version."""
+    if len(values) == 2 and isinstance(values[0], str):
+        return np.frombuffer(base64.b64decode(values[1]), np.dtype(values[0])).copy()
+    return np.array(values)
+
+
 def files_of(result):
     """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. Raises
     InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
     files = {"HeightField": result.field.hdf5(json.dumps(job))}
     if result.recording is not None:
-        steps = {name: values.tolist() for name, values in result.steps.items()}
+        steps = {name: _packed(values) for name, values in result.steps.items()}
         files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
     return result_files.Written(files)
 

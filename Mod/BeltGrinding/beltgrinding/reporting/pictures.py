@@ -1,5 +1,6 @@
 """The pictures of a report: the whole part from two sides, and its worst spots from near."""
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -19,36 +20,51 @@ class Shot(NamedTuple):
     marks: list
 
 
-def draw(field, scale, shape, spots, context=None, near=True):
-    """dict: ``front`` and ``back``, a ``Shot`` each; ``close``: list of those of ``spots``, if ``near``."""
+def draw(field, scale, shape, spots, context=None, near=True, beside=None):
+    """dict: ``front`` and ``back``, a ``Shot`` each; ``close``: list of those of ``spots``, if ``near``;
+    ``beside``: what ``beside`` returns for the ``View`` of front and back, meanwhile, in a thread of its own.
+    """
     colours = core.deviation_colours(field, *scale)
     studio = picture.Studio(field, colours, shape, context)
     slack = REACH * field.spacing
-    whole = {}
-    for name, view in zip(("front", "back"), studio.both(context)):
-        whole[name] = _shot(view, spots, slack)
-    close = []
-    for spot in spots if near else ():
-        view = studio.close_up(
-            np.array(spot["point"]), np.array(spot["normal"]), spot["extent"], context
-        )
-        x, y, _ = view.project([spot["point"]])[0]
-        close.append(Shot(view, _uri(view), [(spot["number"], x, y)]))
-    return {**whole, "close": close}
+    with ThreadPoolExecutor(1) as packing, ThreadPoolExecutor(
+        1
+    ) as other:  # one alone cannot use two processors
+        sides = dict(zip(("front", "back"), studio.both(context)))
+        made = other.submit(beside, sides) if beside is not None else None
+        whole = {
+            name: Shot(view, packing.submit(_uri, view), _marks(view, spots, slack))
+            for name, view in sides.items()
+        }
+        close = []
+        for spot in spots if near else ():
+            view = studio.close_up(
+                np.array(spot["point"]), np.array(spot["normal"]), spot["extent"], context
+            )
+            x, y, _ = view.project([spot["point"]])[0]
+            close.append(Shot(view, packing.submit(_uri, view), [(spot["number"], x, y)]))
+        return {
+            **{name: _packed(shot) for name, shot in whole.items()},
+            "close": [_packed(shot) for shot in close],
+            "beside": made.result() if made is not None else None,
+        }
 
 
-def _shot(view, spots, slack):
-    marks = []
-    if spots:
-        points = np.array([spot["point"] for spot in spots])
-        # What faces away lies on the other side, even where a thin part hides it by less than that.
-        facing = np.array([spot["normal"] for spot in spots]) @ view.direction < 0.05
-        seen = view.shows(points, slack) & facing
-        places = view.project(points)
-        marks = [
-            (spot["number"], *place[:2]) for spot, place, there in zip(spots, places, seen) if there
-        ]
-    return Shot(view, _uri(view), marks)
+def _packed(shot):
+    return shot._replace(uri=shot.uri.result())
+
+
+def _marks(view, spots, slack):
+    if not spots:
+        return []
+    points = np.array([spot["point"] for spot in spots])
+    # What faces away lies on the other side, even where a thin part hides it by less than that.
+    facing = np.array([spot["normal"] for spot in spots]) @ view.direction < 0.05
+    seen = view.shows(points, slack) & facing
+    places = view.project(points)
+    return [
+        (spot["number"], *place[:2]) for spot, place, there in zip(spots, places, seen) if there
+    ]
 
 
 def _uri(view):

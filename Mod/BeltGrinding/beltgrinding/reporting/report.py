@@ -115,13 +115,17 @@ def render(content, words, context=None, turning=True, still=True):
     result = content.result
     scale = colour_scale(result.job)
     found = worst_spots.worst(result.field, scale[:2], content.verdict)
-    drawn = pictures.draw(result.field, scale, content.shape, found, context)
+    lacking = view.missing(words) if turning else None
+
+    def turned(sides):
+        return view.view(content, scale, found, sides, words, context)
+
+    beside = turned if turning and lacking is None else None
+    drawn = pictures.draw(result.field, scale, content.shape, found, context, beside=beside)
     plain = page.document(content, words, scale, found, drawn) if still or not turning else None
     if not turning:
         return plain, plain
-    lacking = view.missing(words)
-    shown = view.view(content, scale, found, drawn, words, context) if lacking is None else None
-    return plain, page.document(content, words, scale, found, drawn, shown, lacking)
+    return plain, page.document(content, words, scale, found, drawn, drawn["beside"], lacking)
 
 
 def _printer():

@@ -32,12 +32,12 @@ class View(NamedTuple):
     style: str
 
 
-def view(content, scale, spots, drawn, words, context=None, alone=False):
-    """The ``View`` of a report's ``Content``, from the sides of the pictures ``drawn``; ``alone``: it fills the page. Raises InputError without
-    three.js, and Cancelled.
+def view(content, scale, spots, sides, words, context=None, alone=False):
+    """The ``View`` of a report's ``Content``, from the directions of ``sides``, the ``picture.View`` of front
+    and back; ``alone``: it fills the page. Raises InputError without three.js, and Cancelled.
     """
     library = view_library.library()
-    sides = [drawn[key].view.direction for key in ("front", "back")]
+    sides = [sides[key].direction for key in ("front", "back")]
     data = view_data.data(content, scale, spots, sides, words, context)
     about = {**data.about, "texts": _texts(words), "alone": alone}
     folder = resources() / "report"

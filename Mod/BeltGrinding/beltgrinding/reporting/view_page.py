@@ -29,9 +29,13 @@ def view(result, output=None, language="en", title=None, context=None):
     scale = colour_scale(content.result.job)
     spots = worst_spots.worst(content.result.field, scale[:2], content.verdict)
     view_library.library()  # without it nothing need be drawn
-    drawn = pictures.draw(content.result.field, scale, content.shape, spots, context, near=False)
-    shown = views.view(content, scale, spots, drawn, words, context, alone=True)
-    html = _document(content, words, scale, shown, drawn)
+
+    def turned(sides):
+        return views.view(content, scale, spots, sides, words, context, alone=True)
+
+    field, shape = content.result.field, content.shape
+    drawn = pictures.draw(field, scale, shape, spots, context, near=False, beside=turned)
+    html = _document(content, words, scale, drawn["beside"], drawn)
     context.throw_if_cancelled()
     report.write(content.result, {output: html.encode()})
     return output

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 #include "beltgrinding/deviation.h"
@@ -7,20 +9,23 @@
 
 namespace beltgrinding {
 
+/// Where a file goes: gives memory for so many bytes, all of which are then written.
+using FileMemory = std::function<char*(std::size_t)>;
+
 /// Binary STL.
-std::string mesh_stl(const GroundMesh& mesh);
+void mesh_stl(const GroundMesh& mesh, const FileMemory& memory);
 /// Binary PLY; with a scale also the vertices' colours (red green blue alpha) and the float
 /// property `deviation` (mm; NaN where not ground).
-std::string mesh_ply(const GroundMesh& mesh, const ColourScale* scale);
+void mesh_ply(const GroundMesh& mesh, const ColourScale* scale, const FileMemory& memory);
 
 /// Binary PLY of the samples' tops (`ground` true) or of the design points, with triangles, vertex
 /// colours (red green blue alpha) and the float property `deviation` (mm; NaN where missed). `run`,
 /// one word or none, is told in its comment.
-std::string deviation_ply(const HeightField& field, const ColourScale& scale, bool ground,
-                          const std::string& run = "");
+void deviation_ply(const HeightField& field, const ColourScale& scale, bool ground,
+                   const std::string& run, const FileMemory& memory);
 
 /// Binary PLY with nothing but vertices and triangles, as FreeCAD's Mesh reads it fastest; vertex i
 /// is sample i.
-std::string mesh_ply(const HeightField& field, bool ground);
+void mesh_ply(const HeightField& field, bool ground, const FileMemory& memory);
 
 }  // namespace beltgrinding

@@ -37,7 +37,7 @@ struct Picture {
     std::vector<float> depth;  ///< mm beyond the target's plane in the pixel's middle; NaN: nothing
 };
 
-/// Pictures of surfaces by ray casting (Embree), without a display: two-sided Lambert light from
+/// Pictures of surfaces by a rasteriser of our own, without a display: two-sided Lambert light from
 /// the camera's upper left with an ambient share, four rays a pixel, outlines drawn where the depth
 /// jumps or the surface has a crease. The pixels do not depend on the number of threads.
 class Renderer {

@@ -1,0 +1,203 @@
+#include "rasteriser.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/large_memory.h"
+#include "base/parallel.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr std::size_t kVerticesOfTask = 1U << 15U;
+constexpr std::size_t kTrianglesOfTask = 1U << 16U;
+constexpr float kNarrow = 4.0F;  // columns, up to which all rays of a row are tried
+
+/// A triangle's edge, seen from its third corner's side: a ray's signed distance from it, times
+/// its length. Its ends are put in order first, so that both neighbours find the same number for
+/// a ray, to the bit, and no ray slips through between them.
+class Edge {
+  public:
+    Edge(double px, double py, double qx, double qy) {
+        const bool turned = qx < px || (qx == px && qy < py);
+        x_ = turned ? qx : px;
+        y_ = turned ? qy : py;
+        dx_ = turned ? px - qx : qx - px;
+        dy_ = turned ? py - qy : qy - py;
+        sign_ = turned ? -1.0 : 1.0;
+    }
+    void turn() { sign_ = -sign_; }
+    /// Readies it for a row.
+    void at_row(double y) { row_ = dx_ * (y - y_); }
+    double at(double x) const { return sign_ * (row_ - dy_ * (x - x_)); }
+    /// Narrows the row's columns [from, to] to about those on the inner side.
+    void narrow(double& from, double& to) const {
+        const double slope = sign_ * dy_;
+        if (slope == 0.0) return;
+        const double x = x_ + row_ / dy_;
+        if (slope > 0.0) {
+            to = std::min(to, x + 1.0);
+        } else {
+            from = std::max(from, x - 1.0);
+        }
+    }
+
+  private:
+    double x_, y_, dx_, dy_, sign_, row_ = 0.0;
+};
+
+std::uint32_t number_of(std::span<const std::uint32_t> first, std::uint32_t triangle) {
+    std::uint32_t mesh = 0;
+    while (triangle >= first[mesh + 1]) ++mesh;
+    return mesh;
+}
+
+}  // namespace
+
+void Rasteriser::lay_out(std::span<const Mesh> meshes, const RayGrid& grid, std::uint32_t band,
+                         const RunContext& context) {
+    grid_ = grid;
+    band_ = band;
+    bands_ = (grid.rows - 1 + band - 1) / band;
+    meshes_.clear();
+    first_.assign(1, 0);
+    first_corner_.clear();
+    for (const Mesh& mesh : meshes) {
+        meshes_.push_back(mesh.triangles);
+        first_.push_back(first_.back() + static_cast<std::uint32_t>(mesh.triangles.size()));
+    }
+    project(meshes, context);
+    sort_into_bands(context);
+}
+
+void Rasteriser::project(std::span<const Mesh> meshes, const RunContext& context) {
+    std::size_t count = 0;
+    for (const Mesh& mesh : meshes) {
+        first_corner_.push_back(static_cast<std::uint32_t>(count));
+        count += mesh.vertices.size();
+    }
+    resize_large(corners_, count);
+    const Vec3 right = grid_.right / grid_.right.squaredNorm();
+    const Vec3 down = grid_.down / grid_.down.squaredNorm();
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+        const std::span<const Vec3> vertices = meshes[k].vertices;
+        Corner* to = corners_.data() + first_corner_[k];
+        parallel_blocks(
+            vertices.size(), kVerticesOfTask, context, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const Vec3 p = vertices[i] - grid_.corner;
+                    to[i] = {static_cast<float>(p.dot(right)), static_cast<float>(p.dot(down)),
+                             static_cast<float>(p.dot(grid_.into))};
+                }
+            });
+    }
+}
+
+void Rasteriser::sort_into_bands(const RunContext& context) {
+    const std::size_t count = first_.back();
+    const std::size_t tasks = (count + kTrianglesOfTask - 1) / kTrianglesOfTask;
+    resize_large(reached_, count);
+    std::vector<std::size_t> counted(tasks * bands_, 0);  // by task and band
+    const auto last_column = static_cast<float>(grid_.columns - 1);
+    const auto last_row = static_cast<float>(grid_.rows - 1);
+    const auto nearest = static_cast<float>(-grid_.start);
+    parallel_blocks(count, kTrianglesOfTask, context, [&](std::size_t begin, std::size_t end) {
+        std::size_t* found = counted.data() + begin / kTrianglesOfTask * bands_;
+        std::uint32_t mesh = number_of(first_, static_cast<std::uint32_t>(begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            while (i >= first_[mesh + 1]) ++mesh;
+            const Triangle& t = meshes_[mesh][i - first_[mesh]];
+            const Corner* corners = corners_.data() + first_corner_[mesh];
+            const Corner &a = corners[t[0]], &b = corners[t[1]], &c = corners[t[2]];
+            const float left = std::max(std::min({a.x, b.x, c.x}), 0.0F);
+            const float right = std::min(std::max({a.x, b.x, c.x}), last_column);
+            const float top = std::max(std::min({a.y, b.y, c.y}), 0.0F);
+            const float bottom = std::min(std::max({a.y, b.y, c.y}), last_row);
+            // Of dense samples many lie between two rays.
+            if (!(std::ceil(left) <= std::floor(right)) ||
+                !(std::ceil(top) <= std::floor(bottom)) ||
+                std::max({a.depth, b.depth, c.depth}) < nearest) {
+                reached_[i] = {0, 0};
+                continue;
+            }
+            const auto upper = static_cast<std::uint32_t>(std::ceil(top));
+            const auto lower = static_cast<std::uint32_t>(std::floor(bottom));
+            const std::uint32_t from = upper == 0 ? 0 : (upper - 1) / band_;
+            const std::uint32_t to = std::min(lower / band_, bands_ - 1) + 1;
+            reached_[i] = {static_cast<std::uint16_t>(from), static_cast<std::uint16_t>(to)};
+            for (std::uint32_t b_ = from; b_ < to; ++b_) ++found[b_];
+        }
+    });
+    begin_.resize(bands_ + 1);
+    std::size_t so_far = 0;
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+        begin_[b] = so_far;
+        for (std::size_t t = 0; t < tasks; ++t) {
+            const std::size_t here = counted[t * bands_ + b];
+            counted[t * bands_ + b] = so_far;
+            so_far += here;
+        }
+    }
+    begin_[bands_] = so_far;
+    resize_large(order_, so_far);
+    parallel_blocks(count, kTrianglesOfTask, context, [&](std::size_t begin, std::size_t end) {
+        std::size_t* next = counted.data() + begin / kTrianglesOfTask * bands_;
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::uint32_t b = reached_[i].from; b < reached_[i].to; ++b)
+                order_[next[b]++] = static_cast<std::uint32_t>(i);
+        }
+    });
+}
+
+void Rasteriser::rasterise(std::uint32_t b, std::span<RayHit> hits) const {
+    std::fill(hits.begin(), hits.end(), RayHit{});
+    for (std::size_t k = begin_[b]; k < begin_[b + 1]; ++k) draw(order_[k], b * band_, hits);
+}
+
+void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
+                      std::span<RayHit> hits) const {
+    const std::uint32_t mesh = number_of(first_, triangle);
+    const Triangle& t = meshes_[mesh][triangle - first_[mesh]];
+    const Corner* corners = corners_.data() + first_corner_[mesh];
+    const Corner &a = corners[t[0]], &b = corners[t[1]], &c = corners[t[2]];
+    const double ax = a.x, ay = a.y, bx = b.x, by = b.y, cx = c.x, cy = c.y;
+    const double twice_area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+    if (twice_area == 0.0) return;
+    std::array<Edge, 3> edges{Edge(bx, by, cx, cy), Edge(cx, cy, ax, ay), Edge(ax, ay, bx, by)};
+    if (twice_area < 0.0) {
+        for (Edge& edge : edges) edge.turn();
+    }
+    const auto last_column = static_cast<float>(grid_.columns - 1);
+    const float left = std::ceil(std::max(std::min({a.x, b.x, c.x}), 0.0F));
+    const float right = std::floor(std::min(std::max({a.x, b.x, c.x}), last_column));
+    const auto from_row = static_cast<float>(first_row);
+    const float to_row =
+        std::min(static_cast<float>(first_row + band_), static_cast<float>(grid_.rows - 1));
+    const float top = std::ceil(std::max(std::min({a.y, b.y, c.y}), from_row));
+    const float bottom = std::floor(std::min(std::max({a.y, b.y, c.y}), to_row));
+    const double depth = a.depth, to_b = static_cast<double>(b.depth) - depth,
+                 to_c = static_cast<double>(c.depth) - depth;
+    for (float y = top; y <= bottom; y += 1.0F) {
+        double from = left, to = right;
+        for (Edge& edge : edges) {
+            edge.at_row(y);
+            if (right - left > kNarrow) edge.narrow(from, to);
+        }
+        if (!(from <= to)) continue;
+        RayHit* row = hits.data() + static_cast<std::size_t>(y - from_row) * grid_.columns;
+        const auto last = static_cast<std::uint32_t>(to);
+        for (auto x = static_cast<std::uint32_t>(std::ceil(from)); x <= last; ++x) {
+            const double wa = edges[0].at(x), wb = edges[1].at(x), wc = edges[2].at(x);
+            if (wa < 0.0 || wb < 0.0 || wc < 0.0) continue;
+            const double whole = wa + wb + wc;
+            if (!(whole > 0.0)) continue;
+            const double u = wb / whole, v = wc / whole;
+            const auto there = static_cast<float>(depth + u * to_b + v * to_c);
+            if (there < row[x].depth && there >= static_cast<float>(-grid_.start))
+                row[x] = {there, triangle, static_cast<float>(u), static_cast<float>(v)};
+        }
+    }
+}
+
+}  // namespace beltgrinding

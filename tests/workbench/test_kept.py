@@ -351,7 +351,7 @@ def warm(folder):
 
 # What the two jobs together prepare.
 STAGES = ("design", "warnings", "look", "contact", "field", "stock", "triangles", "body", "reach")
-STAGES += ("collisions",)
+STAGES += ("collisions", "grinding")
 
 
 def changed(name, key, value, folder):

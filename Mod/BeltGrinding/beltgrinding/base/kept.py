@@ -89,8 +89,8 @@ class Kept:
         counted = self.hits if reused else self.made
         with self._lock:
             counted[stage] = counted.get(stage, 0) + 1
-            if size <= LARGEST * self.most:
-                self._put((stage, digest), value, size)
+        if size <= LARGEST * self.most:
+            self._put((stage, digest), value, size)
 
     def _put(self, key, value, taken):
         with self._lock:

@@ -85,7 +85,8 @@ class Kept:
 
     def put(self, stage, digest, value, size, reused):
         """Keeps a value of ``size`` bytes that is no stage as a whole, in place of the one before, unless it would take
-        more than ``LARGEST`` of all. ``reused``: some of it was taken from that; counts as a hit."""
+        more than ``LARGEST`` of all. ``reused``: some of it was taken from that; counts as a hit.
+        """
         counted = self.hits if reused else self.made
         with self._lock:
             counted[stage] = counted.get(stage, 0) + 1

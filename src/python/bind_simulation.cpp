@@ -323,9 +323,8 @@ void bind_simulation(py::module_& m) {
                             "States of a simulation on its way, from which one along a path that "
                             "begins the same goes on; see simulation/checkpoints.h.")
         .def(py::init<std::size_t>(), py::arg("max_bytes"), "max_bytes: of all.")
-        .def(
-            "copy", [](const Checkpoints& from) { return from; },
-            "Another with the same states, which both share.")
+        .def("within", &Checkpoints::within, py::arg("max_bytes"),
+             "Others with the same states, which both share, as many as max_bytes hold.")
         .def("__len__", &Checkpoints::count)
         .def("steps", &Checkpoints::steps, "Planned steps before each.")
         .def_property_readonly("bytes", &Checkpoints::bytes);

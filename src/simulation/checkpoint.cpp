@@ -95,6 +95,13 @@ std::size_t Checkpoints::bytes() const {
     return bytes;
 }
 
+Checkpoints Checkpoints::within(std::size_t max_bytes) const {
+    Checkpoints others = *this;
+    others.max_bytes_ = max_bytes;
+    others.thin();
+    return others;
+}
+
 void Checkpoints::clear() {
     kept_.clear();
     end_ = 0;

@@ -450,8 +450,9 @@ PLACES = {  # (program, its pose): whether steps before it are taken from the ru
 }
 
 
-@pytest.mark.parametrize("timing", ["constant_feed", "trapezoidal"])
-@pytest.mark.parametrize("control", ["force", "position"])
+@pytest.mark.parametrize(
+    "control, timing", [("force", "constant_feed"), ("position", "trapezoidal")]
+)
 @pytest.mark.parametrize("edit", EDITS)
 def test_an_edited_program_goes_on_from_where_it_is_the_same(edit, control, timing, folder):
     def made(change=lambda job: None):
@@ -477,6 +478,47 @@ def test_an_edited_program_goes_on_from_where_it_is_the_same(edit, control, timi
         # A pose in the middle of a line may go, and under position control forces are not met.
         if edit in ("feed", "place") or (edit, control) == ("force", "force"):
             assert (quick[HEIGHTS] != before[HEIGHTS]) != idle, (program, at)
+
+
+def half_space(job):
+    job["belt_machine"]["compliance"] = {"model": "half_space"}
+    job["belt_machine"]["wheel"]["profile_mm"] = [[-4.0, 0.2], [0.0, 0.0], [4.0, 0.1]]
+
+
+def springy_robot(job):
+    machine = job["belt_machine"]
+    machine.update(control="position", robot_stiffness_N_per_mm=60.0, wheel_density_kg_m3=1100.0)
+
+
+def slow_force(job):
+    dynamics = {"model": "actuator", "lag_s": 0.05, "moving_mass_kg": 2.0}
+    job["belt_machine"]["force_dynamics"] = {**dynamics, "damping_N_s_per_mm": 0.4}
+
+
+def dense_edges(job):
+    job["sampling"].update(precision_mm=0.2, edge_spacing_mm=0.5)
+    job["stock"] = {"kind": "mesh", "file": str(job.pop("folder") / "stock.ply")}
+
+
+@pytest.mark.parametrize("variant", [half_space, springy_robot, slow_force, dense_edges])
+def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(variant, folder):
+    def made(at=None):
+        job = raster_job(folder)
+        if variant is dense_edges:
+            job["folder"] = folder
+        variant(job)
+        if at is not None:
+            program, k = at
+            job["programs"][program]["poses"][k].update(feed_mm_s=31.0, z_mm=0.06)
+        return job
+
+    with kept.instead(kept.Kept()) as stages:
+        outcome(made())
+        found = {at: outcome(made(at)) for at in ((0, 7), (0, 12), (1, 4))}
+        assert stages.hits["grinding"] == len(found)
+    for at, quick in found.items():
+        with kept.instead(kept.Kept(0)):
+            assert outcome(made(at)) == quick, at
 
 
 def test_a_program_that_ends_sooner_leaves_another_part_to_the_next(folder):

@@ -323,6 +323,14 @@ TEST(Checkpoints, NeighboursBecomeOneWhereTheyWouldTakeTooMuch) {
     EXPECT_LT(fewer.count(), kept.count());
     EXPECT_LE(fewer.bytes(), some);
     expect_the_same_from_checkpoints(s, some);
+    Checkpoints few = kept.within(some);
+    EXPECT_LE(few.bytes(), some);
+    EXPECT_EQ(kept.within(kPlenty).count(), kept.count());
+    std::vector<PathPose> changed = passes();
+    changed[20].feed += 1.0;
+    const Ground quick = run(s, changed, &few);
+    EXPECT_GT(quick.resumed, 0u);
+    EXPECT_TRUE(quick.outcome == run(s, changed, nullptr).outcome);
     Checkpoints none(100);
     run(s, passes(), &none);
     EXPECT_EQ(none.count(), 0u);

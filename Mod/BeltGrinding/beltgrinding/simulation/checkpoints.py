@@ -13,6 +13,7 @@ from ..engine import core
 STAGE = "grinding"
 SHARE = 0.5  # of the most that one kept value may take: the old states and the new ones together take that
 OF_FIELD = ("points", "normals", "rays", "areas", "stock_height", "height", "faces", "flags")
+OF_FIELD += ("triangles",)  # which say what a sample on a border stands for
 
 
 class RunCheckpoints:
@@ -36,9 +37,8 @@ class RunCheckpoints:
         at = len(self._programs)
         # A program begins as it did if all before it did and ended the same.
         same = self._same and at < len(self._before)
-        self._programs.append(
-            self._before[at].copy() if same else core.Checkpoints(int(self._most))
-        )
+        most = int(self._most)
+        self._programs.append(self._before[at].within(most) if same else core.Checkpoints(most))
         return self._programs[-1]
 
     def ended(self, result):

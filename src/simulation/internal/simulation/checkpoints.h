@@ -30,7 +30,8 @@ class Checkpoints {
     /// Planned steps before each, rising.
     std::vector<std::size_t> steps() const;
     std::size_t bytes() const;
-    std::size_t max_bytes() const { return max_bytes_; }
+    /// Others with the same states, as many as `max_bytes` hold.
+    Checkpoints within(std::size_t max_bytes) const;
     /// Forgets all.
     void clear();
 

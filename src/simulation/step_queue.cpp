@@ -67,7 +67,7 @@ bool StepQueue::follow(const std::vector<Seen>& seen) {
 
 void StepQueue::begin_at(std::size_t planned) {
     left_.resize(planned_ - planned);
-    begun_ = planned;
+    begun_ = from_ = planned;
 }
 
 void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
@@ -78,7 +78,8 @@ void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
 }
 
 double StepQueue::progress() const {
-    return begun_ > 0 ? static_cast<double>(begun_ - 1) / static_cast<double>(planned_) : 0.0;
+    if (begun_ == from_) return 0.0;
+    return static_cast<double>(begun_ - 1 - from_) / static_cast<double>(planned_ - from_);
 }
 
 }  // namespace beltgrinding

@@ -36,7 +36,7 @@ class StepQueue {
     /// Puts `parts` smaller steps, or as many as may be, in the step's place; `next` gives the
     /// first.
     void cut(double parts);
-    /// Share of the planned steps that are done.
+    /// Share of the planned steps, from where it began, that are done.
     double progress() const;
 
     /// A step that has had its turn.
@@ -79,7 +79,7 @@ class StepQueue {
     const ToolPath& path_;
     std::vector<Item> left_;  // the next one last
     Item now_;
-    std::size_t planned_ = 0, begun_ = 0;
+    std::size_t planned_ = 0, begun_ = 0, from_ = 0;
     bool keeps_ = false;
     std::vector<Seen> seen_;
 };

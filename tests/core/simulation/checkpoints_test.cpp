@@ -44,6 +44,7 @@ struct Setting {
     TimeLaw time;
     bool records = false;
     std::size_t recorded_bytes = Recording::kMaxBytes;
+    double tilt = 0.0;  // rad, of the wheel about its way
 
     /// A rim takes seconds to be solved: one for all runs of a setting.
     const ContactModel& model() const {
@@ -69,8 +70,8 @@ Setting setting() {
     return s;
 }
 
-/// Passes along x, lifted between, across the plate's sides as well.
-std::vector<PathPose> passes() {
+/// Passes along x, lifted between, across the plate's sides as well. `tilt`: as of a Setting.
+std::vector<PathPose> passes(double tilt = 0.0) {
     std::vector<PathPose> poses;
     for (int k = 0; k < 6; ++k) {
         const double y = 3.0 + 3.5 * k, turn = 0.1 * (k % 3);
@@ -84,6 +85,7 @@ std::vector<PathPose> passes() {
         poses.back().rapid = k % 3 != 1;
         if (k == 3) poses.back().force = 0.0;
     }
+    for (PathPose& pose : poses) pose.base_from_tcp.rotate(Eigen::AngleAxisd(tilt, Vec3::UnitX()));
     return poses;
 }
 
@@ -137,6 +139,7 @@ struct Ground {
     Outcome outcome;
     std::size_t steps, resumed;
     bool unchanged;
+    std::vector<std::string> events;  // kinds of them
 };
 
 Ground run(const Setting& s, const std::vector<PathPose>& poses, Checkpoints* checkpoints) {
@@ -147,8 +150,13 @@ Ground run(const Setting& s, const std::vector<PathPose>& poses, Checkpoints* ch
     options.outputs.checkpoints = checkpoints;
     const SimulationResult result =
         simulate(field, ToolPath(poses, {}, s.time), s.model(), LocalLaw({s.coefficient}), options);
-    return {Outcome(result, field, s.records ? &recording : nullptr), result.steps.size(),
-            result.resumed, result.unchanged};
+    Ground ground{Outcome(result, field, s.records ? &recording : nullptr),
+                  result.steps.size(),
+                  result.resumed,
+                  result.unchanged,
+                  {}};
+    for (const Event& event : result.events) ground.events.push_back(event.kind);
+    return ground;
 }
 
 using Change = std::function<void(std::vector<PathPose>&, std::size_t)>;
@@ -171,7 +179,7 @@ const std::vector<std::pair<const char*, Change>> kChanges = {
 
 /// Changes everywhere, from the same checkpoints each, and from those of the change before.
 void expect_the_same_from_checkpoints(const Setting& s, std::size_t bytes = kPlenty) {
-    const std::vector<PathPose> poses = passes();
+    const std::vector<PathPose> poses = passes(s.tilt);
     Checkpoints kept(bytes);
     const Ground whole = run(s, poses, nullptr);
     const Ground first = run(s, poses, &kept);
@@ -209,6 +217,14 @@ void expect_the_same_from_checkpoints(const Setting& s, std::size_t bytes = kPle
 
 TEST(Checkpoints, ForceControl) {
     expect_the_same_from_checkpoints(setting());
+}
+
+TEST(Checkpoints, EdgesThatPressInEachPass) {
+    Setting s = setting();
+    s.tilt = 0.06;
+    const std::vector<std::string> events = run(s, passes(s.tilt), nullptr).events;
+    EXPECT_GT(std::count(events.begin(), events.end(), "edge_contact"), 2);
+    expect_the_same_from_checkpoints(s);
 }
 
 TEST(Checkpoints, PositionControlOfARigidAndOfASpringyRobot) {
@@ -403,6 +419,7 @@ TEST(Checkpoints, AreSoundAfterACancel) {
     const CancellingLaw law({s.coefficient}, context, 60);
     EXPECT_THROW(simulate(field, ToolPath(poses, {}), s.model(), law, options, context), Cancelled);
     EXPECT_EQ(field.height, s.field().height);
+    EXPECT_LT(context.progress(), 0.3);  // of what there was left to do
     EXPECT_GT(kept.count(), 0u);
     const Ground after = run(s, poses, &kept);
     EXPECT_GT(after.resumed, after.steps / 2);

@@ -9,9 +9,9 @@ Event* EventLog::note(const std::string& code, std::size_t index, const PathStep
                       double value, int part, double badness) {
     const EventKind& kind = event_kind(code);
     if (std::isnan(badness)) badness = kind.larger_is_worse ? value : -value;
-    const auto found = open_.find({code, part});
-    if (found != open_.end() && index <= found->second.last_step + pause_) {
-        Event& event = events_[found->second.event];
+    const auto found = state_.open.find({code, part});
+    if (found != state_.open.end() && index <= found->second.last_step + pause_) {
+        Event& event = state_.events[found->second.event];
         event.duration = step.time + 0.5 * step.duration - event.time;
         found->second.last_step = index;
         if (!(badness > found->second.badness)) return nullptr;
@@ -30,16 +30,16 @@ Event* EventLog::note(const std::string& code, std::size_t index, const PathStep
     event.duration = step.duration;
     event.worst_time = step.time;
     event.value = value;
-    open_[{code, part}] = {events_.size(), index, badness};
-    events_.push_back(event);
-    return &events_.back();
+    state_.open[{code, part}] = {state_.events.size(), index, badness};
+    state_.events.push_back(event);
+    return &state_.events.back();
 }
 
 std::vector<Event> EventLog::take() {
-    std::stable_sort(events_.begin(), events_.end(),
+    std::stable_sort(state_.events.begin(), state_.events.end(),
                      [](const Event& a, const Event& b) { return a.time < b.time; });
-    open_.clear();
-    return std::move(events_);
+    state_.open.clear();
+    return std::move(state_.events);
 }
 
 }  // namespace beltgrinding

@@ -123,14 +123,25 @@ void SampleBlocks::lower(std::size_t position, double depth) {
 void SampleBlocks::note(std::uint32_t number, std::uint64_t lanes) {
     if (changed_[number] == 0 && lanes != 0) changes_.push_back({number, 0});
     changed_[number] |= lanes;
-    Bound& bound = bounds_[number];
+    const Bound& bound = bounds_[number];
     if (!(bound.lowest < bound.bottom)) return;
     // Below what the tree knows: rare, and again only after as much as the segments are deep.
-    bound.bottom = bound.lowest - static_cast<float>(field_.depth);
-    for (const std::uint32_t s : tree_.leaf(number)) {
-        tree_.extend(number, field_.point[s] +
-                                 static_cast<double>(bound.bottom) * field_.ray(s).cast<double>());
+    deepen({number, bound.lowest - static_cast<float>(field_.depth)});
+}
+
+void SampleBlocks::deepen(const Deepened& to) {
+    bounds_[to.block].bottom = to.bottom;
+    deepened_.push_back(to);
+    for (const std::uint32_t s : tree_.leaf(to.block)) {
+        tree_.extend(to.block, field_.point[s] +
+                                   static_cast<double>(to.bottom) * field_.ray(s).cast<double>());
     }
+}
+
+void SampleBlocks::restore(const Ground& ground) {
+    blocks_[ground.block].height = ground.height;
+    bounds_[ground.block].lowest = ground.lowest;
+    bounds_[ground.block].highest = ground.highest;
 }
 
 std::span<const SampleBlocks::Change> SampleBlocks::changes() {
@@ -154,6 +165,12 @@ std::vector<double> SampleBlocks::heights() const {
 std::size_t SampleBlocks::bytes() const {
     return tree_.bytes() + blocks_.capacity() * sizeof(Block) + bounds_.capacity() * sizeof(Bound) +
            changed_.capacity() * sizeof(std::uint64_t);
+}
+
+std::vector<std::uint32_t> BlockSet::take() {
+    std::sort(all_.begin(), all_.end());
+    for (const std::uint32_t block : all_) has_[block] = 0;
+    return std::exchange(all_, {});
 }
 
 void NearBlocks::find(const SampleBlocks& blocks, const WheelReach& reach,

@@ -5,6 +5,7 @@
 #include "beltgrinding/simulation.h"
 #include "beltgrinding/tool_path.h"
 #include "dict.h"
+#include "simulation/checkpoints.h"
 #include "simulation/recording.h"
 
 namespace beltgrinding::python {
@@ -173,6 +174,8 @@ py::dict to_dict(const SimulationResult& result) {
     d["integrated_rate"] = result.integrated_rate;
     d["lost_volume"] = result.lost_volume();
     d["wall"] = wall;
+    d["resumed"] = result.resumed;
+    d["unchanged"] = result.unchanged;
     return d;
 }
 
@@ -316,13 +319,23 @@ void bind_simulation(py::module_& m) {
             return wear_from(wear).remaining(belt_from(belt));
         },
         py::arg("wear"), py::arg("belt"), "k_t, the share of a fresh belt's cut that remains.");
+    py::class_<Checkpoints>(m, "Checkpoints",
+                            "States of a simulation on its way, from which one along a path that "
+                            "begins the same goes on; see simulation/checkpoints.h.")
+        .def(py::init<std::size_t>(), py::arg("max_bytes"), "max_bytes: of all.")
+        .def("within", &Checkpoints::within, py::arg("max_bytes"),
+             "Others with the same states, which both share, as many as max_bytes hold.")
+        .def("__len__", &Checkpoints::count)
+        .def("steps", &Checkpoints::steps, "Planned steps before each.")
+        .def_property_readonly("bytes", &Checkpoints::bytes);
     m.def(
         "simulate",
         [](HeightField& field, const ToolPath& path, const py::dict& wheel,
            const py::dict& compliance, const py::dict& law, const py::dict& options,
-           const RunContext* context, Recording* recording) {
+           const RunContext* context, Recording* recording, Checkpoints* checkpoints) {
             SimulationOptions o = options_from(wheel, options);
             o.outputs.recording = recording;
+            o.outputs.checkpoints = checkpoints;
             const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
             const auto removal = law_from(law);
             SimulationResult result;
@@ -344,9 +357,12 @@ void bind_simulation(py::module_& m) {
         py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),
         py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
-        py::arg("recording") = nullptr,
+        py::arg("recording") = nullptr, py::arg("checkpoints") = nullptr,
         "Grinds field along path; see simulation/simulation.h for units. A recording goes on with "
-        "the path. With the options influence and force_influence: an Influence; else None.");
+        "the path. With the options influence and force_influence: an Influence; else None. "
+        "checkpoints: those of an earlier call with this field and these settings, to go on from "
+        "as far as the paths are the same; they are this call's from then on. resumed: how many of "
+        "the steps were taken from there; unchanged: all of them, and there were no more.");
     m.def(
         "contact_at",
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,

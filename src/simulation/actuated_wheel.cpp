@@ -23,8 +23,8 @@ constexpr double kSameTime = 1e-9;  // s
 ActuatedWheel::ActuatedWheel(const ProcessSettings& process, Pressing& pressing)
     : process_(process),
       pressing_(pressing),
-      actuator_(process.dynamics, process.force_travel),
-      stiffness_(kFirstStiffness) {}
+      now_{.actuator = ForceActuator(process.dynamics, process.force_travel),
+           .stiffness = kFirstStiffness} {}
 
 void ActuatedWheel::learn_stiffness(double commanded) {
     const double force = pressing_.solution().force;
@@ -32,46 +32,46 @@ void ActuatedWheel::learn_stiffness(double commanded) {
     if (!(depth > 0.0)) return;
     const double now = kExponent * force / depth;
     const double more = std::max(commanded, force) / force;
-    stiffness_ = now * std::pow(more, 1.0 - 1.0 / kExponent);
+    now_.stiffness = now * std::pow(more, 1.0 - 1.0 / kExponent);
 }
 
 Pressing::State ActuatedWheel::look(const SampleBlocks& blocks, const PathStep& step) {
-    const bool fresh = !begun_ || step.time - 0.5 * step.duration > end_ + kSameTime;
+    const bool fresh = !now_.begun || step.time - 0.5 * step.duration > now_.end + kSameTime;
     if (fresh) {
-        off_ = -1.0;
-        pressed_ = false;
+        now_.off = -1.0;
+        now_.pressed = false;
         const double travel = process_.force_travel;
-        actuator_.rest(step.force > 0.0 ? travel : -travel, step.force);
+        now_.actuator.rest(step.force > 0.0 ? travel : -travel, step.force);
     }
     bounce_ = 0.0;
     if (!moves()) return pressing_.press(blocks, step.work_from_contact, lagging(step).force);
     if (fresh) {
         const auto state = pressing_.press(blocks, step.work_from_contact, step.force);
         if (state != Pressing::State::kNoContact) {
-            actuator_.rest(pressing_.approach(), step.force);
+            now_.actuator.rest(pressing_.approach(), step.force);
         }
     }
     pressing_.stand(step.work_from_contact);
-    const auto state = pressing_.hold(blocks, actuator_.place(), 0.0);
+    const auto state = pressing_.hold(blocks, now_.actuator.place(), 0.0);
     learn_stiffness(step.force);
-    return actuator_.held_by_stop(pressing_.solution().force) ? pressing_.at_stop() : state;
+    return now_.actuator.held_by_stop(pressing_.solution().force) ? pressing_.at_stop() : state;
 }
 
 PathStep ActuatedWheel::lagging(const PathStep& step) const {
     PathStep met = step;
-    met.force = actuator_.mean_regulated(step.duration, step.force);
+    met.force = now_.actuator.mean_regulated(step.duration, step.force);
     return met;
 }
 
 double ActuatedWheel::unrest(double commanded) const {
     const double force = pressing_.solution().force;
-    const double scale = kTolerated * std::max({commanded, actuator_.regulated(), force});
+    const double scale = kTolerated * std::max({commanded, now_.actuator.regulated(), force});
     if (!(scale > 0.0)) return 0.0;
-    const double lagging = std::abs(commanded - actuator_.regulated());
-    if (!moves() || actuator_.held_by_stop(force)) return lagging / scale;
+    const double lagging = std::abs(commanded - now_.actuator.regulated());
+    if (!moves() || now_.actuator.held_by_stop(force)) return lagging / scale;
     const double moving =
-        stiffness_ * std::abs(actuator_.speed()) / actuator_.quickness(stiffness_);
-    return std::max({lagging, moving, std::abs(actuator_.regulated() - force)}) / scale;
+        now_.stiffness * std::abs(now_.actuator.speed()) / now_.actuator.quickness(now_.stiffness);
+    return std::max({lagging, moving, std::abs(now_.actuator.regulated() - force)}) / scale;
 }
 
 double ActuatedWheel::parts(const PathStep& step) const {
@@ -82,47 +82,48 @@ double ActuatedWheel::parts(const PathStep& step) const {
 double ActuatedWheel::longest(double left, double commanded) const {
     if (!(unrest(commanded) > 1.0)) return left;
     double longest = left;
-    if (moves()) longest = std::min(longest, kResolved / actuator_.quickness(stiffness_));
+    if (moves()) longest = std::min(longest, kResolved / now_.actuator.quickness(now_.stiffness));
     const double lag = process_.dynamics.lag;
-    const bool lagging = std::abs(commanded - actuator_.regulated()) > kTolerated * commanded;
+    const bool lagging = std::abs(commanded - now_.actuator.regulated()) > kTolerated * commanded;
     if (lag > 0.0 && lagging) longest = std::min(longest, kResolved * lag);
     return longest;
 }
 
 void ActuatedWheel::begin(double seconds, double commanded) {
-    seconds_ = seconds;
-    actuator_.begin(seconds, commanded, stiffness_);
+    now_.seconds = seconds;
+    now_.actuator.begin(seconds, commanded, now_.stiffness);
 }
 
 double ActuatedWheel::press_stage(const SampleBlocks& blocks) {
-    const ForceActuator::Stage stage = actuator_.stage();
+    const ForceActuator::Stage stage = now_.actuator.stage();
     pressing_.hold(blocks, stage.place, stage.give);
-    if (const auto within = actuator_.limited(pressing_.approach())) {
+    if (const auto within = now_.actuator.limited(pressing_.approach())) {
         pressing_.hold(blocks, *within, 0.0);
         if (std::abs(*within) >= process_.force_travel) pressing_.at_stop();
-        actuator_.end_stage(*within);
+        now_.actuator.end_stage(*within);
     } else {
-        actuator_.end_stage(pressing_.approach());
+        now_.actuator.end_stage(pressing_.approach());
     }
-    const double time = stage.share * seconds_;
-    const bool before = pressed_;
-    learn_stiffness(actuator_.regulated());
-    pressed_ = pressing_.solution().force > 0.0;
-    if (pressed_) {
-        if (off_ * actuator_.quickness(stiffness_) > 1.0) bounce_ = std::max(bounce_, off_);
-        off_ = -1.0;
+    const double time = stage.share * now_.seconds;
+    const bool before = now_.pressed;
+    learn_stiffness(now_.actuator.regulated());
+    now_.pressed = pressing_.solution().force > 0.0;
+    if (now_.pressed) {
+        if (now_.off * now_.actuator.quickness(now_.stiffness) > 1.0)
+            bounce_ = std::max(bounce_, now_.off);
+        now_.off = -1.0;
     } else if (before) {
-        off_ = time;
-    } else if (off_ >= 0.0) {
-        off_ += time;
+        now_.off = time;
+    } else if (now_.off >= 0.0) {
+        now_.off += time;
     }
     return stage.share;
 }
 
 void ActuatedWheel::end(const PathStep& step) {
-    if (!moves()) actuator_.regulate(step.duration, step.force);
-    begun_ = true;
-    end_ = step.time + 0.5 * step.duration;
+    if (!moves()) now_.actuator.regulate(step.duration, step.force);
+    now_.begun = true;
+    now_.end = step.time + 0.5 * step.duration;
 }
 
 }  // namespace beltgrinding

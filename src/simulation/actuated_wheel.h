@@ -40,6 +40,19 @@ class ActuatedWheel {
     /// or sooner than it can answer.
     double bounce() const { return bounce_; }
 
+    /// How the wheel stands between two steps.
+    struct State {
+        ForceActuator actuator;
+        bool begun = false;
+        double end = 0.0;      // s, of the last step
+        double stiffness;      // N/mm, about that of the contact under the commanded force
+        double seconds = 0.0;  // of the time step
+        bool pressed = false;  // there was a contact in the last stage
+        double off = -1.0;     // s since it was lost; negative: it was not
+    };
+    const State& state() const { return now_; }
+    void restore(const State& state) { now_ = state; }
+
   private:
     /// Times the force that is tolerated, what the wheel is out of balance by.
     double unrest(double commanded) const;
@@ -47,14 +60,8 @@ class ActuatedWheel {
 
     const ProcessSettings& process_;
     Pressing& pressing_;
-    ForceActuator actuator_;
-    bool begun_ = false;
-    double end_ = 0.0;      // s, of the last step
-    double stiffness_;      // N/mm, about that of the contact under the commanded force
-    double seconds_ = 0.0;  // of the time step
-    bool pressed_ = false;  // there was a contact in the last stage
-    double off_ = -1.0;     // s since it was lost; negative: it was not
-    double bounce_ = 0.0;
+    State now_;
+    double bounce_ = 0.0;  // of the step
 };
 
 }  // namespace beltgrinding

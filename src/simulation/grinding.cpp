@@ -102,6 +102,7 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel)
 }
 
 void Grinding::follow_trace() {
+    note_reach();
     if (trace_ == nullptr) return;
     const Stopwatch watch(times_.trace);
     trace_->press(pressing_.map(), pressing_.displaced_pressure());
@@ -117,6 +118,7 @@ bool Grinding::press_again(const PathStep& step) {
 
 // A rigid tool: all that overlaps goes, whatever the law.
 double Grinding::cut_all(const PathStep& step) {
+    note_reach();
     const double volume = pressing_.map().cut(blocks_);
     belt_.volume += volume;
     belt_.time += step.duration;
@@ -186,6 +188,49 @@ void Grinding::note_force(double part) {
                         force_influence_->add(blocks_.sample(position), map.scale() * amount,
                                               motion_);
                     });
+}
+
+Grinding::Part Grinding::next_part() {
+    return {belt_, integrated_rate_,
+            force_influence_ ? force_influence_->next_part() : InfluenceKeeper::Part{}};
+}
+
+void Grinding::restore(const Part& part) {
+    belt_ = part.belt;
+    integrated_rate_ = part.integrated_rate;
+    if (force_influence_) force_influence_->restore(part.force_influence);
+}
+
+// Calls visit(row of the blocks' array, sample).
+template <class Visit>
+void Grinding::for_shifts(const std::vector<std::uint32_t>& blocks, Visit visit) const {
+    Eigen::Index row = 0;
+    for (const std::uint32_t block : blocks) {
+        const std::size_t first = std::size_t{block} * SampleBlocks::kLanes;
+        for (std::size_t lane = 0; lane < SampleBlocks::kLanes; ++lane, ++row)
+            if (first + lane < blocks_.samples().size())
+                visit(row, static_cast<Eigen::Index>(blocks_.sample(first + lane)));
+    }
+}
+
+Eigen::ArrayXXd Grinding::shifts(const std::vector<std::uint32_t>& blocks) const {
+    Eigen::ArrayXXd shifts = Eigen::ArrayXXd::Zero(
+        static_cast<Eigen::Index>(blocks.size() * SampleBlocks::kLanes), shifts_.cols());
+    for (Eigen::Index law = 0; law < shifts_.cols(); ++law) {
+        for_shifts(blocks, [&](Eigen::Index row, Eigen::Index sample) {
+            shifts(row, law) = shifts_(sample, law);
+        });
+    }
+    return shifts;
+}
+
+void Grinding::restore_shifts(const std::vector<std::uint32_t>& blocks,
+                              const Eigen::ArrayXXd& shifts) {
+    for (Eigen::Index law = 0; law < shifts_.cols(); ++law) {
+        for_shifts(blocks, [&](Eigen::Index row, Eigen::Index sample) {
+            shifts_(sample, law) = shifts(row, law);
+        });
+    }
 }
 
 Influence Grinding::take_force_influence(std::size_t motions) {

@@ -44,6 +44,20 @@ class Grinding {
     Eigen::ArrayXXd take_shifts() { return std::move(shifts_); }
     /// Hands over `SimulationResult::force_influence`, of so many motions.
     Influence take_force_influence(std::size_t motions);
+    /// From here on the blocks that may be ground, or pressed, are added to a set that outlives it.
+    void watch(BlockSet& reached) { reached_ = &reached; }
+    /// What it has counted, and collected since an earlier part.
+    struct Part {
+        BeltState belt;
+        double integrated_rate = 0.0;  // mm3
+        InfluenceKeeper::Part force_influence;
+    };
+    Part next_part();
+    /// As `InfluenceKeeper::restore`.
+    void restore(const Part& part);
+    /// Of the positions of blocks: (64 a block, shifted laws), mm.
+    Eigen::ArrayXXd shifts(const std::vector<std::uint32_t>& blocks) const;
+    void restore_shifts(const std::vector<std::uint32_t>& blocks, const Eigen::ArrayXXd& shifts);
     /// s of wall time for removal and trace so far.
     const PhaseTimes& times() const { return times_; }
 
@@ -61,6 +75,11 @@ class Grinding {
     /// mm3.
     double remove(double part);
     void follow_trace();
+    void note_reach() {
+        if (reached_ != nullptr) reached_->add(pressing_.in_reach());
+    }
+    template <class Visit>
+    void for_shifts(const std::vector<std::uint32_t>& blocks, Visit visit) const;
     /// False if the wheel has lost the work.
     bool press_again(const PathStep& step);
 
@@ -70,6 +89,7 @@ class Grinding {
     const ProcessSettings& process_;
     const OutputRequest& outputs_;
     TraceKeeper* trace_;
+    BlockSet* reached_ = nullptr;
     BeltState belt_;
     double integrated_rate_ = 0.0;
     double impulse_ = 0.0;         // N s

@@ -1,6 +1,7 @@
 #include "influence_keeper.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "beltgrinding/error.h"
@@ -63,6 +64,53 @@ void InfluenceKeeper::add(std::uint32_t sample, double amount, std::uint32_t mot
     begin(motion);
     if (removed_[sample] == 0.0) touched_.push_back(sample);
     removed_[sample] += amount;
+}
+
+void InfluenceKeeper::Part::append(const Part& next) {
+    first.insert(first.end(), next.first.begin(), next.first.end());
+    sample.insert(sample.end(), next.sample.begin(), next.sample.end());
+    depth.insert(depth.end(), next.depth.begin(), next.depth.end());
+    motion = next.motion;
+    touched = next.touched;
+    removed = next.removed;
+}
+
+std::size_t InfluenceKeeper::Part::bytes() const {
+    return first.size() * sizeof(std::size_t) + sample.size() * sizeof(std::uint32_t) +
+           depth.size() * sizeof(float) + touched.size() * (sizeof(std::uint32_t) + sizeof(double));
+}
+
+InfluenceKeeper::Part InfluenceKeeper::next_part() {
+    Part part;
+    const auto since = [](const auto& all, std::size_t from) {
+        return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(from),
+                                           all.end());
+    };
+    part.first = since(influence_.first, given_first_);
+    part.sample = since(influence_.sample, given_entries_);
+    part.depth = since(influence_.depth, given_entries_);
+    part.motion = motion_;
+    part.touched = touched_;
+    part.removed.reserve(touched_.size());
+    for (const std::uint32_t s : touched_) part.removed.push_back(removed_[s]);
+    given_first_ = influence_.first.size();
+    given_entries_ = influence_.sample.size();
+    return part;
+}
+
+void InfluenceKeeper::restore(const Part& part) {
+    const auto append = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(influence_.first, part.first);
+    append(influence_.sample, part.sample);
+    append(influence_.depth, part.depth);
+    motion_ = part.motion;
+    for (const std::uint32_t s : touched_) removed_[s] = 0.0;
+    touched_ = part.touched;
+    for (std::size_t k = 0; k < touched_.size(); ++k) removed_[touched_[k]] = part.removed[k];
+    given_first_ = influence_.first.size();
+    given_entries_ = influence_.sample.size();
 }
 
 void InfluenceKeeper::begin(std::uint32_t motion) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/simulation.h"
@@ -12,9 +13,9 @@ namespace beltgrinding {
 /// Collects an influence during a simulation, whose motions come one after the other.
 class InfluenceKeeper {
   public:
-    /// `heights`: mm (samples), before the first motion.
-    explicit InfluenceKeeper(const std::vector<double>& heights)
-        : height_(heights), removed_(heights.size(), 0.0) {}
+    /// `heights`: mm (samples), before the next motion.
+    explicit InfluenceKeeper(std::vector<double> heights)
+        : height_(std::move(heights)), removed_(height_.size(), 0.0) {}
     /// For `add` alone, on a field of so many samples.
     explicit InfluenceKeeper(std::size_t samples) : removed_(samples, 0.0) {}
 
@@ -23,6 +24,23 @@ class InfluenceKeeper {
                 std::uint32_t motion);
     /// The motion number `motion` has `amount` mm at a sample.
     void add(std::uint32_t sample, double amount, std::uint32_t motion);
+    /// What has been collected since an earlier part, and the running motion as of now.
+    struct Part {
+        std::vector<std::size_t> first;  // as of `Influence`, from its begin
+        std::vector<std::uint32_t> sample;
+        std::vector<float> depth;  // mm
+        std::uint32_t motion = 0;
+        std::vector<std::uint32_t> touched;
+        std::vector<double> removed;  // mm, of those
+
+        /// Goes on with the part after this one.
+        void append(const Part& next);
+        std::size_t bytes() const;
+    };
+    /// The part since the last call; from the begin, the first time.
+    Part next_part();
+    /// Goes on with what such a call gave; in the same order, before anything else.
+    void restore(const Part& part);
     /// What has been collected, of `motions` in all. Call once.
     Influence take(std::size_t motions);
 
@@ -35,6 +53,7 @@ class InfluenceKeeper {
     std::vector<double> removed_;         // mm, by the running motion
     std::vector<std::uint32_t> touched_;  // by the running motion
     std::uint32_t motion_ = 0;
+    std::size_t given_first_ = 1, given_entries_ = 0;  // by `next_part`
 };
 
 }  // namespace beltgrinding

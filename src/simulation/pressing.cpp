@@ -42,6 +42,30 @@ Pressing::Pressing(const ProcessSettings& process, double spacing, double tolera
       give_(process.robot_stiffness > 0.0 ? 1.0 / process.robot_stiffness : 0.0),
       largest_indentation_(std::min(model.thickness(), (1.0 - kAhead) * process.wheel.radius)) {}
 
+Pressing::Carried Pressing::carried() const {
+    std::optional<ContactGrid> grid;
+    if (contact_) grid = contact_->grid();
+    return {solution_, displaced_, grid,  map_.carried(), near_, hits_, programmed_,
+            placed_,   held_at_,   give_, localised_,     warm_, state_};
+}
+
+void Pressing::carry(const Carried& carried) {
+    solution_ = carried.solution;
+    displaced_ = carried.displaced;
+    contact_.reset();
+    if (carried.grid) contact_ = model_.prepare(*carried.grid);
+    map_.carry(carried.map);
+    near_ = carried.near;
+    hits_ = carried.hits;
+    programmed_ = carried.programmed;
+    placed_ = carried.placed;
+    held_at_ = carried.held_at;
+    give_ = carried.give;
+    localised_ = carried.localised;
+    warm_ = carried.warm;
+    state_ = carried.state;
+}
+
 Frame Pressing::placed_frame() const {
     return programmed_ * Eigen::Translation3d(0.0, 0.0, placed_);
 }

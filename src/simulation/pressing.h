@@ -82,6 +82,26 @@ class Pressing {
     const PhaseTimes& times() const { return times_; }
     /// Samples that were mapped last.
     std::size_t localised() const { return map_.samples(); }
+    /// Blocks in the reach of the wheel as it was mapped last, ascending.
+    const std::vector<std::uint32_t>& in_reach() const { return hits_; }
+
+    /// What one pose leaves to the next: where the wheel stood, how it was pressed, what was near.
+    struct Carried {
+        ContactSolution solution;
+        DisplacedPressure displaced;
+        std::optional<ContactGrid> grid;  // of the solution
+        GapMap::Carried map;
+        NearBlocks near;
+        std::vector<std::uint32_t> hits;
+        Frame programmed = Frame::Identity();
+        double placed = 0.0, held_at = 0.0, give = 0.0;
+        std::optional<double> localised;
+        bool warm = false;
+        State state = State::kNoContact;
+    };
+    Carried carried() const;
+    /// Goes on from what another one carried, of the same process, model and field.
+    void carry(const Carried& carried);
 
   private:
     State press_force(const SampleBlocks& blocks, double force);

@@ -63,6 +63,18 @@ void ProcessMonitor::begin(const PathStep& step, std::size_t planned) {
     touched_.push_back(0);
 }
 
+void ProcessMonitor::restore(const PathStep& step, std::size_t planned, bool touched) {
+    steps_.push_back(step);
+    planned_.push_back(planned);
+    touched_.push_back(touched ? 1 : 0);
+}
+
+void ProcessMonitor::restore(const State& state) {
+    events_.restore(state.events);
+    lost_ = state.lost;
+    pass_ = state.pass;
+}
+
 Event* ProcessMonitor::note(const char* kind, std::size_t index, double value, int part,
                             double badness) {
     return events_.note(kind, planned_[index], steps_[index], value, part, badness);

@@ -38,6 +38,30 @@ class ProcessMonitor {
     /// All events, in order of time.
     std::vector<Event> take();
 
+    /// Volumes so far, mm3; and where most was lost.
+    struct LostVolume {
+        double asked = 0.0, lost = 0.0, most = 0.0;
+        std::size_t step = 0;
+        std::optional<std::size_t> position;
+    };
+    /// What has been seen so far. What the heights tell is not in it: a monitor is made of blocks
+    /// as they are.
+    struct State {
+        EventLog::State events;
+        LostVolume lost;
+        std::size_t pass = 0;
+    };
+    State state() const { return {events_.state(), lost_, pass_}; }
+    /// Steps begun so far.
+    std::size_t steps() const { return steps_.size(); }
+    /// Whether the wheel touched, by step, from the step number `from` on.
+    std::vector<std::uint8_t> touched(std::size_t from) const {
+        return {touched_.begin() + static_cast<std::ptrdiff_t>(from), touched_.end()};
+    }
+    /// A step was begun before, as of `begin`.
+    void restore(const PathStep& step, std::size_t planned, bool touched);
+    void restore(const State& state);
+
   private:
     /// A condition in the step `index`, as EventLog has it.
     Event* note(const char* kind, std::size_t index, double value, int part = 0,
@@ -65,12 +89,6 @@ class ProcessMonitor {
     const MonitorLimits& limits_;
     const RemovalLaw& law_;
     EventLog events_;
-    /// Volumes so far, mm3; and where most was lost.
-    struct LostVolume {
-        double asked = 0.0, lost = 0.0, most = 0.0;
-        std::size_t step = 0;
-        std::optional<std::size_t> position;
-    };
     LostVolume lost_;
     std::size_t pass_ = 0;               // of the step, by number
     std::vector<std::uint8_t> touched_;  // by step

@@ -53,6 +53,20 @@ std::size_t ChangeLog::bytes() const {
     return runs_.size() * sizeof(Run) + height_.size() * sizeof(float) + ends_.size() * sizeof(End);
 }
 
+void ChangeLog::append(const ChangeLog& other, std::size_t from) {
+    const End before = other.begin(from);
+    const std::size_t runs = runs_.size(), heights = height_.size();
+    const auto since = [](const auto& all, std::size_t first) {
+        return all.begin() + static_cast<std::ptrdiff_t>(first);
+    };
+    runs_.insert(runs_.end(), since(other.runs_, before.run), other.runs_.end());
+    height_.insert(height_.end(), since(other.height_, before.height), other.height_.end());
+    for (std::size_t block = from; block < other.blocks(); ++block) {
+        const End& end = other.ends_[block];
+        ends_.push_back({end.run - before.run + runs, end.height - before.height + heights});
+    }
+}
+
 void ChangeLog::shrink_to_fit() {
     runs_.shrink_to_fit();
     height_.shrink_to_fit();
@@ -139,6 +153,77 @@ void Recording::close_frame(const SampleBlocks& blocks) {
     }
 }
 
+void Recording::Part::append(const Part& next) {
+    if (next.whole) {
+        *this = next;
+        return;
+    }
+    log.append(next.log);
+    times.insert(times.end(), next.times.begin(), next.times.end());
+    steps.insert(steps.end(), next.steps.begin(), next.steps.end());
+    stride = next.stride;
+    pending_steps = next.pending_steps;
+    total_steps = next.total_steps;
+    pending_time = next.pending_time;
+    pending = next.pending;
+}
+
+std::size_t Recording::Part::bytes() const {
+    return log.bytes() + times.size() * (sizeof(double) + sizeof(std::uint32_t)) +
+           pending.size() * sizeof(pending.front());
+}
+
+Recording::Part Recording::part_since(std::size_t frames, std::size_t stride) const {
+    Part part;
+    part.whole = stride != stride_;
+    const std::size_t from = part.whole ? 0 : frames;
+    part.log.append(log_, from);
+    part.log.shrink_to_fit();
+    const auto after = static_cast<std::ptrdiff_t>(from + 1);  // the time of no frame is the first
+    part.times.assign(times_.begin() + after, times_.end());
+    part.steps.assign(steps_.begin() + after, steps_.end());
+    part.stride = stride_;
+    part.pending_steps = pending_steps_;
+    part.total_steps = total_steps_;
+    part.pending_time = pending_time_;
+    for (const std::uint32_t block : pending_blocks_)
+        part.pending.emplace_back(block, pending_[block]);
+    return part;
+}
+
+void Recording::restore(const SampleBlocks& blocks, std::span<const Part* const> parts) {
+    for (const Part* part : parts) {
+        if (part->whole) {
+            log_ = {};
+            times_.assign(1, 0.0);
+            steps_.assign(1, 0);
+        }
+        log_.append(part->log);
+        times_.insert(times_.end(), part->times.begin(), part->times.end());
+        steps_.insert(steps_.end(), part->steps.begin(), part->steps.end());
+    }
+    if (parts.empty()) return;
+    const Part& last = *parts.back();
+    stride_ = last.stride;
+    pending_steps_ = last.pending_steps;
+    total_steps_ = last.total_steps;
+    pending_time_ = last.pending_time;
+    pending_.assign(blocks.count(), 0);
+    pending_blocks_.clear();
+    for (const auto& [block, lanes] : last.pending) {
+        pending_blocks_.push_back(block);
+        pending_[block] = lanes;
+    }
+    count_frames();
+}
+
+void Recording::count_frames() {
+    keys_ = {};
+    key_end_.clear();
+    open_changes_ = 0;
+    for (std::size_t frame = 1; frame <= last(); ++frame) count_frame(frame);
+}
+
 void Recording::count_frame(std::size_t frame) {
     open_changes_ += log_.changes(frame - 1);
     if (open_changes_ >= kKeyFrameChanges) close_key_frame(frame);
@@ -172,10 +257,7 @@ void Recording::halve() {
     times_ = std::move(times);
     steps_ = std::move(steps);
     stride_ *= 2;
-    keys_ = {};
-    key_end_.clear();
-    open_changes_ = 0;
-    for (std::size_t frame = 1; frame <= last(); ++frame) count_frame(frame);
+    count_frames();
 }
 
 std::size_t Recording::frame_at(double time) const {

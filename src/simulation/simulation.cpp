@@ -7,6 +7,7 @@
 #include "actuated_wheel.h"
 #include "base/stopwatch.h"
 #include "beltgrinding/error.h"
+#include "checkpoint_keeper.h"
 #include "grinding.h"
 #include "heightfield/sample_blocks.h"
 #include "influence_keeper.h"
@@ -117,11 +118,16 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     }
     SampleBlocks& blocks = *built;
     if (recording != nullptr) recording->begin(field, path.duration(), blocks.samples());
+    std::optional<CheckpointKeeper> keeper;
+    if (options.outputs.checkpoints != nullptr) {
+        keeper.emplace(*options.outputs.checkpoints, steps, blocks, options);
+        keeper->restore(blocks);
+    }
     ProcessMonitor monitor(blocks, path, process, options.limits, law);
     std::optional<TraceKeeper> trace;
     if (options.outputs.trace) trace.emplace(blocks);
     std::optional<InfluenceKeeper> influence;
-    if (options.outputs.influence) influence.emplace(field.height);
+    if (options.outputs.influence) influence.emplace(blocks.heights());
     const double cell = contact_cell(field, process.wheel, resolution);
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
@@ -133,12 +139,28 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     std::optional<ActuatedWheel> wheel;  // of a force control that takes time
     if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);
     bool touched = false;
+    const CheckpointKeeper::Parts running{blocks,
+                                          monitor,
+                                          pressing,
+                                          grinding,
+                                          trace ? &*trace : nullptr,
+                                          influence ? &*influence : nullptr,
+                                          wheel ? &*wheel : nullptr,
+                                          recording,
+                                          result.steps,
+                                          touched};
+    if (keeper) {
+        keeper->restore(running);
+        result.resumed = result.steps.size();
+        result.unchanged = keeper->unchanged();
+    }
 
     for (std::size_t i = 0; steps.next(); ++i) {
         if (i % kReportEvery == 0) {
             context.throw_if_cancelled();
             context.report(steps.progress());
         }
+        if (keeper) keeper->look(running);
         const PathStep& step = steps.step();
         const auto state = wheel ? wheel->look(blocks, step)
                                  : pressing.press(blocks, step.work_from_contact, step.force);
@@ -208,7 +230,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             recording->add_step(blocks, changes, step.time + 0.5 * step.duration);
         }
         result.steps.push_back(record);
+        steps.done();
     }
+    if (keeper) keeper->end(running);
     if (!touched && options.must_touch) {
         throw InputError(
             "simulation.never_touches",

@@ -1,10 +1,31 @@
 #include "step_queue.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 
 namespace beltgrinding {
+namespace {
+
+/// To the last bit: what is simulated must not tell them apart.
+bool same(const PathStep& a, const PathStep& b) {
+    static_assert(sizeof(Frame) == 16 * sizeof(double));
+    const auto numbers = [](const PathStep& step) {
+        std::array<double, 22> values{};
+        std::memcpy(values.data(), step.work_from_contact.data(), sizeof(Frame));
+        const std::array<double, 6> rest = {step.time,  step.duration, step.feed,
+                                            step.force, step.begin,    step.end};
+        std::copy(rest.begin(), rest.end(), values.begin() + 16);
+        return values;
+    };
+    const auto of_a = numbers(a), of_b = numbers(b);
+    return std::memcmp(of_a.data(), of_b.data(), sizeof of_a) == 0 && a.pose == b.pose &&
+           a.plunging == b.plunging;
+}
+
+}  // namespace
 
 StepQueue::StepQueue(const ToolPath& path, const SteppingOptions& options) : path_(path) {
     const std::vector<PathStep> steps = path.steps(options);
@@ -24,7 +45,29 @@ bool StepQueue::next() {
 void StepQueue::cut(double parts) {
     const int most = kMostParts / now_.parts;
     const int count = parts < most ? std::max(2, static_cast<int>(std::ceil(parts))) : most;
+    part(count);
+}
+
+void StepQueue::part(int count) {
+    note(count);
     put(path_.cut(now_.step, count), count * now_.parts);
+}
+
+void StepQueue::note(int cut) {
+    if (keeps_) seen_.push_back({now_.step, line(), cut, now_.parts == 1});
+}
+
+bool StepQueue::follow(const std::vector<Seen>& seen) {
+    for (const Seen& before : seen) {
+        if (!next() || !same(now_.step, before.step) || line() != before.line) return false;
+        if (before.cut > 0) part(before.cut);
+    }
+    return true;
+}
+
+void StepQueue::begin_at(std::size_t planned) {
+    left_.resize(planned_ - planned);
+    begun_ = from_ = planned;
 }
 
 void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
@@ -35,7 +78,8 @@ void StepQueue::put(const std::vector<PathStep>& steps, int parts) {
 }
 
 double StepQueue::progress() const {
-    return begun_ > 0 ? static_cast<double>(begun_ - 1) / static_cast<double>(planned_) : 0.0;
+    if (begun_ == from_) return 0.0;
+    return static_cast<double>(begun_ - 1 - from_) / static_cast<double>(planned_ - from_);
 }
 
 }  // namespace beltgrinding

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/tool_path.h"
@@ -33,8 +36,32 @@ class StepQueue {
     /// Puts `parts` smaller steps, or as many as may be, in the step's place; `next` gives the
     /// first.
     void cut(double parts);
-    /// Share of the planned steps that are done.
+    /// Share of the planned steps, from where it began, that are done.
     double progress() const;
+
+    /// A step that has had its turn.
+    struct Seen {
+        PathStep step;
+        int line;    ///< of the source, of its pose
+        int cut;     ///< into so many parts; 0: it was simulated
+        bool whole;  ///< as it was planned, no part
+    };
+    /// From here on steps that have had their turn are kept, for `take_seen`.
+    void keep_seen() { keeps_ = true; }
+    /// The step has been simulated.
+    void done() { note(0); }
+    /// Hands over what has had its turn since the last call.
+    std::vector<Seen> take_seen() { return std::exchange(seen_, {}); }
+    /// Goes on as the run did that saw `seen`, if this path has the same steps there, to the last
+    /// bit; else returns false, somewhere among them.
+    bool follow(const std::vector<Seen>& seen);
+    /// Instead of the first one, the planned step number `planned` is the next. Before any `next`.
+    void begin_at(std::size_t planned);
+    /// The programmed pose that the step after this one leads to; none: it is the last.
+    std::optional<std::uint32_t> next_pose() const {
+        if (left_.empty()) return std::nullopt;
+        return left_.back().step.pose;
+    }
 
   private:
     static constexpr int kMostParts = 16;
@@ -44,11 +71,17 @@ class StepQueue {
     };
     /// Makes them the next ones, in their order.
     void put(const std::vector<PathStep>& steps, int parts);
+    /// Cuts the step into so many parts.
+    void part(int count);
+    void note(int cut);
+    int line() const { return path_.poses()[now_.step.pose].line; }
 
     const ToolPath& path_;
     std::vector<Item> left_;  // the next one last
     Item now_;
-    std::size_t planned_ = 0, begun_ = 0;
+    std::size_t planned_ = 0, begun_ = 0, from_ = 0;
+    bool keeps_ = false;
+    std::vector<Seen> seen_;
 };
 
 }  // namespace beltgrinding

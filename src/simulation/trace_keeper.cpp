@@ -1,5 +1,7 @@
 #include "trace_keeper.h"
 
+#include <algorithm>
+
 #include "base/lanes.h"
 #include "beltgrinding/error.h"
 
@@ -82,6 +84,32 @@ void TraceKeeper::remove(std::span<const SampleBlocks::Change> changes, std::uin
                      &trace_.dominant_depth[at], &removed_[at], &height_[at]},
                     blocks_.block(change.block).height.data(), motion);
     }
+}
+
+TraceKeeper::Block TraceKeeper::block(std::uint32_t number) const {
+    Block block;
+    const std::size_t at = std::size_t{number} * SampleBlocks::kLanes;
+    const auto copy = [at](const auto& from, auto& to) {
+        std::copy_n(&from[at], to.size(), to.begin());
+    };
+    copy(trace_.first, block.first);
+    copy(trace_.last, block.last);
+    copy(trace_.dominant, block.dominant);
+    copy(trace_.dominant_depth, block.dominant_depth);
+    copy(trace_.peak_pressure, block.peak_pressure);
+    return block;
+}
+
+void TraceKeeper::restore(std::uint32_t number, const Block& block) {
+    const std::size_t at = std::size_t{number} * SampleBlocks::kLanes;
+    const auto copy = [at](const auto& from, auto& to) {
+        std::copy(from.begin(), from.end(), &to[at]);
+    };
+    copy(block.first, trace_.first);
+    copy(block.last, trace_.last);
+    copy(block.dominant, trace_.dominant);
+    copy(block.dominant_depth, trace_.dominant_depth);
+    copy(block.peak_pressure, trace_.peak_pressure);
 }
 
 void TraceKeeper::keep(HeightField& field) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,14 @@ class TraceKeeper {
     /// The motion number `motion` has lowered samples to the heights that they have now. Motions
     /// come one after the other.
     void remove(std::span<const SampleBlocks::Change> changes, std::uint32_t motion);
+    /// A block's trace where a motion begins: what the one before removed is no longer asked for.
+    struct Block {
+        std::array<std::uint32_t, SampleBlocks::kLanes> first, last, dominant;
+        std::array<float, SampleBlocks::kLanes> dominant_depth, peak_pressure;
+    };
+    Block block(std::uint32_t number) const;
+    /// Makes a block's trace what it was; its heights are those that it has now.
+    void restore(std::uint32_t number, const Block& block);
     /// Hands the trace over to the field.
     void keep(HeightField& field) const;
 

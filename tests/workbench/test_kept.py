@@ -315,6 +315,9 @@ def others(key, rule, before, folder):
     raise AssertionError(f"{key} is new: say in VALUES what else it may be")
 
 
+HEIGHTS = 2 + 5  # of an outcome
+
+
 def outcome(job):
     """All that a run gives, as bytes and text; of one that fails its error."""
     recording = core.Recording()
@@ -351,7 +354,7 @@ def warm(folder):
 
 # What the two jobs together prepare.
 STAGES = ("design", "warnings", "look", "contact", "field", "stock", "triangles", "body", "reach")
-STAGES += ("collisions",)
+STAGES += ("collisions", "grinding")
 
 
 def changed(name, key, value, folder):
@@ -387,17 +390,20 @@ def test_a_changed_key_never_takes_what_was_made_of_the_old_one(key, warm, folde
 def test_forces_and_feeds_keep_all_that_is_prepared(folder):
     with kept.instead(kept.Kept()) as stages:
         outcome(robot_job(folder))
+        del stages.made["grinding"]  # which is no preparation
         made = dict(stages.made)
         job = robot_job(folder)
         job["belt_machine"]["force_N"] = 25
         job["programs"][0]["poses"][2]["force_N"] = 18
         outcome(job)
+        del stages.made["grinding"]
         contacts = stages.made["contact"]
         assert contacts > made["contact"]  # which depends on the force
         assert {**stages.made, "contact": 0} == {**made, "contact": 0}
         for one in job["programs"]:
             one["feed_mm_s"] = 33
         outcome(job)
+        del stages.made["grinding"]
         assert stages.made["contact"] == contacts
         assert stages.made["reach"] == made["reach"] + 1  # joints turn at other speeds
         assert {**stages.made, "contact": 0, "reach": 0} == {**made, "contact": 0, "reach": 0}
@@ -410,6 +416,121 @@ def test_forces_and_feeds_keep_all_that_is_prepared(folder):
         outcome(job)
         assert stages.made["collisions"] > made["collisions"]
         assert stages.made["stock"] == made["stock"] == 1
+
+
+def raster_job(folder, control="force"):
+    """Passes of two programs over the part, on a belt that wears."""
+    job = allowance_job(folder)
+    job["cell"]["bodies"] = []
+    job["belt_machine"]["control"] = control
+    job["law"] = {"model": "local", "wear": {"model": "exponential", "scale": 500.0}}
+    ys = (2, 4, 6, 8, 10)
+    passes = [[pose(x, y_mm=y) for x in (3, 9, 15)[:: 1 - 2 * (y % 4 == 0)]] for y in ys]
+    job["programs"] = [{"poses": sum(passes, [])}, {"poses": copy.deepcopy(sum(passes[1:3], []))}]
+    return job
+
+
+EDITS = {  # of the poses
+    "feed": lambda poses, k: poses[k].update(feed_mm_s=27.0),
+    "force": lambda poses, k: poses[k].update(force_N=13.0),
+    "place": lambda poses, k: poses[k].update(x_mm=poses[k]["x_mm"] + 0.7, z_mm=0.05),
+    "rapid": lambda poses, k: poses[k].update(rapid=True),
+    "gone": lambda poses, k: poses.pop(k),
+    "added": lambda poses, k: poses.insert(k, pose(7.0, y_mm=5)),
+}
+PLACES = {  # (program, its pose): whether steps before it are taken from the run before
+    (0, 0): False,
+    (0, 1): False,
+    (0, 4): True,
+    (0, 8): True,
+    (0, 13): True,
+    (0, 14): True,
+    (1, 0): True,
+    (1, 5): True,
+}
+
+
+@pytest.mark.parametrize(
+    "control, timing", [("force", "constant_feed"), ("position", "trapezoidal")]
+)
+@pytest.mark.parametrize("edit", EDITS)
+def test_an_edited_program_goes_on_from_where_it_is_the_same(edit, control, timing, folder):
+    def made(change=lambda job: None):
+        job = raster_job(folder, control)
+        job["simulation"] = {"timing": timing}
+        change(job)
+        return job
+
+    with kept.instead(kept.Kept()):
+        before = outcome(made())
+    for (program, at), goes_on in PLACES.items():
+        change = lambda job: EDITS[edit](job["programs"][program]["poses"], at)
+        with kept.instead(kept.Kept()) as stages:
+            assert outcome(made()) == before
+            quick = outcome(made(change))
+            # No motion leads to a program's first pose: how it would be made changes nothing.
+            idle = at == 0 and edit in ("feed", "force", "rapid")
+            assert stages.hits.get("grinding", 0) == (goes_on or idle), (program, at)
+            assert outcome(made()) == before  # and back
+        with kept.instead(kept.Kept()):
+            whole = outcome(made(change))
+        assert quick == whole, (program, at)
+        # A pose in the middle of a line may go, and under position control forces are not met.
+        if edit in ("feed", "place") or (edit, control) == ("force", "force"):
+            assert (quick[HEIGHTS] != before[HEIGHTS]) != idle, (program, at)
+
+
+def half_space(job):
+    job["belt_machine"]["compliance"] = {"model": "half_space"}
+    job["belt_machine"]["wheel"]["profile_mm"] = [[-4.0, 0.2], [0.0, 0.0], [4.0, 0.1]]
+
+
+def springy_robot(job):
+    machine = job["belt_machine"]
+    machine.update(control="position", robot_stiffness_N_per_mm=60.0, wheel_density_kg_m3=1100.0)
+
+
+def slow_force(job):
+    dynamics = {"model": "actuator", "lag_s": 0.05, "moving_mass_kg": 2.0}
+    job["belt_machine"]["force_dynamics"] = {**dynamics, "damping_N_s_per_mm": 0.4}
+
+
+def dense_edges(job):
+    job["sampling"].update(precision_mm=0.2, edge_spacing_mm=0.5)
+    job["stock"] = {"kind": "mesh", "file": str(job.pop("folder") / "stock.ply")}
+
+
+@pytest.mark.parametrize("variant", [half_space, springy_robot, slow_force, dense_edges])
+def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(variant, folder):
+    def made(at=None):
+        job = raster_job(folder)
+        if variant is dense_edges:
+            job["folder"] = folder
+        variant(job)
+        if at is not None:
+            program, k = at
+            job["programs"][program]["poses"][k].update(feed_mm_s=31.0, z_mm=0.06)
+        return job
+
+    with kept.instead(kept.Kept()) as stages:
+        outcome(made())
+        found = {at: outcome(made(at)) for at in ((0, 7), (0, 12), (1, 4))}
+        assert stages.hits["grinding"] == len(found)
+    for at, quick in found.items():
+        with kept.instead(kept.Kept(0)):
+            assert outcome(made(at)) == quick, at
+
+
+def test_a_program_that_ends_sooner_leaves_another_part_to_the_next(folder):
+    job = raster_job(folder)
+    del job["programs"][0]["poses"][-3:]
+    with kept.instead(kept.Kept()) as stages:
+        outcome(raster_job(folder))
+        quick = outcome(copy.deepcopy(job))
+        assert stages.hits["grinding"] == 1
+        assert outcome(copy.deepcopy(job)) == quick
+    with kept.instead(kept.Kept(0)) as none:
+        assert outcome(job) == quick and none.bytes == 0
 
 
 FILES = {  # of a job, and another that takes its place under its name

@@ -74,6 +74,25 @@ class Kept:
             self._put(key, value, taken)
         return value
 
+    def find(self, stage, digest):
+        """What ``put`` kept; None where there is nothing."""
+        with self._lock:
+            found = self._values.get((stage, digest))
+            if found is None:
+                return None
+            self._values.move_to_end((stage, digest))
+            return found[0]
+
+    def put(self, stage, digest, value, size, reused):
+        """Keeps a value of ``size`` bytes that is no stage as a whole, in place of the one before, unless it would take
+        more than ``LARGEST`` of all. ``reused``: some of it was taken from that; counts as a hit.
+        """
+        counted = self.hits if reused else self.made
+        with self._lock:
+            counted[stage] = counted.get(stage, 0) + 1
+        if size <= LARGEST * self.most:
+            self._put((stage, digest), value, size)
+
     def _put(self, key, value, taken):
         with self._lock:
             before = self._values.pop(key, None)
@@ -111,6 +130,21 @@ _names = weakref.WeakKeyDictionary()  # digests of what objects were made from
 def get(stage, parts, make, size):
     """As ``Kept.get``, of this process."""
     return _stages.get(stage, parts, make, size)
+
+
+def find(stage, digest):
+    """As ``Kept.find``, of this process."""
+    return _stages.find(stage, digest)
+
+
+def put(stage, digest, value, size, reused):
+    """As ``Kept.put``, of this process."""
+    _stages.put(stage, digest, value, size, reused)
+
+
+def largest():
+    """Bytes that one value of this process may take."""
+    return LARGEST * _stages.most
 
 
 def forget():

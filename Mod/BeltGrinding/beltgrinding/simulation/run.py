@@ -8,7 +8,7 @@ from ..base import kept
 from ..base.messages import fact_data
 from ..cell import collision, events as event_lists, gaps, motions, reach
 from ..cell.tool_path import tool_path
-from ..engine import InputError, core
+from ..engine import Cancelled, InputError, core
 from ..inspection import verdict as verdicts
 from ..job import inputs, law as laws, resolution, spacing
 from ..job.engine_input import engine_arguments
@@ -16,6 +16,7 @@ from ..job.law import remaining_cut
 from ..job.poses import program_name
 from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
 from . import idle
+from .checkpoints import RunCheckpoints
 from .result import Result
 
 NOTES = 3  # warnings shown behind an error
@@ -125,16 +126,26 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
         lower_limits=verdicts.lower_limits(job, field),
     )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
+    checkpoints = RunCheckpoints(
+        field, (wheel, compliance, law, options), recording is not None, len(paths)
+    )
+    phases.end("hash")
     found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}
     for i, path in enumerate(paths):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:
-            result = core.simulate(field, path, wheel, compliance, law, options, part, recording)
+            result = core.simulate(
+                field, path, wheel, compliance, law, options, part, recording, checkpoints.next()
+            )
+        except Cancelled:
+            checkpoints.keep()
+            raise
         except InputError as error:
             raise error.within(
                 "job.in_program", "{program}: ", program=program_name(job, i)
             ) from None
+        checkpoints.ended(result)
         lists = [one[i]["events"] for one in (reached, met) if one]
         lists.append(gaps.events(path, left_out[i]))
         found.append((i, process_time, sum(lists, result["events"])))
@@ -154,6 +165,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
         models = {key: result[key] for key in ("compliance", "law")}
         for name, seconds in result["wall"].items():
             phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
+    checkpoints.keep()
     phases.restart()
     if shifts.shape[1]:
         field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))

@@ -109,6 +109,16 @@ class GapMap {
     }
     /// What the last `remove` scaled the samples' volume by.
     double scale() const { return scale_; }
+    /// What is known from the last `update` and `remove` on where the next ones are left out.
+    struct Carried {
+        std::size_t samples = 0;
+        double scale = 1.0;
+    };
+    Carried carried() const { return {samples_, scale_}; }
+    void carry(const Carried& carried) {
+        samples_ = carried.samples;
+        scale_ = carried.scale;
+    }
 
     /// Raises `largest` (one per position, of whole blocks) to the pressure at each sample, where
     /// that is more.

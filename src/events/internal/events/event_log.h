@@ -27,16 +27,24 @@ class EventLog {
     /// In order of time.
     std::vector<Event> take();
 
-  private:
+    /// A condition that may last.
     struct Open {
         std::size_t event;
         std::size_t last_step;
         double badness;
     };
+    /// What has been noted so far.
+    struct State {
+        std::vector<Event> events;
+        std::map<std::pair<std::string, int>, Open> open;
+    };
+    const State& state() const { return state_; }
+    void restore(State state) { state_ = std::move(state); }
+
+  private:
     const ToolPath& path_;
     std::size_t pause_;
-    std::vector<Event> events_;
-    std::map<std::pair<std::string, int>, Open> open_;
+    State state_;
 };
 
 }  // namespace beltgrinding

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/height_field.h"
@@ -73,6 +74,27 @@ class SampleBlocks {
     std::span<const Change> changes();
     void clear_changes();
 
+    /// What grinding has made of a block.
+    struct Ground {
+        std::uint32_t block;
+        float lowest, highest;              // mm, as it is bounded
+        std::array<double, kLanes> height;  // mm
+    };
+    Ground ground(std::uint32_t block) const {
+        return {block, bounds_[block].lowest, bounds_[block].highest, blocks_[block].height};
+    }
+    /// Makes of a block what grinding made of it before; nothing is noted as a change.
+    void restore(const Ground& ground);
+    /// A block that was ground deeper than the tree had it: it has `bottom` mm since.
+    struct Deepened {
+        std::uint32_t block;
+        float bottom;
+    };
+    /// All so far, in order.
+    std::span<const Deepened> deepened() const { return deepened_; }
+    /// Has the tree reach down there.
+    void deepen(const Deepened& to);
+
     /// The current heights, by sample.
     std::vector<double> heights() const;
     /// Bytes beside those of the field.
@@ -97,6 +119,7 @@ class SampleBlocks {
     std::vector<Bound> bounds_;
     std::vector<std::uint64_t> changed_;  // by block
     std::vector<Change> changes_;
+    std::vector<Deepened> deepened_;
 };
 
 /// Calls visit(position) for all that was lowered, ascending.
@@ -115,11 +138,28 @@ class NearBlocks {
     /// Replaces `found` by all blocks that `may_meet` the reach, ascending.
     void find(const SampleBlocks& blocks, const WheelReach& reach,
               std::vector<std::uint32_t>& found);
+    std::size_t bytes() const { return near_.size() * sizeof(near_.front()); }
 
   private:
     WheelReach listed_;
     bool any_ = false;
     std::vector<std::uint32_t> near_;
+};
+
+/// Numbers of blocks, each once.
+class BlockSet {
+  public:
+    explicit BlockSet(std::uint32_t blocks) : has_(blocks, 0) {}
+    void add(std::span<const std::uint32_t> blocks) {
+        for (const std::uint32_t block : blocks)
+            if (std::exchange(has_[block], std::uint8_t{1}) == 0) all_.push_back(block);
+    }
+    /// Hands over all, ascending; there are none from then on.
+    std::vector<std::uint32_t> take();
+
+  private:
+    std::vector<std::uint8_t> has_;
+    std::vector<std::uint32_t> all_;
 };
 
 }  // namespace beltgrinding

@@ -20,6 +20,7 @@
 
 namespace beltgrinding {
 
+class Checkpoints;
 class Recording;
 
 /// One row of the time series.
@@ -112,6 +113,9 @@ struct OutputRequest {
     /// Keep what every motion would remove more where by more force, as far as its force is
     /// controlled.
     bool force_influence = false;
+    /// States of an earlier simulation, of the same field and settings, to go on from; keeps those
+    /// of this one from then on. Sound on cancel or error, too.
+    Checkpoints* checkpoints = nullptr;
 };
 
 /// How a simulation is done.
@@ -166,8 +170,10 @@ struct SimulationResult {
     Influence influence;  ///< of the path's motions, from that to its first pose; if asked for
     /// The same per relative change of the motion's force, the surface as it is: mm.
     Influence force_influence;
-    std::string model;  ///< what the contact model says of itself as it was used
-    PhaseTimes wall;    ///< of this call
+    std::string model;        ///< what the contact model says of itself as it was used
+    PhaseTimes wall;          ///< of this call
+    std::size_t resumed = 0;  ///< of `steps`: those that were taken from a checkpoint
+    bool unchanged = false;   ///< all is as in the simulation that the checkpoints were of
 
     /// mm3 of the law's, that was taken from no sample.
     double lost_volume() const { return std::max(integrated_rate - removed_volume, 0.0); }

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/height_field.h"
@@ -36,6 +37,8 @@ class ChangeLog {
         height_.push_back(height);
     }
     void end_block() { ends_.push_back({runs_.size(), height_.size()}); }
+    /// Adds the blocks of another from its block number `from` on.
+    void append(const ChangeLog& other, std::size_t from = 0);
     /// Calls visit(sample, height) for the changes of a block, in ascending order.
     template <class Visit>
     void visit(std::size_t block, Visit&& visit) const {
@@ -85,6 +88,32 @@ class Recording {
                   double time);
     /// Ends the path.
     void end(const SampleBlocks& blocks);
+
+    /// Where the path began: a part of another recording fits that began it there as well.
+    struct Begin {
+        std::size_t max_bytes, frames, steps_per_frame, steps;
+        double offset;  // s
+        bool operator==(const Begin&) const = default;
+    };
+    Begin begun() const { return {max_bytes_, last(), stride_, total_steps_, offset_}; }
+    /// What was added since an earlier part.
+    struct Part {
+        bool whole = false;  // all frames: those before have become fewer
+        ChangeLog log;
+        std::vector<double> times;
+        std::vector<std::uint32_t> steps;
+        std::size_t stride = 1, pending_steps = 0, total_steps = 0;
+        double pending_time = 0.0;
+        std::vector<std::pair<std::uint32_t, std::uint64_t>> pending;  // block, its lanes
+
+        /// Goes on with the part after this one.
+        void append(const Part& next);
+        std::size_t bytes() const;
+    };
+    /// The part after the one that ended with `frames` frames of `stride` steps.
+    Part part_since(std::size_t frames, std::size_t stride) const;
+    /// Goes on with the parts of a path, the first of which began where this path does.
+    void restore(const SampleBlocks& blocks, std::span<const Part* const> parts);
     /// Forgets all; `simulate` does so when it is cancelled or fails.
     void clear();
 
@@ -121,6 +150,7 @@ class Recording {
         return order_.empty() ? position : order_[position];
     }
     void count_frame(std::size_t frame);
+    void count_frames();
     void close_key_frame(std::size_t frame);
     void halve();
     void check_frame(std::size_t frame) const;

@@ -1,0 +1,53 @@
+"""States of earlier runs on their way, kept in this process, from which a run goes on whose programs begin the same:
+what it gives is the same, to the last bit.
+
+The engine compares the programs, step by step as it sees them (src/simulation, `Checkpoints`); what else the grinding
+depends on is compared here: the field, the settings and what is to be kept of the run.
+"""
+
+import numpy as np
+
+from ..base import kept
+from ..engine import core
+
+STAGE = "grinding"
+SHARE = 0.5  # of the most that one kept value may take: the old states and the new ones together take that
+OF_FIELD = ("points", "normals", "rays", "areas", "stock_height", "height", "faces", "flags")
+OF_FIELD += ("triangles",)  # which say what a sample on a border stands for
+
+
+class RunCheckpoints:
+    """Those of one run, program by program."""
+
+    def __init__(self, field, settings, recorded, programs):
+        """``settings``: what core.simulate takes for the first program, plain data; ``recorded``: the run has a
+        recording; ``programs``: how many there are."""
+        self._most = SHARE * kept.largest() / programs  # bytes of a program's
+        self._programs, self._resumed, self._same = [], 0, True
+        if self._most < 1.0:
+            return
+        arrays = [np.asarray(getattr(field, name)) for name in OF_FIELD]
+        self._key = kept.digest(arrays, field.spacing, field.depth, settings, recorded)
+        self._before = kept.find(STAGE, self._key) or []
+
+    def next(self):
+        """core.Checkpoints for the next program; None where nothing is to be kept."""
+        if self._most < 1.0:
+            return None
+        at = len(self._programs)
+        # A program begins as it did if all before it did and ended the same.
+        same = self._same and at < len(self._before)
+        most = int(self._most)
+        self._programs.append(self._before[at].within(most) if same else core.Checkpoints(most))
+        return self._programs[-1]
+
+    def ended(self, result):
+        """``result``: that of the program, of core.simulate."""
+        self._resumed += result["resumed"]
+        self._same = self._same and result["unchanged"]
+
+    def keep(self):
+        """Keeps them for the next run, those of a program that was cancelled on its way as well."""
+        if self._programs:
+            size = sum(one.bytes for one in self._programs)
+            kept.put(STAGE, self._key, self._programs, size, self._resumed > 0)

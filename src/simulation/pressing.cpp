@@ -45,8 +45,9 @@ Pressing::Pressing(const ProcessSettings& process, double spacing, double tolera
 Pressing::Carried Pressing::carried() const {
     std::optional<ContactGrid> grid;
     if (contact_) grid = contact_->grid();
-    return {solution_, displaced_, grid,  map_.carried(), near_, hits_, programmed_,
-            placed_,   held_at_,   give_, localised_,     warm_, state_};
+    return {solution_,  displaced_,  grid,       map_.carried(), near_,
+            hits_,      programmed_, placed_,    held_at_,       give_,
+            localised_, gap_,        stands_at_, warm_,          state_};
 }
 
 void Pressing::carry(const Carried& carried) {
@@ -62,6 +63,8 @@ void Pressing::carry(const Carried& carried) {
     held_at_ = carried.held_at;
     give_ = carried.give;
     localised_ = carried.localised;
+    gap_ = carried.gap;
+    stands_at_ = carried.stands_at;
     warm_ = carried.warm;
     state_ = carried.state;
 }

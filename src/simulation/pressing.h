@@ -96,6 +96,8 @@ class Pressing {
         Frame programmed = Frame::Identity();
         double placed = 0.0, held_at = 0.0, give = 0.0;
         std::optional<double> localised;
+        Eigen::ArrayXd gap;
+        double stands_at = 0.0;
         bool warm = false;
         State state = State::kNoContact;
     };

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "beltgrinding/belt_machine.h"
+
+namespace beltgrinding {
+
+/// Columns of a belt's finite differences: unknowns in their middles, slopes at their borders,
+/// hinges at both ends.
+struct BeltColumns {
+    std::vector<double> width;    ///< mm
+    std::vector<double> between;  ///< mm, from middle to middle at each border; at the ends, half
+                                  ///< a column
+
+    int count() const { return static_cast<int>(width.size()); }
+    /// Weights of the columns i - 1, i and i + 1 in the second derivative; 0 at the ends.
+    std::array<double, 3> curvature(int i) const;
+    /// Columns from their borders' places, ascending.
+    static BeltColumns of(const std::vector<double>& borders);
+};
+
+/// A path of the belt's middle surface from roller to roller, in the machine's plane y = 0: x along
+/// the belt, z from the work to the belt; the belt that touches nothing lies at z = 0.
+struct BeltPath {
+    BeltColumns columns;
+    std::vector<double> angle, turn;      ///< by column: rad against x; 1/mm, negative: convex part
+    std::vector<double> x, z;             ///< mm, of the columns' middles
+    double length = 0.0;                  ///< mm along the path
+    double left = 0.0, right = 0.0;       ///< mm, the rollers' x
+    double left_angle = 0.0, right_angle = 0.0;  ///< rad of the free runs, positive: pressed in
+    std::vector<int> cell;  ///< by column: that of the grid along x whose forces are its own; -1:
+                            ///< none, or by place
+};
+
+/// What a string over the part does, with the corners rounded as bending does.
+struct BeltPathRequest {
+    /// (x, z) of what the belt's middle surface may touch, x ascending, mm.
+    std::vector<Eigen::Vector2d> obstacle;
+    double cell = 1.0;     ///< mm along x of the grid, whose columns are the path's where contact is
+                           ///< expected; steep ones are parted
+    int cells = 64;        ///< of the grid along x, about x = 0
+    double margin = 8.0;   ///< mm of such columns beyond that
+    double bending = 0.0;  ///< mm, length over which bending rounds a corner, sqrt(D / N)
+};
+
+/// Empty columns: the string touches nothing.
+BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request);
+
+/// N per mm of width that a string of a tension of 1 N/mm presses with on the obstacle, raised by
+/// `lift` mm.
+double string_force(const BeltRun& run, const std::vector<Eigen::Vector2d>& obstacle, double lift);
+
+}  // namespace beltgrinding

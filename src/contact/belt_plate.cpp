@@ -1,5 +1,6 @@
 #include "belt_plate.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -9,45 +10,68 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 constexpr int kLocal = BeltSpline::kLocal;
 
-/// Adds a form of the second derivative along the belt and of the value itself, in one column:
-/// 1/2 k' A k + k' B c + 1/2 c' C c, k the second derivative.
-void add_curved(const BeltColumns& columns, int i, const Matrix& a, const Matrix& b,
-                const Matrix& c, BlockBanded& matrix) {
+/// A matrix of the splines across, by its seven diagonals: row d of column s is its row s - 3 + d.
+using Band = Eigen::Array<double, 2 * kLocal - 1, Eigen::Dynamic>;
+
+Band band_of(const Matrix& matrix) {
+    Band band = Band::Zero(2 * kLocal - 1, matrix.cols());
+    for (int s = 0; s < matrix.cols(); ++s)
+        for (int r = std::max(0, s - kLocal + 1); r < std::min<int>(s + kLocal, matrix.rows()); ++r)
+            band(r - s + kLocal - 1, s) = matrix(r, s);
+    return band;
+}
+
+void add(const Band& band, double factor,
+         Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to) {
+    const int m = static_cast<int>(to.cols());
+    for (int s = 0; s < m; ++s) {
+        const double* from = &band(0, s);
+        double* column = to.data() + static_cast<std::ptrdiff_t>(s) * to.outerStride() + s;
+        const int low = std::max(0, kLocal - 1 - s), high = std::min(2 * kLocal - 1, m - s + kLocal - 1);
+        for (int d = low; d < high; ++d) column[d - kLocal + 1] += factor * from[d];
+    }
+}
+
+/// A form of the second derivative k along the belt and of the value c itself: 1/2 k' A k + k' B c
+/// + 1/2 c' C c.
+struct CurvedForm {
+    Band a, b, b_transposed;
+};
+
+/// Adds A and B of the form in one column.
+void add_curved(const BeltColumns& columns, int i, const CurvedForm& form, BlockBanded& matrix) {
     const std::array<double, 3> k = columns.curvature(i);
-    matrix.block(i, 0) += columns.width[static_cast<std::size_t>(i)] * c;
     if (k[1] == 0.0) return;
     const double h = columns.width[static_cast<std::size_t>(i)];
     for (int q = 0; q < 3; ++q) {
         for (int p = q; p < 3; ++p) {
-            auto to = matrix.block(i - 1 + q, p - q);
-            const double kp = k[static_cast<std::size_t>(p)], kq = k[static_cast<std::size_t>(q)];
-            to += h * kp * kq * a;
-            if (q == 1) to += h * kp * b;
-            if (p == 1) to += h * kq * b.transpose();
+            const auto to = matrix.block(i - 1 + q, p - q);
+            const double kp = k[static_cast<std::size_t>(p)];
+            const double kq = k[static_cast<std::size_t>(q)];
+            add(form.a, h * kp * kq, to);
+            if (q == 1) add(form.b, h * kp, to);
+            if (p == 1) add(form.b_transposed, h * kq, to);
         }
     }
 }
 
 /// Adds 1/2 s' P s + s' Q (mean of c), s the slope along the belt, at a border. At the ends the
-/// belt is held.
-void add_sloped(const BeltColumns& columns, int border, const Matrix& p, const Matrix& q,
-                BlockBanded& matrix) {
-    const auto k = static_cast<std::size_t>(border);
-    const double d = columns.between[k], square = 1.0 / d;  // d times 1 / d^2
+/// belt is held. `even` and `odd`: half of Q + Q' and of Q - Q'.
+void add_sloped(const BeltColumns& columns, int border, const Band& p, const Band& even,
+                const Band& odd, BlockBanded& matrix) {
+    const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
     const bool first = border == 0, last = border == columns.count();
-    const Matrix own = 0.5 * (q + q.transpose());
     if (!last) {
-        auto to = matrix.block(border, 0);
-        to += square * p;
-        if (!first) to += own;
+        add(p, square, matrix.block(border, 0));
+        if (!first) add(even, 1.0, matrix.block(border, 0));
     }
-    if (!first) {
-        auto to = matrix.block(border - 1, 0);
-        to += square * p;
-        if (!last) to -= own;
-    }
+    if (first) return;
+    add(p, square, matrix.block(border - 1, 0));
+    if (last) return;
+    add(even, -1.0, matrix.block(border - 1, 0));
     // Row: the column behind the border; column: that before it.
-    if (!first && !last) matrix.block(border - 1, 1) += -square * p + 0.5 * (q - q.transpose());
+    add(p, -square, matrix.block(border - 1, 1));
+    add(odd, 1.0, matrix.block(border - 1, 1));
 }
 
 /// Values at the spline's places of what has the coefficients `c`; `part` picks value or a
@@ -73,7 +97,7 @@ const auto kCurvature = [](const BeltSpline::Local& b) -> const auto& { return b
 
 /// Integral of f times the products of two splines' parts.
 template <class Row, class Column, class Values>
-void integrate(const BeltSpline& spline, const Values& f, Row row, Column column, Matrix& to) {
+void integrate(const BeltSpline& spline, const Values& f, Row row, Column column, Band& to) {
     const auto& locals = spline.locals();
     for (std::size_t q = 0; q < locals.size(); ++q) {
         const auto& local = locals[q];
@@ -81,8 +105,8 @@ void integrate(const BeltSpline& spline, const Values& f, Row row, Column column
         const double weight = spline.weights()[q] * f[static_cast<Eigen::Index>(q)];
         for (std::size_t s = 0; s < kLocal; ++s)
             for (std::size_t r = 0; r < kLocal; ++r)
-                to(local.first + static_cast<int>(r), local.first + static_cast<int>(s)) +=
-                    weight * a[r] * b[s];
+                to(kLocal - 1 + static_cast<int>(r) - static_cast<int>(s),
+                   local.first + static_cast<int>(s)) += weight * a[r] * b[s];
     }
 }
 
@@ -108,22 +132,30 @@ void BeltPlate::stiffness(const BeltColumns& columns, const BeltForces& forces,
                           BlockBanded& matrix) const {
     const int n = columns.count(), m = spline_.count();
     matrix.set_zero();
-    const Matrix a = bending_ * spline_.values();
-    const Matrix b = ratio_ * bending_ * spline_.value_curvature();
-    const Matrix c = bending_ * spline_.curvatures();
-    const Matrix twist = 2.0 * (1.0 - ratio_) * bending_ * spline_.slopes();
-    Matrix own(m, m), p(m, m), q(m, m);
+    const Matrix mixed = ratio_ * bending_ * spline_.value_curvature();
+    const CurvedForm form = {band_of(bending_ * spline_.values()), band_of(mixed),
+                             band_of(mixed.transpose())};
+    const Band c = band_of(bending_ * spline_.curvatures());
+    const Band twist = band_of(2.0 * (1.0 - ratio_) * bending_ * spline_.slopes());
+    Band own, even(2 * kLocal - 1, m), odd(2 * kLocal - 1, m);
     for (int i = 0; i < n; ++i) {
         own = c;
         integrate(spline_, forces.across.col(i), kSlope, kSlope, own);
-        add_curved(columns, i, a, b, own, matrix);
+        add(own, columns.width[static_cast<std::size_t>(i)], matrix.block(i, 0));
+        add_curved(columns, i, form, matrix);
     }
     for (int border = 0; border <= n; ++border) {
-        p = twist;
-        integrate(spline_, forces.along.col(border), kValue, kValue, p);
-        q.setZero();
-        integrate(spline_, forces.shear.col(border), kValue, kSlope, q);
-        add_sloped(columns, border, p, q, matrix);
+        own = twist;
+        integrate(spline_, forces.along.col(border), kValue, kValue, own);
+        even.setZero();
+        integrate(spline_, forces.shear.col(border), kValue, kSlope, even);
+        odd = even;
+        const Eigen::ArrayXd half = 0.5 * forces.shear.col(border);
+        even *= 0.5;
+        odd *= 0.5;
+        integrate(spline_, half, kSlope, kValue, even);
+        integrate(spline_, -half, kSlope, kValue, odd);
+        add_sloped(columns, border, own, even, odd, matrix);
     }
 }
 
@@ -185,7 +217,22 @@ BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const
     const Matrix b = value_.transpose() * weights.asDiagonal() * curvature_;
     const Matrix c = curvature_.transpose() * weights.asDiagonal() * curvature_;
     factor_ = BlockBanded(path.columns.count(), kTerms);
-    for (int i = 0; i < path.columns.count(); ++i) add_curved(path.columns, i, a, b, c, factor_);
+    for (int i = 0; i < path.columns.count(); ++i) {
+        const double h = path.columns.width[static_cast<std::size_t>(i)];
+        factor_.block(i, 0) += h * c;
+        const std::array<double, 3> k = path.columns.curvature(i);
+        if (k[1] == 0.0) continue;
+        for (int q = 0; q < 3; ++q) {
+            for (int p = q; p < 3; ++p) {
+                auto to = factor_.block(i - 1 + q, p - q);
+                const double kp = k[static_cast<std::size_t>(p)];
+                const double kq = k[static_cast<std::size_t>(q)];
+                to += h * kp * kq * a;
+                if (q == 1) to += h * kp * b;
+                if (p == 1) to += h * kq * b.transpose();
+            }
+        }
+    }
     if (!factor_.factorise()) throw std::logic_error("BeltStress: not positive definite");
 }
 

@@ -7,7 +7,7 @@ namespace beltgrinding {
 
 /// A symmetric, positive definite matrix of square blocks, of which the diagonal ones and the two
 /// below are not zero: what finite differences of the fourth order along one direction make of
-/// columns of unknowns.
+/// columns of unknowns. Bits are the same on every machine: nothing is fused, sums have one order.
 class BlockBanded {
   public:
     BlockBanded() = default;
@@ -19,11 +19,9 @@ class BlockBanded {
     void set_zero();
     /// The block in row `i + below`, column `i`; `below`: 0 to 2. In the diagonal only the lower
     /// triangle counts.
-    Eigen::Map<Eigen::MatrixXd> block(int i, int below) {
-        return {blocks_.data() + offset(i, below), size_, size_};
-    }
-    Eigen::Map<const Eigen::MatrixXd> block(int i, int below) const {
-        return {blocks_.data() + offset(i, below), size_, size_};
+    Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> block(int i, int below) {
+        return {panel(i) + std::ptrdiff_t{below} * size_, size_, size_,
+                Eigen::OuterStride<>(height_)};
     }
 
     /// The factor of Cholesky in place of the matrix. False if that is not positive definite.
@@ -32,12 +30,15 @@ class BlockBanded {
     void solve(Eigen::MatrixXd& values) const;
 
   private:
-    std::ptrdiff_t offset(int i, int below) const {
-        return (std::ptrdiff_t{3} * i + below) * size_ * size_;
+    /// The blocks of a column, one below the other, column by column.
+    double* panel(int i) { return blocks_.data() + std::ptrdiff_t{i} * height_ * size_; }
+    const double* panel(int i) const {
+        return blocks_.data() + std::ptrdiff_t{i} * height_ * size_;
     }
 
     int count_ = 0, size_ = 0;
-    std::vector<double> blocks_;
+    int height_ = 0;  // of a panel: three blocks, rounded up to whole registers
+    std::vector<double> blocks_, corner_, shifted_;
 };
 
 }  // namespace beltgrinding

@@ -10,35 +10,40 @@ constexpr double kGrowth = 1.4;    // of the columns' widths beyond the fine one
 constexpr double kCoarsest = 8.0;  // mm, of a free run's columns
 constexpr int kRollerMoves = 6;    // until the belt's length is kept to far below a micrometre
 
-using Points = std::vector<Eigen::Vector2d>;
+/// (x, z), and x on the work.
+using Points = std::vector<Eigen::Vector3d>;
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
 /// The upper hull of the obstacle between the rollers: a string pulled tight over it (Andrew's
 /// monotone chain, Information Processing Letters 9, 1979).
 Points string_over(const Points& obstacle, double left, double right) {
-    Points hull = {{left, 0.0}};
-    const auto add = [&](const Eigen::Vector2d& p) {
+    Points hull = {{left, 0.0, left}};
+    const auto add = [&](const Eigen::Vector3d& p) {
         while (hull.size() > 1 &&
                cross(hull.back() - hull[hull.size() - 2], p - hull.back()) >= 0.0)
             hull.pop_back();
         hull.push_back(p);
     };
-    for (const Eigen::Vector2d& p : obstacle)
+    for (const Eigen::Vector3d& p : obstacle)
         if (p.x() > hull.back().x() && p.x() < right) add(p);
-    add({right, 0.0});
+    add({right, 0.0, right});
     return hull;
+}
+
+double distance(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return (to - from).head<2>().norm();
 }
 
 double length_of(const Points& points) {
     double sum = 0.0;
-    for (std::size_t k = 1; k < points.size(); ++k) sum += (points[k] - points[k - 1]).norm();
+    for (std::size_t k = 1; k < points.size(); ++k) sum += distance(points[k - 1], points[k]);
     return sum;
 }
 
-double direction(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+double direction(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     return std::atan2(to.y() - from.y(), to.x() - from.x());
 }
 
@@ -134,20 +139,13 @@ BeltColumns BeltColumns::of(const std::vector<double>& borders) {
     return columns;
 }
 
-double string_force(const BeltRun& run, const Points& obstacle, double lift) {
-    Points raised = obstacle;
-    for (Eigen::Vector2d& p : raised) p.y() += lift;
-    Ends ends{};
-    const Points points = string_between_rollers(run, raised, ends);
-    if (points.size() < 3) return 0.0;
-    return std::sin(direction(points[0], points[1])) -
-           std::sin(direction(points[points.size() - 2], points.back()));
-}
-
 BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
     BeltPath path;
     Ends ends{};
-    const Points points = string_between_rollers(run, request.obstacle, ends);
+    Points obstacle;
+    for (const RidgePoint& p : request.obstacle)
+        obstacle.emplace_back(p.x, p.z + request.lift, p.surface);
+    Points points = string_between_rollers(run, obstacle, ends);
     path.left = ends.left;
     path.right = ends.right;
     if (points.size() < 3) return path;
@@ -155,40 +153,45 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
     double s = 0.0, angle = direction(points[0], points[1]);
     path.left_angle = angle;
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {
-        s += (points[k] - points[k - 1]).norm();
+        s += distance(points[k - 1], points[k]);
         const double next = direction(points[k], points[k + 1]);
         corners.push_back(s);
         turns.push_back(next - angle);
         angle = next;
     }
     path.right_angle = -angle;
-    path.length = s + (points.back() - points[points.size() - 2]).norm();
+    path.length = s + distance(points[points.size() - 2], points.back());
 
     // The grid's columns as far as contact is expected, then wider ones.
     const double half = 0.5 * request.cells;
     const auto column = [&](double x) {
         return static_cast<int>(std::floor(x / request.cell + half));
     };
-    const int least = std::clamp(column(points[1].x() - request.margin), 0, request.cells - 1);
-    const int most = std::clamp(column(points[points.size() - 2].x() + request.margin), least,
+    const int least = std::clamp(column(points[1].z() - request.margin), 0, request.cells - 1);
+    const int most = std::clamp(column(points[points.size() - 2].z() + request.margin), least,
                                 request.cells - 1);
     std::vector<double> fine;
     std::vector<int> cells;
     double start = 0.0;
     std::size_t piece = 0;  // of the string, from `start` on
-    const auto place = [&](double x) {
-        while (piece + 2 < points.size() && x > points[piece + 1].x()) {
-            start += (points[piece + 1] - points[piece]).norm();
+    points.front().z() += request.half * std::sin(path.left_angle);
+    points.back().z() -= request.half * std::sin(path.right_angle);
+    const auto place = [&](double x) {  // along the path, of x on the work
+        while (piece + 2 < points.size() && x > points[piece + 1].z()) {
+            start += distance(points[piece], points[piece + 1]);
             ++piece;
         }
-        const Eigen::Vector2d step = points[piece + 1] - points[piece];
-        return start + (x - points[piece].x()) * step.norm() / step.x();
+        const Eigen::Vector3d &from = points[piece], &to = points[piece + 1];
+        return start + (x - from.z()) * distance(from, to) / (to.z() - from.z());
     };
+    const double near = request.bending + request.cell;
+    const double touch = points[1].z() - near, leave = points[points.size() - 2].z() + near;
     for (int c = least; c <= most; ++c) {
         const double low = (c - half) * request.cell, high = low + request.cell;
         if (low <= path.left + request.cell || high >= path.right - request.cell) continue;
         const double from = place(low), to = place(high);
-        const int parts = std::max(1, static_cast<int>(std::lround((to - from) / request.cell)));
+        const double wanted = (high > touch && low < leave ? 0.5 : 1.0) * request.cell;
+        const int parts = std::max(1, static_cast<int>(std::lround((to - from) / wanted)));
         if (fine.empty()) fine.push_back(from);
         for (int k = 1; k <= parts; ++k) {
             fine.push_back(std::lerp(from, to, static_cast<double>(k) / parts));

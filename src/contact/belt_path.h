@@ -35,12 +35,20 @@ struct BeltPath {
                             ///< none, or by place
 };
 
+/// A place of the belt's middle surface, half a thickness off the work, mm.
+struct RidgePoint {
+    double x = 0.0, z = 0.0;
+    double surface = 0.0;  ///< x on the work
+};
+
 /// What a string over the part does, with the corners rounded as bending does.
 struct BeltPathRequest {
-    /// (x, z) of what the belt's middle surface may touch, x ascending, mm.
-    std::vector<Eigen::Vector2d> obstacle;
+    /// What the belt's middle surface may touch, x ascending.
+    std::vector<RidgePoint> obstacle;
+    double lift = 0.0;     ///< mm that it is raised by
+    double half = 0.0;     ///< mm, half the belt's thickness
     double cell = 1.0;     ///< mm along x of the grid, whose columns are the path's where contact is
-                           ///< expected; steep ones are parted
+                           ///< expected; in halves near where the string touches
     int cells = 64;        ///< of the grid along x, about x = 0
     double margin = 8.0;   ///< mm of such columns beyond that
     double bending = 0.0;  ///< mm, length over which bending rounds a corner, sqrt(D / N)
@@ -48,9 +56,5 @@ struct BeltPathRequest {
 
 /// Empty columns: the string touches nothing.
 BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request);
-
-/// N per mm of width that a string of a tension of 1 N/mm presses with on the obstacle, raised by
-/// `lift` mm.
-double string_force(const BeltRun& run, const std::vector<Eigen::Vector2d>& obstacle, double lift);
 
 }  // namespace beltgrinding

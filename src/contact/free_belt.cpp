@@ -57,7 +57,7 @@ class PreparedFreeBelt final : public PreparedContact {
 
     ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd* start) override;
     double first_depth(const ContactProblem& problem,
-                       const std::vector<Eigen::Vector2d>& ridge) const;
+                       const std::vector<RidgePoint>& ridge) const;
     State solve_about(const ContactProblem& problem, BeltPath path, const SurfaceUnderBelt& surface,
                       double depth, const Eigen::ArrayXd* start);
     /// Where the start has pressure; empty: nowhere.
@@ -92,15 +92,15 @@ double PreparedFreeBelt::pull_of(const BeltPath& path, double elongated) const {
 }
 
 double PreparedFreeBelt::first_depth(const ContactProblem& problem,
-                                     const std::vector<Eigen::Vector2d>& ridge) const {
+                                     const std::vector<RidgePoint>& ridge) const {
     double highest = -std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector2d& p : ridge) highest = std::max(highest, p.y());
+    for (const RidgePoint& p : ridge) highest = std::max(highest, p.z);
     if (!std::isfinite(highest)) return 0.0;
     // Of a string over the ridge, whose force rises with the depth.
+    BeltPathRequest request;
+    request.obstacle = ridge;
     const auto force = [&](double depth) {
-        BeltPathRequest request;
-        request.obstacle = ridge;
-        for (Eigen::Vector2d& p : request.obstacle) p.y() += depth;
+        request.lift = depth;
         const BeltPath path = belt_path(run_, request);
         if (path.columns.count() == 0) return 0.0;
         return pull_of(path, 0.0) * belt_.width *
@@ -289,7 +289,7 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     if (problem.force_control && problem.force == 0.0) return nothing;
 
     const SurfaceUnderBelt surface(grid(), problem, rows_, belt_.thickness);
-    const std::vector<Eigen::Vector2d> ridge = surface.ridge();
+    const std::vector<RidgePoint> ridge = surface.ridge();
     double depth = problem.force_control ? first_depth(problem, ridge) : problem.approach;
     double pull = belt_.tension;
     State state;
@@ -298,7 +298,8 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     for (int k = 0; k < kMostPaths; ++k) {
         BeltPathRequest request;
         request.obstacle = ridge;
-        for (Eigen::Vector2d& p : request.obstacle) p.y() += depth;
+        request.lift = depth;
+        request.half = 0.5 * belt_.thickness;
         request.cell = grid().ds;
         request.cells = grid().nx;
         request.bending = std::sqrt(belt_.bending() / pull);
@@ -331,10 +332,11 @@ ContactSolution PreparedFreeBelt::on_grid(const ContactProblem& problem, const S
     const double area = grid().cell_area();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
-        const auto place = [&](int i) {  // x of the middle surface, in columns of the grid
+        const auto place = [&](int i) {  // x of the belt's face, in columns of the grid
             const auto c = static_cast<std::size_t>(i);
             const double u = deflection_at(state.deflection, k, i);
-            return (path.x[c] - u * std::sin(path.angle[c])) / grid().ds + 0.5 * nx;
+            return (path.x[c] + (0.5 * belt_.thickness - u) * std::sin(path.angle[c])) / grid().ds +
+                   0.5 * nx;
         };
         for (int i = 0; i < n; ++i) {
             if (!(state.load(row, i) > 0.0)) continue;

@@ -95,8 +95,8 @@ SurfaceUnderBelt::Height SurfaceUnderBelt::at(int row, double x) const {
     return {here + slope * grid_.ds * (place - nearest), slope, cover};
 }
 
-std::vector<Eigen::Vector2d> SurfaceUnderBelt::ridge() const {
-    std::vector<Eigen::Vector2d> points;
+std::vector<RidgePoint> SurfaceUnderBelt::ridge() const {
+    std::vector<RidgePoint> points;
     double last = kNothing;
     for (int i = 0; i < grid_.nx; ++i) {
         Eigen::Index k = 0;
@@ -108,7 +108,7 @@ std::vector<Eigen::Vector2d> SurfaceUnderBelt::ridge() const {
         const double x = grid_.s(i) - half_ * slope / root;
         if (!(x > last)) continue;  // in a hollow narrower than the belt is thick
         last = x;
-        points.emplace_back(x, height_(i, k) + half_ / root);
+        points.push_back({x, height_(i, k) + half_ / root, grid_.s(i)});
     }
     return points;
 }

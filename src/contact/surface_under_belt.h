@@ -31,8 +31,8 @@ class SurfaceUnderBelt {
     SurfaceUnderBelt(const ContactGrid& grid, const ContactProblem& problem,
                      const std::vector<BeltRow>& rows, double thickness);
 
-    /// (x, z) that the belt's middle surface may touch, the highest of each column; without lift.
-    std::vector<Eigen::Vector2d> ridge() const;
+    /// What the belt's middle surface may touch, the highest of each column; without lift.
+    std::vector<RidgePoint> ridge() const;
     BeltGap seen_from(const BeltPath& path, double lift) const;
 
   private:

@@ -5,6 +5,7 @@
 
 #include "beltgrinding/error.h"
 #include "contact/free_belt.h"
+#include "contact/platen.h"
 
 namespace beltgrinding {
 namespace {
@@ -55,11 +56,19 @@ void BeltRun::validate() const {
     }
 }
 
+void Platen::validate() const {
+    need_positive(length, "platen.length",
+                  "platen: the length is {value:f} mm; give a positive one");
+    need_not_negative(layer_surface_stiffness, "platen.surface_stiffness",
+                      "platen: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
+}
+
 std::unique_ptr<ContactModel> make_belt_contact(const BeltMachine& machine) {
     switch (machine.kind) {
         case BeltMachine::Kind::kFreeBelt:
             return std::make_unique<FreeBelt>(machine.belt, machine.run);
         case BeltMachine::Kind::kPlaten:
+            return std::make_unique<PlatenBelt>(machine.belt, machine.run, machine.platen);
         case BeltMachine::Kind::kContactWheel:
         case BeltMachine::Kind::kSmallWheel:
             break;

@@ -6,8 +6,8 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kGrowth = 1.4;    // of the columns' widths beyond the fine ones
-constexpr double kCoarsest = 8.0;  // mm, of a free run's columns
+constexpr double kGrowth = 1.5;    // of the columns' widths beyond the fine ones
+constexpr double kCoarsest = 10.0;  // mm, of a free run's columns
 constexpr int kRollerMoves = 6;    // until the belt's length is kept to far below a micrometre
 
 /// (x, z), and x on the work.
@@ -185,12 +185,15 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
         return start + (x - from.z()) * distance(from, to) / (to.z() - from.z());
     };
     const double near = request.bending + request.cell;
-    const double touch = points[1].z() - near, leave = points[points.size() - 2].z() + near;
+    const double touch = points[1].z(), leave = points[points.size() - 2].z();
     for (int c = least; c <= most; ++c) {
         const double low = (c - half) * request.cell, high = low + request.cell;
         if (low <= path.left + request.cell || high >= path.right - request.cell) continue;
         const double from = place(low), to = place(high);
-        const double wanted = (high > touch && low < leave ? 0.5 : 1.0) * request.cell;
+        const double middle = 0.5 * (low + high);
+        const bool halved =
+            request.halves && std::min(std::abs(middle - touch), std::abs(middle - leave)) < near;
+        const double wanted = (halved ? 0.5 : 1.0) * request.cell;
         const int parts = std::max(1, static_cast<int>(std::lround((to - from) / wanted)));
         if (fine.empty()) fine.push_back(from);
         for (int k = 1; k <= parts; ++k) {
@@ -228,6 +231,38 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
         path.x[i] += share * (path.right - x);
         path.z[i] -= share * z;
     }
+    return path;
+}
+
+BeltPath straight_path(const BeltRun& run, double cell, int cells) {
+    BeltPath path;
+    path.left = -0.5 * run.length - run.position;
+    path.right = 0.5 * run.length - run.position;
+    path.length = run.length;
+    std::vector<double> fine;
+    std::vector<int> numbers;
+    for (int c = 0; c < cells; ++c) {
+        const double low = (c - 0.5 * cells) * cell;
+        if (low <= path.left + cell || low + cell >= path.right - cell) continue;
+        if (fine.empty()) fine.push_back(low);
+        fine.push_back(low + cell);
+        numbers.push_back(c);
+    }
+    if (fine.empty()) fine.push_back(0.5 * (path.left + path.right));
+    std::vector<double> borders = widening(fine.front(), path.left, kGrowth * cell);
+    std::reverse(borders.begin(), borders.end());
+    path.cell.assign(borders.size(), -1);
+    path.cell.insert(path.cell.end(), numbers.begin(), numbers.end());
+    borders.insert(borders.end(), fine.begin(), fine.end());
+    for (const double border : widening(fine.back(), path.right, kGrowth * cell))
+        borders.push_back(border);
+    path.cell.resize(borders.size() - 1, -1);
+    path.columns = BeltColumns::of(borders);
+    const std::size_t n = path.columns.width.size();
+    path.angle.assign(n, 0.0);
+    path.turn.assign(n, 0.0);
+    path.z.assign(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) path.x.push_back(0.5 * (borders[i] + borders[i + 1]));
     return path;
 }
 

@@ -48,7 +48,8 @@ struct BeltPathRequest {
     double lift = 0.0;     ///< mm that it is raised by
     double half = 0.0;     ///< mm, half the belt's thickness
     double cell = 1.0;     ///< mm along x of the grid, whose columns are the path's where contact is
-                           ///< expected; in halves near where the string touches
+                           ///< expected; see `halves`
+    bool halves = true;    ///< columns beside where the string first and last touches are halved
     int cells = 64;        ///< of the grid along x, about x = 0
     double margin = 8.0;   ///< mm of such columns beyond that
     double bending = 0.0;  ///< mm, length over which bending rounds a corner, sqrt(D / N)
@@ -56,5 +57,8 @@ struct BeltPathRequest {
 
 /// Empty columns: the string touches nothing.
 BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request);
+
+/// The belt that touches nothing, on the columns of the grid that lie between its rollers.
+BeltPath straight_path(const BeltRun& run, double cell, int cells);
 
 }  // namespace beltgrinding

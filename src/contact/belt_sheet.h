@@ -19,9 +19,9 @@ struct BeltForces {
 /// Woinowsky-Krieger: Theory of Plates and Shells, section 100): what it deflects from a path,
 /// along the path's normal, as splines across on columns along it. Its side edges are free, its
 /// ends hinged.
-class BeltPlate {
+class BeltSheet {
   public:
-    BeltPlate(const AbrasiveBelt& belt, const BeltSpline& spline);
+    BeltSheet(const AbrasiveBelt& belt, const BeltSpline& spline);
 
     const BeltSpline& spline() const { return spline_; }
     /// The stiffness of the belt under `forces`, N/mm.

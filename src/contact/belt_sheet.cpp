@@ -1,4 +1,4 @@
-#include "belt_plate.h"
+#include "belt_sheet.h"
 
 #include <algorithm>
 #include <array>
@@ -125,10 +125,10 @@ Eigen::VectorXd curvature_at(const BeltColumns& columns, const Matrix& c, int i)
 
 }  // namespace
 
-BeltPlate::BeltPlate(const AbrasiveBelt& belt, const BeltSpline& spline)
+BeltSheet::BeltSheet(const AbrasiveBelt& belt, const BeltSpline& spline)
     : bending_(belt.bending()), ratio_(belt.poissons_ratio), spline_(spline) {}
 
-void BeltPlate::stiffness(const BeltColumns& columns, const BeltForces& forces,
+void BeltSheet::stiffness(const BeltColumns& columns, const BeltForces& forces,
                           BlockBanded& matrix) const {
     const int n = columns.count(), m = spline_.count();
     matrix.set_zero();
@@ -159,7 +159,7 @@ void BeltPlate::stiffness(const BeltColumns& columns, const BeltForces& forces,
     }
 }
 
-Eigen::MatrixXd BeltPlate::path_load(const BeltPath& path, const BeltForces& forces) const {
+Eigen::MatrixXd BeltSheet::path_load(const BeltPath& path, const BeltForces& forces) const {
     const BeltColumns& columns = path.columns;
     const int n = columns.count(), m = spline_.count();
     Matrix load = Matrix::Zero(m, n);

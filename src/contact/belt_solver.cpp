@@ -1,0 +1,231 @@
+#include "belt_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kInterval = 2.0;   // mm, or cells of 1 mm or more: of the splines across the belt
+constexpr double kAtEdge = 1.0;     // the same at its side edges
+constexpr int kWarmUp = 2;          // solutions before it may have converged, the stress being new
+constexpr double kFollow = 0.7;     // share of a change of the stress that is taken
+constexpr double kLessStress = 0.5;  // of a stress under which the sides would buckle
+
+}  // namespace
+
+BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid)
+    : belt_(belt),
+      run_(run),
+      face_(belt.face()),
+      rows_(rows_under_belt(grid, belt.width)),
+      spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
+      plate_(belt_, spline_) {
+    for (const BeltRow& row : rows_) locals_.push_back(spline_.at(row.y));
+}
+
+double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
+    if (run_.rollers == BeltRun::Rollers::kTensioned) {
+        // Of the roller's carriage, which moves along x.
+        return 2.0 * belt_.tension / (std::cos(path.left_angle) + std::cos(path.right_angle));
+    }
+    const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
+    return belt_.membrane() * (path.length + elongated - unloaded) / unloaded;
+}
+
+double BeltSolver::deflection_at(const Eigen::MatrixXd& coefficients, std::size_t row,
+                                 int column) const {
+    const BeltSpline::Local& b = locals_[row];
+    double sum = 0.0;
+    for (int r = 0; r < BeltSpline::kLocal; ++r)
+        sum += b.value[static_cast<std::size_t>(r)] * coefficients(b.first + r, column);
+    return sum;
+}
+
+void BeltSolver::assemble(const Request& request, const BeltState& state,
+                          const BeltForces& forces) {
+    const BeltColumns& columns = state.path.columns;
+    const int n = columns.count(), m = spline_.count();
+    if (matrix_.count() != n || matrix_.size() != m) matrix_ = BlockBanded(n, m);
+    plate_.stiffness(columns, forces, matrix_);
+    right_.setZero(static_cast<Eigen::Index>(m) * n, 2);
+    Eigen::Map<Eigen::MatrixXd> load(right_.data(), m, n), lift(right_.col(1).data(), m, n);
+    load = plate_.path_load(state.path, forces);
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+        auto own = matrix_.block(i, 0);
+        const auto add = [&](std::size_t k, double w, double place, double rise) {
+            const BeltSpline::Local& b = locals_[k];
+            for (int r = 0; r < BeltSpline::kLocal; ++r) {
+                const double wr = w * b.value[static_cast<std::size_t>(r)];
+                load(b.first + r, i) += wr * place;
+                lift(b.first + r, i) += wr * rise;
+                for (int s = 0; s <= r; ++s)
+                    own(b.first + r, b.first + s) += wr * b.value[static_cast<std::size_t>(s)];
+            }
+        };
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            if (request.touching[cell(i, k)] != 0)
+                add(k, spring(request, columns, i, k), request.gap->reach(row, i), cosine);
+            if (request.backing != nullptr && borne_[cell(i, k)] != 0)
+                add(k,
+                    request.backing->stiffness() * rows_[k].width *
+                        columns.width[static_cast<std::size_t>(i)],
+                    request.backing->rest()(row, i), 0.0);
+        }
+    }
+}
+
+double BeltSolver::lift_for(const Request& request, const BeltState& state) const {
+    const BeltColumns& columns = state.path.columns;
+    const int n = columns.count(), m = spline_.count();
+    const Eigen::MatrixXd still = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n);
+    const Eigen::MatrixXd by_lift = Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
+    double force = 0.0, rise = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            if (request.touching[cell(i, k)] == 0) continue;
+            const double w = spring(request, columns, i, k) * cosine;
+            force += w * (request.gap->reach(static_cast<Eigen::Index>(k), i) -
+                          deflection_at(still, k, i));
+            rise += w * (cosine - deflection_at(by_lift, k, i));
+        }
+    }
+    return rise > 0.0 ? (request.problem->force - force) / rise : 0.0;
+}
+
+BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state) const {
+    Sums sums;
+    const BeltColumns& columns = state.path.columns;
+    for (int i = 0; i < columns.count(); ++i) {
+        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            double now = 0.0;
+            if (const double reach = request.gap->reach(row, i); std::isfinite(reach)) {
+                const double overlap =
+                    reach + state.lift * cosine - deflection_at(state.deflection, k, i);
+                if (overlap > 0.0) now = spring(request, columns, i, k) * overlap;
+            }
+            const std::uint8_t touches = now > 0.0 ? 1 : 0;
+            sums.same = sums.same && touches == request.touching[cell(i, k)];
+            request.touching[cell(i, k)] = touches;
+            sums.total += now;
+            sums.change += std::abs(now - state.load(row, i));
+            state.load(row, i) = now;
+        }
+    }
+    return sums;
+}
+
+double BeltSolver::follow_length(const Request& request, BeltState& state,
+                                 const BeltStress& stress) const {
+    const auto places = static_cast<Eigen::Index>(spline_.places().size());
+    const Eigen::Map<const Eigen::ArrayXd> weights(spline_.weights().data(), places);
+    const Eigen::Map<const Eigen::ArrayXd> y(spline_.places().data(), places);
+    const Eigen::ArrayXd longer = stress.elongation(state.deflection);
+    const double pull = pull_of(state.path, (weights * longer).sum() / belt_.width);
+    const double lean = 6.0 / (belt_.width * belt_.width) * belt_.membrane() / run_.length *
+                        (weights * y * longer).sum();
+    // Under a given force, a larger pull lets the belt in less, which makes it shorter.
+    const double slope = std::max(state.path.left_angle, state.path.right_angle);
+    const bool stretches = run_.rollers == BeltRun::Rollers::kFixed;
+    const double gain = request.problem->force_control && stretches
+                            ? belt_.membrane() * slope * slope / state.pull
+                            : 0.0;
+    const double change = (pull - state.pull) / (1.0 + gain);
+    state.pull += change;
+    state.lean += kFollow * (lean - state.lean);
+    return change;
+}
+
+BeltState BeltSolver::solve(BeltPath path, Request request) {
+    BeltState state;
+    state.path = std::move(path);
+    const ContactProblem& problem = *request.problem;
+    const BeltColumns& columns = state.path.columns;
+    const int n = columns.count(), m = spline_.count();
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    const BeltStress stress(belt_, spline_, state.path);
+    state.deflection = Eigen::MatrixXd::Zero(m, n);
+    const bool follows = request.before != nullptr &&
+                         request.before->path.cell == state.path.cell &&
+                         request.before->function.cols() == n;
+    if (follows) {
+        state.function = request.before->function;
+        state.pull = request.before->pull;
+        state.lean = request.before->lean;
+        state.load = request.before->load;
+    } else {
+        state.function = Eigen::MatrixXd::Zero(BeltStress::kTerms, n);
+        state.pull = pull_of(state.path, 0.0);
+        state.load.setZero(rows, n);
+    }
+    const std::size_t cells = rows_.size() * static_cast<std::size_t>(n);
+    if (request.touching.size() != cells) {
+        request.touching.assign(cells, 0);
+        // What the path's rounded corners lie in; else what is nearest to it.
+        const double deepest = request.gap->reach.maxCoeff();
+        const double least = deepest > 0.0 ? 0.5 * deepest : deepest - belt_.thickness;
+        for (int i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < rows_.size(); ++k)
+                request.touching[cell(i, k)] =
+                    request.gap->reach(static_cast<Eigen::Index>(k), i) > least ? 1 : 0;
+    }
+    for (int i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            if (!std::isfinite(request.gap->reach(static_cast<Eigen::Index>(k), i)))
+                request.touching[cell(i, k)] = 0;
+    if (request.backing != nullptr) {
+        borne_.assign(cells, 0);
+        for (int i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < rows_.size(); ++k)
+                borne_[cell(i, k)] =
+                    std::isfinite(request.backing->rest()(static_cast<Eigen::Index>(k), i)) ? 1 : 0;
+    }
+
+    for (state.iterations = 1; state.iterations <= problem.max_iterations; ++state.iterations) {
+        if (problem.force_control &&
+            std::find(request.touching.begin(), request.touching.end(), 1) ==
+                request.touching.end())
+            break;
+        const BeltForces forces = stress.forces(state.function, state.pull, state.lean);
+        assemble(request, state, forces);
+        if (!matrix_.factorise()) {
+            state.function *= kLessStress;
+            continue;
+        }
+        matrix_.solve(right_);
+        state.lift = problem.force_control ? lift_for(request, state) : 0.0;
+        state.deflection = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
+                           state.lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
+        const Sums sums = touch(request, state);
+        double bears = 0.0;
+        if (request.backing != nullptr) {
+            Eigen::ArrayXXd at(rows, n);
+            for (int i = 0; i < n; ++i)
+                for (std::size_t k = 0; k < rows_.size(); ++k)
+                    at(static_cast<Eigen::Index>(k), i) = deflection_at(state.deflection, k, i);
+            bears = request.backing->follow(at);
+            for (int i = 0; i < n; ++i)
+                for (std::size_t k = 0; k < rows_.size(); ++k) {
+                    const auto row = static_cast<Eigen::Index>(k);
+                    borne_[cell(i, k)] = at(row, i) > request.backing->rest()(row, i) ? 1 : 0;
+                }
+        }
+        const double stretch = follow_length(request, state, stress);
+        state.function += kFollow * (stress.function(state.deflection) - state.function);
+        state.converged = state.iterations > (follows ? 1 : kWarmUp) && sums.same &&
+                          sums.change <= problem.tolerance * sums.total &&
+                          bears <= problem.tolerance &&
+                          std::abs(stretch) <= problem.tolerance * state.pull;
+        if(getenv("BELTDBG")) fprintf(stderr,"it %d total %.4f change %.2e same %d bears %.2e lift %.4f\n",state.iterations,sums.total,sums.change/sums.total,sums.same,bears,state.lift);
+        if (state.converged) break;
+    }
+    return state;
+}
+
+}  // namespace beltgrinding

@@ -11,6 +11,8 @@ constexpr double kInterval = 2.0;   // mm, or cells of 1 mm or more: of the spli
 constexpr double kAtEdge = 1.0;     // the same at its side edges
 constexpr int kWarmUp = 2;          // solutions before it may have converged, the stress being new
 constexpr double kFollow = 0.7;     // share of a change of the stress that is taken
+constexpr int kHalvings = 8;        // of the way to the next state, for the least energy
+constexpr double kLeastStep = 1.0 / 64.0;  // of that way
 constexpr double kLessStress = 0.5;  // of a stress under which the sides would buckle
 
 }  // namespace
@@ -97,25 +99,103 @@ double BeltSolver::lift_for(const Request& request, const BeltState& state) cons
     return rise > 0.0 ? (request.problem->force - force) / rise : 0.0;
 }
 
-BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state) const {
-    Sums sums;
-    const BeltColumns& columns = state.path.columns;
-    for (int i = 0; i < columns.count(); ++i) {
-        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+double BeltSolver::work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
+                              double deflection, double lift) const {
+    const double reach = request.gap->reach(static_cast<Eigen::Index>(k), i);
+    if (!std::isfinite(reach)) return 0.0;
+    const double overlap =
+        reach + lift * std::cos(path.angle[static_cast<std::size_t>(i)]) - deflection;
+    return overlap > 0.0 ? spring(request, path.columns, i, k) * overlap : 0.0;
+}
+
+double BeltSolver::backing_force(const Request& request, const BeltPath& path, int i,
+                                 std::size_t k, double deflection) const {
+    if (request.backing == nullptr) return 0.0;
+    const double in = deflection - request.backing->rest()(static_cast<Eigen::Index>(k), i);
+    if (!(in > 0.0)) return 0.0;
+    return in * request.backing->stiffness() * rows_[k].width *
+           path.columns.width[static_cast<std::size_t>(i)];
+}
+
+BeltSolver::Cells BeltSolver::solved(const Request& request, const BeltState& state,
+                                     double lift) const {
+    const BeltPath& path = state.path;
+    const int n = path.columns.count(), m = spline_.count();
+    const Eigen::MatrixXd c =
+        Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
+        lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
+    Cells cells;
+    cells.raised = lift;
+    cells.deflection.resize(static_cast<Eigen::Index>(rows_.size()), n);
+    cells.force.setZero(cells.deflection.rows(), n);
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const auto row = static_cast<Eigen::Index>(k);
-            double now = 0.0;
-            if (const double reach = request.gap->reach(row, i); std::isfinite(reach)) {
-                const double overlap =
-                    reach + state.lift * cosine - deflection_at(state.deflection, k, i);
-                if (overlap > 0.0) now = spring(request, columns, i, k) * overlap;
-            }
+            const double u = cells.deflection(row, i) = deflection_at(c, k, i);
+            double& force = cells.force(row, i);
+            if (request.touching[cell(i, k)] != 0)
+                force += spring(request, path.columns, i, k) *
+                         (request.gap->reach(row, i) + lift * cosine - u);
+            if (request.backing != nullptr && borne_[cell(i, k)] != 0)
+                force -= request.backing->stiffness() * rows_[k].width *
+                         path.columns.width[static_cast<std::size_t>(i)] *
+                         (u - request.backing->rest()(row, i));
+        }
+    }
+    return cells;
+}
+
+double BeltSolver::slope(const Request& request, const BeltPath& path, const Cells& from,
+                         const Cells& to, double share) const {
+    const double lift = std::lerp(from.raised, to.raised, share);
+    const double rises = to.raised - from.raised;
+    double sum = request.problem->force_control ? -rises * request.problem->force : 0.0;
+    for (int i = 0; i < path.columns.count(); ++i) {
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            const double u = from.deflection(row, i), step = to.deflection(row, i) - u;
+            // What the sheet itself resists with is linear on the way.
+            const double held = std::lerp(from.force(row, i), to.force(row, i), share);
+            const double work = work_force(request, path, i, k, u + share * step, lift);
+            sum += step * (held - work + backing_force(request, path, i, k, u + share * step)) +
+                   rises * cosine * work;
+        }
+    }
+    return sum;
+}
+
+double BeltSolver::least_energy(const Request& request, const BeltPath& path, const Cells& from,
+                                const Cells& to) const {
+    // The energy is convex.
+    if (slope(request, path, from, to, 1.0) <= 0.0) return 1.0;
+    double low = 0.0, high = 1.0;
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (slope(request, path, from, to, middle) > 0.0 ? high : low) = middle;
+    }
+    return std::max(low, kLeastStep);
+}
+
+BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state, const Cells& cells) {
+    Sums sums;
+    for (int i = 0; i < state.path.columns.count(); ++i) {
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            const double u = cells.deflection(row, i);
+            const double now = work_force(request, state.path, i, k, u, state.lift);
             const std::uint8_t touches = now > 0.0 ? 1 : 0;
             sums.same = sums.same && touches == request.touching[cell(i, k)];
             request.touching[cell(i, k)] = touches;
             sums.total += now;
             sums.change += std::abs(now - state.load(row, i));
             state.load(row, i) = now;
+            if (request.backing == nullptr) continue;
+            const std::uint8_t borne =
+                backing_force(request, state.path, i, k, u) > 0.0 ? 1 : 0;
+            sums.same = sums.same && borne == borne_[cell(i, k)];
+            borne_[cell(i, k)] = borne;
         }
     }
     return sums;
@@ -164,9 +244,9 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         state.pull = pull_of(state.path, 0.0);
         state.load.setZero(rows, n);
     }
-    const std::size_t cells = rows_.size() * static_cast<std::size_t>(n);
-    if (request.touching.size() != cells) {
-        request.touching.assign(cells, 0);
+    const std::size_t all = rows_.size() * static_cast<std::size_t>(n);
+    if (request.touching.size() != all) {
+        request.touching.assign(all, 0);
         // What the path's rounded corners lie in; else what is nearest to it.
         const double deepest = request.gap->reach.maxCoeff();
         const double least = deepest > 0.0 ? 0.5 * deepest : deepest - belt_.thickness;
@@ -180,13 +260,14 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
             if (!std::isfinite(request.gap->reach(static_cast<Eigen::Index>(k), i)))
                 request.touching[cell(i, k)] = 0;
     if (request.backing != nullptr) {
-        borne_.assign(cells, 0);
+        borne_.assign(all, 0);
         for (int i = 0; i < n; ++i)
             for (std::size_t k = 0; k < rows_.size(); ++k)
                 borne_[cell(i, k)] =
                     std::isfinite(request.backing->rest()(static_cast<Eigen::Index>(k), i)) ? 1 : 0;
     }
 
+    Cells cells;
     for (state.iterations = 1; state.iterations <= problem.max_iterations; ++state.iterations) {
         if (problem.force_control &&
             std::find(request.touching.begin(), request.touching.end(), 1) ==
@@ -199,30 +280,33 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
             continue;
         }
         matrix_.solve(right_);
-        state.lift = problem.force_control ? lift_for(request, state) : 0.0;
-        state.deflection = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
-                           state.lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
-        const Sums sums = touch(request, state);
-        double bears = 0.0;
-        if (request.backing != nullptr) {
-            Eigen::ArrayXXd at(rows, n);
-            for (int i = 0; i < n; ++i)
-                for (std::size_t k = 0; k < rows_.size(); ++k)
-                    at(static_cast<Eigen::Index>(k), i) = deflection_at(state.deflection, k, i);
-            bears = request.backing->follow(at);
-            for (int i = 0; i < n; ++i)
-                for (std::size_t k = 0; k < rows_.size(); ++k) {
-                    const auto row = static_cast<Eigen::Index>(k);
-                    borne_[cell(i, k)] = at(row, i) > request.backing->rest()(row, i) ? 1 : 0;
-                }
+        Cells now = solved(request, state, problem.force_control ? lift_for(request, state) : 0.0);
+        const Eigen::MatrixXd whole =
+            Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
+            now.raised * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
+        double share = 1.0;
+        if (cells.deflection.size() > 0) share = least_energy(request, state.path, cells, now);
+        if (share < 1.0) {
+            now.deflection = cells.deflection + share * (now.deflection - cells.deflection);
+            now.force = cells.force + share * (now.force - cells.force);
+            now.raised = std::lerp(cells.raised, now.raised, share);
         }
+        state.deflection += share * (whole - state.deflection);
+        state.lift = now.raised;
+        const Sums sums = touch(request, state, now);
+        double bears = 0.0;
+        if (request.backing != nullptr && sums.same) {
+            bears = request.backing->follow(now.deflection);
+            touch(request, state, now);
+        }
+        cells = std::move(now);
         const double stretch = follow_length(request, state, stress);
-        state.function += kFollow * (stress.function(state.deflection) - state.function);
+        if (request.backing == nullptr || sums.same)
+            state.function += kFollow * (stress.function(state.deflection) - state.function);
         state.converged = state.iterations > (follows ? 1 : kWarmUp) && sums.same &&
                           sums.change <= problem.tolerance * sums.total &&
                           bears <= problem.tolerance &&
                           std::abs(stretch) <= problem.tolerance * state.pull;
-        if(getenv("BELTDBG")) fprintf(stderr,"it %d total %.4f change %.2e same %d bears %.2e lift %.4f\n",state.iterations,sums.total,sums.change/sums.total,sums.same,bears,state.lift);
         if (state.converged) break;
     }
     return state;

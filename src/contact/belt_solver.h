@@ -66,6 +66,12 @@ class BeltSolver {
     BeltState solve(BeltPath path, Request request);
 
   private:
+    /// mm by row and column, and the forces there under the deflection, N: the work's less the
+    /// backing's. `raised` is that by which the work has been lifted.
+    struct Cells {
+        Eigen::ArrayXXd deflection, force;
+        double raised = 0.0;
+    };
     struct Sums {
         double total = 0.0, change = 0.0;  // N
         bool same = true;
@@ -73,8 +79,20 @@ class BeltSolver {
     void assemble(const Request& request, const BeltState& state, const BeltForces& forces);
     /// mm that the work must rise for the force.
     double lift_for(const Request& request, const BeltState& state) const;
-    /// Where belt and work overlap now.
-    Sums touch(Request& request, BeltState& state) const;
+    /// What the last solution deflects by, and the forces of the springs that were on.
+    Cells solved(const Request& request, const BeltState& state, double lift) const;
+    /// The share of the way from one state to the other, up to 1, at which the energy is least.
+    double least_energy(const Request& request, const BeltPath& path, const Cells& from,
+                        const Cells& to) const;
+    /// The derivative of the energy on that way, N mm.
+    double slope(const Request& request, const BeltPath& path, const Cells& from, const Cells& to,
+                 double share) const;
+    /// Where belt and work overlap now, and where the backing bears.
+    Sums touch(Request& request, BeltState& state, const Cells& cells);
+    double work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
+                      double deflection, double lift) const;
+    double backing_force(const Request& request, const BeltPath& path, int i, std::size_t k,
+                         double deflection) const;
     /// The change of the pull.
     double follow_length(const Request& request, BeltState& state, const BeltStress& stress) const;
     std::size_t cell(int column, std::size_t row) const {

@@ -20,10 +20,10 @@ namespace {
 constexpr double kFlat = 1000.0;          // mm
 constexpr double kFlatThicknesses = 100;  // the same, in thicknesses
 constexpr int kPlatenIterations = 4;      // times those that a problem allows: the layers follow
-constexpr double kSpring = 0.5;           // of a cell's own compliance: what stands for the layers
+constexpr double kSpring = 1.4;           // times the layers' stiffness under even pressure
 
-/// The layers under the belt. Their pressure is that of springs, a little stiffer than a cell of
-/// the layers by itself, from where they are at rest under the pressure of all others; that is
+/// The layers under the belt. Their pressure is that of springs, about as stiff as the layers
+/// are under even pressure, from where they are at rest under the pressure of all others; that is
 /// followed until it is true.
 class LayerBacking final : public BeltBacking {
   public:
@@ -35,8 +35,11 @@ class LayerBacking final : public BeltBacking {
             on_.push_back(std::abs(path.x[i]) < half_length ? 1 : 0);
         }
         stiffness_ = face_;
-        if (layers_ != nullptr)
-            stiffness_ = 1.0 / (1.0 / face_ + kSpring * layers_->diagonal());
+        if (layers_ == nullptr) return;
+        // Following converges while no pressure sinks in more than twice as far as the springs do.
+        ones_.setOnes(layers_->grid().cells());
+        layers_->apply(ones_, ones_, sunk_);
+        stiffness_ = kSpring / (1.0 / face_ + sunk_.maxCoeff());
     }
     void start(Eigen::Index rows) {
         rest_.resize(rows, static_cast<Eigen::Index>(cell_.size()));
@@ -54,7 +57,6 @@ class LayerBacking final : public BeltBacking {
         }, nx);
         const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
         pressure_ = std::move(now);
-        ones_.setOnes(pressure_.size());
         layers_->apply(pressure_, ones_, sunk_);
         for_cells([&](Eigen::Index row, Eigen::Index column, int cell) {
             rest_(row, column) =

@@ -6,6 +6,7 @@
 namespace beltgrinding {
 namespace {
 
+constexpr double kHalved = 3.0;    // bending lengths beside first and last touch with half columns
 constexpr double kGrowth = 1.5;    // of the columns' widths beyond the fine ones
 constexpr double kCoarsest = 10.0;  // mm, of a free run's columns
 constexpr int kRollerMoves = 6;    // until the belt's length is kept to far below a micrometre
@@ -123,7 +124,7 @@ std::vector<double> rounded(const std::vector<double>& places, const std::vector
 std::array<double, 3> BeltColumns::curvature(int i) const {
     if (i == 0 || i + 1 == count()) return {0.0, 0.0, 0.0};
     const auto k = static_cast<std::size_t>(i);
-    const double before = 1.0 / (between[k] * width[k]), after = 1.0 / (between[k + 1] * width[k]);
+    const double before = 1.0 / (between[k] * apart(i)), after = 1.0 / (between[k + 1] * apart(i));
     return {before, -before - after, after};
 }
 
@@ -184,7 +185,7 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
         const Eigen::Vector3d &from = points[piece], &to = points[piece + 1];
         return start + (x - from.z()) * distance(from, to) / (to.z() - from.z());
     };
-    const double near = request.bending + request.cell;
+    const double near = kHalved * request.bending + request.cell;
     const double touch = points[1].z(), leave = points[points.size() - 2].z();
     for (int c = least; c <= most; ++c) {
         const double low = (c - half) * request.cell, high = low + request.cell;
@@ -220,8 +221,9 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
         const double h = path.columns.width[i], middle = 0.5 * (angles[i] + angles[i + 1]);
         path.angle.push_back(middle);
         path.turn.push_back((angles[i + 1] - angles[i]) / h);
-        path.x.push_back(x + 0.5 * h * std::cos(middle));
-        path.z.push_back(z + 0.5 * h * std::sin(middle));
+        const double quarter = 0.5 * (angles[i] + middle);  // half-way to the column's middle
+        path.x.push_back(x + 0.5 * h * std::cos(quarter));
+        path.z.push_back(z + 0.5 * h * std::sin(quarter));
         x += h * std::cos(middle);
         z += h * std::sin(middle);
     }

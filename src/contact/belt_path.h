@@ -16,6 +16,12 @@ struct BeltColumns {
                                   ///< a column
 
     int count() const { return static_cast<int>(width.size()); }
+    /// mm between the places of the slopes before and behind a column, which lie half-way between
+    /// the columns' middles: a parabola has its curvature, an even moment no force.
+    double apart(int i) const {
+        const auto k = static_cast<std::size_t>(i);
+        return 0.5 * (between[k] + between[k + 1]);
+    }
     /// Weights of the columns i - 1, i and i + 1 in the second derivative; 0 at the ends.
     std::array<double, 3> curvature(int i) const;
     /// Columns from their borders' places, ascending.

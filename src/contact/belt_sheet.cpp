@@ -42,7 +42,7 @@ struct CurvedForm {
 void add_curved(const BeltColumns& columns, int i, const CurvedForm& form, BlockBanded& matrix) {
     const std::array<double, 3> k = columns.curvature(i);
     if (k[1] == 0.0) return;
-    const double h = columns.width[static_cast<std::size_t>(i)];
+    const double h = columns.apart(i);
     for (int q = 0; q < 3; ++q) {
         for (int p = q; p < 3; ++p) {
             const auto to = matrix.block(i - 1 + q, p - q);
@@ -179,9 +179,10 @@ Eigen::MatrixXd BeltSheet::path_load(const BeltPath& path, const BeltForces& for
                                                 locals[q].value[static_cast<std::size_t>(r)];
         const std::array<double, 3> weights = columns.curvature(i);
         if (weights[1] == 0.0) continue;
+        const double bent = columns.apart(i) * path.turn[k];
         for (int p = 0; p < 3; ++p)
-            load.col(i - 1 + p) -= by_width * weights[static_cast<std::size_t>(p)] * even;
-        load.col(i) -= by_width * across;
+            load.col(i - 1 + p) -= bent * weights[static_cast<std::size_t>(p)] * even;
+        load.col(i) -= bent * across;
     }
     return load;
 }
@@ -222,14 +223,15 @@ BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const
         factor_.block(i, 0) += h * c;
         const std::array<double, 3> k = path.columns.curvature(i);
         if (k[1] == 0.0) continue;
+        const double apart = path.columns.apart(i);
         for (int q = 0; q < 3; ++q) {
             for (int p = q; p < 3; ++p) {
                 auto to = factor_.block(i - 1 + q, p - q);
                 const double kp = k[static_cast<std::size_t>(p)];
                 const double kq = k[static_cast<std::size_t>(q)];
-                to += h * kp * kq * a;
-                if (q == 1) to += h * kp * b;
-                if (p == 1) to += h * kq * b.transpose();
+                to += apart * kp * kq * a;
+                if (q == 1) to += apart * kp * b;
+                if (p == 1) to += apart * kq * b.transpose();
             }
         }
     }

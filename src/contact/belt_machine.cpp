@@ -41,8 +41,9 @@ void AbrasiveBelt::validate() const {
     }
     need_positive(tension, "belt.tension",
                   "belt: the tension is {value:f} N/mm; give a positive one");
-    need_not_negative(surface_stiffness, "belt.surface_stiffness",
-                      "belt: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
+    need_not_negative(
+        surface_stiffness, "belt.surface_stiffness",
+        "belt: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
 }
 
 void BeltRun::validate() const {
@@ -59,8 +60,9 @@ void BeltRun::validate() const {
 void Platen::validate() const {
     need_positive(length, "platen.length",
                   "platen: the length is {value:f} mm; give a positive one");
-    need_not_negative(layer_surface_stiffness, "platen.surface_stiffness",
-                      "platen: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
+    need_not_negative(
+        layer_surface_stiffness, "platen.surface_stiffness",
+        "platen: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
 }
 
 std::unique_ptr<ContactModel> make_belt_contact(const BeltMachine& machine) {

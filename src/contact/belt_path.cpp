@@ -6,10 +6,10 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kHalved = 3.0;    // bending lengths beside first and last touch with half columns
-constexpr double kGrowth = 1.5;    // of the columns' widths beyond the fine ones
+constexpr double kHalved = 3.0;     // bending lengths beside first and last touch with half columns
+constexpr double kGrowth = 1.5;     // of the columns' widths beyond the fine ones
 constexpr double kCoarsest = 10.0;  // mm, of a free run's columns
-constexpr int kRollerMoves = 6;    // until the belt's length is kept to far below a micrometre
+constexpr int kRollerMoves = 6;     // until the belt's length is kept to far below a micrometre
 
 /// (x, z), and x on the work.
 using Points = std::vector<Eigen::Vector3d>;

@@ -32,10 +32,10 @@ struct BeltColumns {
 /// the belt, z from the work to the belt; the belt that touches nothing lies at z = 0.
 struct BeltPath {
     BeltColumns columns;
-    std::vector<double> angle, turn;      ///< by column: rad against x; 1/mm, negative: convex part
-    std::vector<double> x, z;             ///< mm, of the columns' middles
-    double length = 0.0;                  ///< mm along the path
-    double left = 0.0, right = 0.0;       ///< mm, the rollers' x
+    std::vector<double> angle, turn;  ///< by column: rad against x; 1/mm, negative: convex part
+    std::vector<double> x, z;         ///< mm, of the columns' middles
+    double length = 0.0;              ///< mm along the path
+    double left = 0.0, right = 0.0;   ///< mm, the rollers' x
     double left_angle = 0.0, right_angle = 0.0;  ///< rad of the free runs, positive: pressed in
     std::vector<int> cell;  ///< by column: that of the grid along x whose forces are its own; -1:
                             ///< none, or by place
@@ -51,13 +51,13 @@ struct RidgePoint {
 struct BeltPathRequest {
     /// What the belt's middle surface may touch, x ascending.
     std::vector<RidgePoint> obstacle;
-    double lift = 0.0;     ///< mm that it is raised by
-    double half = 0.0;     ///< mm, half the belt's thickness
-    double cell = 1.0;     ///< mm along x of the grid, whose columns are the path's where contact is
-                           ///< expected; see `halves`
-    bool halves = true;    ///< columns beside where the string first and last touches are halved
-    int cells = 64;        ///< of the grid along x, about x = 0
-    double margin = 8.0;   ///< mm of such columns beyond that
+    double lift = 0.0;    ///< mm that it is raised by
+    double half = 0.0;    ///< mm, half the belt's thickness
+    double cell = 1.0;    ///< mm along x of the grid, whose columns are the path's where contact is
+                          ///< expected; see `halves`
+    bool halves = true;   ///< columns beside where the string first and last touches are halved
+    int cells = 64;       ///< of the grid along x, about x = 0
+    double margin = 8.0;  ///< mm of such columns beyond that
     double bending = 0.0;  ///< mm, length over which bending rounds a corner, sqrt(D / N)
 };
 

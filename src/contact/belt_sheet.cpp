@@ -21,13 +21,13 @@ Band band_of(const Matrix& matrix) {
     return band;
 }
 
-void add(const Band& band, double factor,
-         Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to) {
+void add(const Band& band, double factor, Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to) {
     const int m = static_cast<int>(to.cols());
     for (int s = 0; s < m; ++s) {
         const double* from = &band(0, s);
         double* column = to.data() + static_cast<std::ptrdiff_t>(s) * to.outerStride() + s;
-        const int low = std::max(0, kLocal - 1 - s), high = std::min(2 * kLocal - 1, m - s + kLocal - 1);
+        const int low = std::max(0, kLocal - 1 - s),
+                  high = std::min(2 * kLocal - 1, m - s + kLocal - 1);
         for (int d = low; d < high; ++d) column[d - kLocal + 1] += factor * from[d];
     }
 }
@@ -91,9 +91,15 @@ Eigen::ArrayXd at_places(const BeltSpline& spline, const Eigen::Ref<const Eigen:
     return result;
 }
 
-const auto kValue = [](const BeltSpline::Local& b) -> const auto& { return b.value; };
-const auto kSlope = [](const BeltSpline::Local& b) -> const auto& { return b.slope; };
-const auto kCurvature = [](const BeltSpline::Local& b) -> const auto& { return b.curvature; };
+const auto kValue = [](const BeltSpline::Local& b) -> const auto& {
+    return b.value;
+};
+const auto kSlope = [](const BeltSpline::Local& b) -> const auto& {
+    return b.slope;
+};
+const auto kCurvature = [](const BeltSpline::Local& b) -> const auto& {
+    return b.curvature;
+};
 
 /// Integral of f times the products of two splines' parts.
 template <class Row, class Column, class Values>
@@ -165,8 +171,7 @@ Eigen::MatrixXd BeltSheet::path_load(const BeltPath& path, const BeltForces& for
     Matrix load = Matrix::Zero(m, n);
     const Eigen::VectorXd ones = Eigen::VectorXd::Ones(m);
     const Eigen::VectorXd even = bending_ * spline_.values() * ones;
-    const Eigen::VectorXd across =
-        ratio_ * bending_ * spline_.value_curvature().transpose() * ones;
+    const Eigen::VectorXd across = ratio_ * bending_ * spline_.value_curvature().transpose() * ones;
     const auto& locals = spline_.locals();
     for (int i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -251,13 +256,11 @@ Eigen::MatrixXd BeltStress::function(const Matrix& deflection) const {
     for (int i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const Eigen::ArrayXd along =
-            path_.turn[k] +
-            at_places(spline_, curvature_at(columns, deflection, i), kValue);
+            path_.turn[k] + at_places(spline_, curvature_at(columns, deflection, i), kValue);
         const Eigen::ArrayXd across = at_places(spline_, deflection.col(i), kCurvature);
-        const Eigen::ArrayXd gauss =
-            0.5 * (twist.col(i) + twist.col(i + 1)) - along * across;
-        right.col(i) = belt_.membrane() * columns.width[k] *
-                       (value_.transpose() * (weights * gauss).matrix());
+        const Eigen::ArrayXd gauss = 0.5 * (twist.col(i) + twist.col(i + 1)) - along * across;
+        right.col(i) =
+            belt_.membrane() * columns.width[k] * (value_.transpose() * (weights * gauss).matrix());
     }
     Matrix all = Eigen::Map<Matrix>(right.data(), right.size(), 1);
     factor_.solve(all);
@@ -267,8 +270,7 @@ Eigen::MatrixXd BeltStress::function(const Matrix& deflection) const {
 Eigen::ArrayXd BeltStress::elongation(const Matrix& deflection) const {
     const BeltColumns& columns = path_.columns;
     const int n = columns.count();
-    Eigen::ArrayXd sum =
-        Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(spline_.places().size()));
+    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(spline_.places().size()));
     for (int border = 0; border <= n; ++border)
         sum += 0.5 * columns.between[static_cast<std::size_t>(border)] *
                at_places(spline_, slope_at(columns, deflection, border), kValue).square();
@@ -294,8 +296,7 @@ BeltForces BeltStress::forces(const Matrix& function, double mean, double lean) 
         Eigen::VectorXd f = Eigen::VectorXd::Zero(kTerms);
         if (border > 0 && border < n) f = 0.5 * (function.col(border - 1) + function.col(border));
         forces.along.col(border) = pull + (curvature_ * f).array();
-        forces.shear.col(border) =
-            -(slope_ * slope_at(columns, function, border)).array();
+        forces.shear.col(border) = -(slope_ * slope_at(columns, function, border)).array();
     }
     for (int i = 0; i < n; ++i)
         forces.across.col(i) = (value_ * curvature_at(columns, function, i)).array();

@@ -1,26 +1,33 @@
 #include "belt_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace beltgrinding {
 namespace {
 
-constexpr double kInterval = 2.0;   // mm, or cells of 1 mm or more: of the splines across the belt
-constexpr double kAtEdge = 1.0;     // the same at its side edges
-constexpr int kWarmUp = 2;          // solutions before it may have converged, the stress being new
-constexpr double kFollow = 0.7;     // share of a change of the stress that is taken
-constexpr int kHalvings = 8;        // of the way to the next state, for the least energy
+constexpr double kInterval = 2.0;  // mm, or cells of 1 mm or more: of the splines across the belt
+constexpr double kAtEdge = 1.0;    // the same at its side edges
+constexpr int kWarmUp = 2;         // solutions before it may have converged, the stress being new
+constexpr double kFollow = 0.7;    // share of a change of the stress that is taken
+// The face of an elastic layer of thickness t that bends under waves of wavenumber k on one face
+// deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
+// where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
+constexpr double kThick = 0.2;
+constexpr int kHalvings = 8;               // of the way to the next state, for the least energy
 constexpr double kLeastStep = 1.0 / 64.0;  // of that way
-constexpr double kLessStress = 0.5;  // of a stress under which the sides would buckle
+constexpr double kLessStress = 0.5;        // of a stress under which the sides would buckle
 
 }  // namespace
 
-BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid)
+BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid,
+                       Sheet sheet)
     : belt_(belt),
       run_(run),
       face_(belt.face()),
+      shear_(sheet == Sheet::kThick ? 0.5 * kThick * belt.thickness * belt.thickness : 0.0),
       rows_(rows_under_belt(grid, belt.width)),
       spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
       plate_(belt_, spline_) {
@@ -36,12 +43,20 @@ double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
     return belt_.membrane() * (path.length + elongated - unloaded) / unloaded;
 }
 
-double BeltSolver::deflection_at(const Eigen::MatrixXd& coefficients, std::size_t row,
-                                 int column) const {
+double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
+                                 std::size_t row, int column) const {
     const BeltSpline::Local& b = locals_[row];
+    const std::array<double, 3> along = columns.curvature(column);
     double sum = 0.0;
-    for (int r = 0; r < BeltSpline::kLocal; ++r)
-        sum += b.value[static_cast<std::size_t>(r)] * coefficients(b.first + r, column);
+    for (std::size_t r = 0; r < BeltSpline::kLocal; ++r) {
+        const int at = b.first + static_cast<int>(r);
+        double curved = along[1] * coefficients(at, column);
+        if (along[1] != 0.0)
+            curved +=
+                along[0] * coefficients(at, column - 1) + along[2] * coefficients(at, column + 1);
+        sum += (b.value[r] - shear_ * b.curvature[r]) * coefficients(at, column) -
+               shear_ * b.value[r] * curved;
+    }
     return sum;
 }
 
@@ -56,21 +71,37 @@ void BeltSolver::assemble(const Request& request, const BeltState& state,
     load = plate_.path_load(state.path, forces);
     for (int i = 0; i < n; ++i) {
         const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
-        auto own = matrix_.block(i, 0);
+        const std::array<double, 3> along = columns.curvature(i);
+        // The face's deflection is of three columns.
+        const int first = along[1] != 0.0 ? 0 : 1, last = along[1] != 0.0 ? 2 : 1;
         const auto add = [&](std::size_t k, double w, double place, double rise) {
             const BeltSpline::Local& b = locals_[k];
-            for (int r = 0; r < BeltSpline::kLocal; ++r) {
-                const double wr = w * b.value[static_cast<std::size_t>(r)];
-                load(b.first + r, i) += wr * place;
-                lift(b.first + r, i) += wr * rise;
-                for (int s = 0; s <= r; ++s)
-                    own(b.first + r, b.first + s) += wr * b.value[static_cast<std::size_t>(s)];
+            std::array<std::array<double, BeltSpline::kLocal>, 3> v{};
+            for (std::size_t p = 0; p < 3; ++p)
+                for (std::size_t r = 0; r < BeltSpline::kLocal; ++r)
+                    v[p][r] = (p == 1 ? b.value[r] - shear_ * b.curvature[r] : 0.0) -
+                              shear_ * along[p] * b.value[r];
+            for (int q = first; q <= last; ++q) {
+                const auto& vq = v[static_cast<std::size_t>(q)];
+                for (int r = 0; r < BeltSpline::kLocal; ++r) {
+                    const double wr = w * vq[static_cast<std::size_t>(r)];
+                    load(b.first + r, i - 1 + q) += wr * place;
+                    lift(b.first + r, i - 1 + q) += wr * rise;
+                }
+                for (int p = q; p <= last; ++p) {
+                    const auto& vp = v[static_cast<std::size_t>(p)];
+                    auto to = matrix_.block(i - 1 + q, p - q);
+                    for (int c = 0; c < BeltSpline::kLocal; ++c)
+                        for (int r = 0; r < BeltSpline::kLocal; ++r)
+                            to(b.first + r, b.first + c) += w * vp[static_cast<std::size_t>(r)] *
+                                                            vq[static_cast<std::size_t>(c)];
+                }
             }
         };
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const auto row = static_cast<Eigen::Index>(k);
             if (request.touching[cell(i, k)] != 0)
-                add(k, spring(request, columns, i, k), request.gap->reach(row, i), cosine);
+                add(k, spring(request, columns, i, k), reach_at(request, state.path, i, k), cosine);
             if (request.backing != nullptr && borne_[cell(i, k)] != 0)
                 add(k,
                     request.backing->stiffness() * rows_[k].width *
@@ -91,9 +122,9 @@ double BeltSolver::lift_for(const Request& request, const BeltState& state) cons
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             if (request.touching[cell(i, k)] == 0) continue;
             const double w = spring(request, columns, i, k) * cosine;
-            force += w * (request.gap->reach(static_cast<Eigen::Index>(k), i) -
-                          deflection_at(still, k, i));
-            rise += w * (cosine - deflection_at(by_lift, k, i));
+            force +=
+                w * (reach_at(request, state.path, i, k) - deflection_at(columns, still, k, i));
+            rise += w * (cosine - deflection_at(columns, by_lift, k, i));
         }
     }
     return rise > 0.0 ? (request.problem->force - force) / rise : 0.0;
@@ -101,15 +132,15 @@ double BeltSolver::lift_for(const Request& request, const BeltState& state) cons
 
 double BeltSolver::work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
                               double deflection, double lift) const {
-    const double reach = request.gap->reach(static_cast<Eigen::Index>(k), i);
+    const double reach = reach_at(request, path, i, k);
     if (!std::isfinite(reach)) return 0.0;
     const double overlap =
         reach + lift * std::cos(path.angle[static_cast<std::size_t>(i)]) - deflection;
     return overlap > 0.0 ? spring(request, path.columns, i, k) * overlap : 0.0;
 }
 
-double BeltSolver::backing_force(const Request& request, const BeltPath& path, int i,
-                                 std::size_t k, double deflection) const {
+double BeltSolver::backing_force(const Request& request, const BeltPath& path, int i, std::size_t k,
+                                 double deflection) const {
     if (request.backing == nullptr) return 0.0;
     const double in = deflection - request.backing->rest()(static_cast<Eigen::Index>(k), i);
     if (!(in > 0.0)) return 0.0;
@@ -121,9 +152,8 @@ BeltSolver::Cells BeltSolver::solved(const Request& request, const BeltState& st
                                      double lift) const {
     const BeltPath& path = state.path;
     const int n = path.columns.count(), m = spline_.count();
-    const Eigen::MatrixXd c =
-        Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
-        lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
+    const Eigen::MatrixXd c = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
+                              lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
     Cells cells;
     cells.raised = lift;
     cells.deflection.resize(static_cast<Eigen::Index>(rows_.size()), n);
@@ -132,11 +162,11 @@ BeltSolver::Cells BeltSolver::solved(const Request& request, const BeltState& st
         const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const auto row = static_cast<Eigen::Index>(k);
-            const double u = cells.deflection(row, i) = deflection_at(c, k, i);
+            const double u = cells.deflection(row, i) = deflection_at(path.columns, c, k, i);
             double& force = cells.force(row, i);
             if (request.touching[cell(i, k)] != 0)
                 force += spring(request, path.columns, i, k) *
-                         (request.gap->reach(row, i) + lift * cosine - u);
+                         (reach_at(request, path, i, k) + lift * cosine - u);
             if (request.backing != nullptr && borne_[cell(i, k)] != 0)
                 force -= request.backing->stiffness() * rows_[k].width *
                          path.columns.width[static_cast<std::size_t>(i)] *
@@ -192,8 +222,7 @@ BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state, const Cel
             sums.change += std::abs(now - state.load(row, i));
             state.load(row, i) = now;
             if (request.backing == nullptr) continue;
-            const std::uint8_t borne =
-                backing_force(request, state.path, i, k, u) > 0.0 ? 1 : 0;
+            const std::uint8_t borne = backing_force(request, state.path, i, k, u) > 0.0 ? 1 : 0;
             sums.same = sums.same && borne == borne_[cell(i, k)];
             borne_[cell(i, k)] = borne;
         }
@@ -269,9 +298,8 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
 
     Cells cells;
     for (state.iterations = 1; state.iterations <= problem.max_iterations; ++state.iterations) {
-        if (problem.force_control &&
-            std::find(request.touching.begin(), request.touching.end(), 1) ==
-                request.touching.end())
+        if (problem.force_control && std::find(request.touching.begin(), request.touching.end(),
+                                               1) == request.touching.end())
             break;
         const BeltForces forces = stress.forces(state.function, state.pull, state.lean);
         assemble(request, state, forces);

@@ -47,13 +47,18 @@ struct BeltState {
 /// springs are on or off), while its stress and its length follow.
 class BeltSolver {
   public:
-    BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid);
+    /// Thin: what deflects is the middle surface, as Kirchhoff has it; thick: its face, which shear
+    /// and the thickness let deflect more under what is short against that.
+    enum class Sheet { kThin, kThick };
+
+    BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid, Sheet sheet);
 
     const std::vector<BeltRow>& rows() const { return rows_; }
     /// N/mm along a belt that is longer than the path by `elongated` mm.
     double pull_of(const BeltPath& path, double elongated) const;
-    /// mm at the middle of a row.
-    double deflection_at(const Eigen::MatrixXd& coefficients, std::size_t row, int column) const;
+    /// mm that the belt's face deflects by at the middles of a row and a column of the path.
+    double deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
+                         std::size_t row, int column) const;
 
     struct Request {
         const ContactProblem* problem = nullptr;  ///< control, tolerance, iterations
@@ -98,6 +103,11 @@ class BeltSolver {
     std::size_t cell(int column, std::size_t row) const {
         return static_cast<std::size_t>(column) * rows_.size() + row;
     }
+    /// mm along the normal at which the face meets the work, as the path's own turn has it.
+    double reach_at(const Request& request, const BeltPath& path, int i, std::size_t k) const {
+        return request.gap->reach(static_cast<Eigen::Index>(k), i) +
+               shear_ * path.turn[static_cast<std::size_t>(i)];
+    }
     double spring(const Request& request, const BeltColumns& columns, int i, std::size_t k) const {
         return face_ * request.gap->cover(static_cast<Eigen::Index>(k), i) * rows_[k].width *
                columns.width[static_cast<std::size_t>(i)];
@@ -105,7 +115,8 @@ class BeltSolver {
 
     AbrasiveBelt belt_;
     BeltRun run_;
-    double face_;  // MPa/mm
+    double face_;   // MPa/mm
+    double shear_;  // mm2: of the face's deflection, by what the sheet is bent
     std::vector<BeltRow> rows_;
     BeltSpline spline_;
     BeltSheet plate_;

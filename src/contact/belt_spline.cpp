@@ -36,7 +36,8 @@ BeltSpline::BeltSpline(double width, double interval, double finest) {
 
     const double gauss = std::sqrt(0.6);
     for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
-        const double middle = 0.5 * (lines[k] + lines[k + 1]), step = 0.5 * (lines[k + 1] - lines[k]);
+        const double middle = 0.5 * (lines[k] + lines[k + 1]),
+                     step = 0.5 * (lines[k + 1] - lines[k]);
         for (const auto [place, weight] :
              {std::array{-gauss, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {gauss, 5.0 / 9.0}}) {
             places_.push_back(middle + place * step);
@@ -77,7 +78,8 @@ BeltSpline::Local BeltSpline::at(double y) const {
             // Spline k - d + r of degree d, from those of degree d - 1.
             const std::size_t i = k - d + r;
             double sum = 0.0;
-            if (r > 0) sum += (y - knots_[i]) / (knots_[i + d] - knots_[i]) * by_degree[d - 1][r - 1];
+            if (r > 0)
+                sum += (y - knots_[i]) / (knots_[i + d] - knots_[i]) * by_degree[d - 1][r - 1];
             if (r < d)
                 sum += (knots_[i + d + 1] - y) / (knots_[i + d + 1] - knots_[i + 1]) *
                        by_degree[d - 1][r];

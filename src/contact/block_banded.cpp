@@ -109,8 +109,7 @@ bool BlockBanded::factorise() {
         double* own = panel(i);
         for (int first = 0; first < m; first += kBlock) {
             const int end = std::min(first + kBlock, m);
-            if (first > 0)
-                subtract_square(own, height_, first, height_, first, end, own, height_);
+            if (first > 0) subtract_square(own, height_, first, height_, first, end, own, height_);
             if (!factorise_columns(own, height_, first, end, height_)) return false;
         }
         // What is left of the two panels behind: their blocks (0, 0), (1, 0) and (1, 1).
@@ -128,8 +127,7 @@ bool BlockBanded::factorise() {
         subtract_square(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data(), rows);
         const auto add = [&](int row, int column, double* to) {
             for (int k = 0; k < m; ++k) {
-                const double* from = corner_.data() +
-                                     (std::ptrdiff_t{column} * m + k) * rows +
+                const double* from = corner_.data() + (std::ptrdiff_t{column} * m + k) * rows +
                                      std::ptrdiff_t{row} * m;
                 double* at = to + std::ptrdiff_t{k} * height_;
                 for (int r = row == column ? k : 0; r < m; ++r) at[r] += from[r];

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -20,16 +20,19 @@ constexpr double kMargin = 2.0;       // bending lengths beside the contact with
 constexpr double kMarginCells = 5.0;  // the same at least, in cells
 constexpr int kMostPaths = 6;         // until the path that is linearised about is the belt's
 constexpr double kSamePath = 0.004;   // rad that a free run may turn from the path's
-constexpr int kCoarsen = 32;          // cells of a side, of grids that are first solved on half as many
-constexpr double kRough = 0.02;       // tolerance there
-constexpr int kSearch = 40;           // halvings, for a first guess of the depth
+constexpr int kCoarsen = 32;     // cells of a side, of grids that are first solved on half as many
+constexpr double kRough = 0.02;  // tolerance there
+constexpr int kSearch = 40;      // halvings, for a first guess of the depth
 
 /// The belt over the work on one grid.
 class PreparedFreeBelt final : public PreparedContact {
   public:
     PreparedFreeBelt(const ContactGrid& grid, const std::string& description,
                      const AbrasiveBelt& belt, const BeltRun& run)
-        : PreparedContact(grid, description), belt_(belt), run_(run), solver_(belt, run, grid) {
+        : PreparedContact(grid, description),
+          belt_(belt),
+          run_(run),
+          solver_(belt, run, grid, BeltSolver::Sheet::kThin) {
         if (std::min(grid.nx, grid.ny) < kCoarsen) return;
         const ContactGrid half{(grid.nx + 1) / 2, (grid.ny + 1) / 2, 2.0 * grid.ds, 2.0 * grid.dy};
         coarse_ = std::make_unique<PreparedFreeBelt>(half, description, belt, run);
@@ -86,8 +89,9 @@ Eigen::ArrayXd PreparedFreeBelt::rough(const ContactProblem& problem, double& de
         half.gap[to] += problem.coverage[c] * problem.gap[c];
         half.coverage[to] += problem.coverage[c];
     }
-    half.gap = (half.coverage > 0.0).select(half.gap / half.coverage.max(1e-300),
-                                            std::numeric_limits<double>::infinity());
+    half.gap =
+        (half.coverage > 0.0)
+            .select(half.gap / half.coverage.max(1e-300), std::numeric_limits<double>::infinity());
     half.coverage /= count.max(1.0);
     const ContactSolution solution = coarse_->solve(half);
     if (solution.force > 0.0 && problem.force_control) depth = solution.approach;
@@ -125,8 +129,7 @@ std::vector<std::uint8_t> PreparedFreeBelt::pressed(const BeltPath& path,
     std::vector<std::uint8_t> result(rows * path.x.size(), 0);
     bool any = false;
     for (std::size_t i = 0; i < path.x.size(); ++i) {
-        const auto column =
-            std::lround(path.x[i] / grid().ds + 0.5 * (grid().nx - 1));
+        const auto column = std::lround(path.x[i] / grid().ds + 0.5 * (grid().nx - 1));
         if (column < 0 || column >= grid().nx) continue;
         for (std::size_t k = 0; k < rows; ++k) {
             const bool here = start[solver_.rows()[k].row * grid().nx + column] > 0.0;
@@ -212,7 +215,7 @@ ContactSolution PreparedFreeBelt::on_grid(const ContactProblem& problem, const B
         const auto row = static_cast<Eigen::Index>(k);
         const auto place = [&](int i) {  // x of the belt's face, in columns of the grid
             const auto c = static_cast<std::size_t>(i);
-            const double u = solver_.deflection_at(state.deflection, k, i);
+            const double u = solver_.deflection_at(path.columns, state.deflection, k, i);
             return (path.x[c] + (0.5 * belt_.thickness - u) * std::sin(path.angle[c])) / grid().ds +
                    0.5 * nx;
         };
@@ -257,8 +260,8 @@ FreeBelt::FreeBelt(const AbrasiveBelt& belt, const BeltRun& run) : belt_(belt), 
 std::string FreeBelt::describe() const {
     std::ostringstream text;
     text << "free belt, " << belt_.width << " mm wide, " << belt_.thickness << " mm thick, E "
-         << belt_.youngs_modulus << " MPa, nu " << belt_.poissons_ratio << ", "
-         << belt_.tension << " N/mm over " << run_.length << " mm, rollers "
+         << belt_.youngs_modulus << " MPa, nu " << belt_.poissons_ratio << ", " << belt_.tension
+         << " N/mm over " << run_.length << " mm, rollers "
          << (run_.rollers == BeltRun::Rollers::kFixed ? "fixed" : "tensioned");
     return text.str();
 }

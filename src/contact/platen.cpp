@@ -52,16 +52,21 @@ class LayerBacking final : public BeltBacking {
         if (layers_ == nullptr) return 0.0;
         const int nx = layers_->grid().nx;
         Eigen::ArrayXd now = Eigen::ArrayXd::Zero(pressure_.size());
-        for_cells([&](Eigen::Index row, Eigen::Index column, int cell) {
-            now[cell] = std::max(0.0, stiffness_ * (deflection(row, column) - rest_(row, column)));
-        }, nx);
+        for_cells(
+            [&](Eigen::Index row, Eigen::Index column, int cell) {
+                now[cell] =
+                    std::max(0.0, stiffness_ * (deflection(row, column) - rest_(row, column)));
+            },
+            nx);
         const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
         pressure_ = std::move(now);
         layers_->apply(pressure_, ones_, sunk_);
-        for_cells([&](Eigen::Index row, Eigen::Index column, int cell) {
-            rest_(row, column) =
-                sunk_[cell] + pressure_[cell] * (1.0 / face_ - 1.0 / stiffness_);
-        }, nx);
+        for_cells(
+            [&](Eigen::Index row, Eigen::Index column, int cell) {
+                rest_(row, column) =
+                    sunk_[cell] + pressure_[cell] * (1.0 / face_ - 1.0 / stiffness_);
+            },
+            nx);
         return change;
     }
 
@@ -77,8 +82,8 @@ class LayerBacking final : public BeltBacking {
 
     ComplianceOperator* layers_;
     double face_;
-    std::vector<int> cell_;          // of the grid along x, by column
-    std::vector<std::uint8_t> on_;   // by column: the platen is there
+    std::vector<int> cell_;         // of the grid along x, by column
+    std::vector<std::uint8_t> on_;  // by column: the platen is there
     Eigen::ArrayXd pressure_, sunk_, ones_;
 };
 
@@ -90,7 +95,7 @@ class PreparedPlaten final : public PreparedContact {
           belt_(belt),
           run_(run),
           platen_(platen),
-          solver_(belt, run, grid) {
+          solver_(belt, run, grid, BeltSolver::Sheet::kThick) {
         const auto rows = static_cast<int>(solver_.rows().size());
         if (layers != nullptr && rows > 0)
             layers_ = layers->compliance({grid.nx, rows, grid.ds, belt.width / rows});
@@ -135,8 +140,8 @@ class PreparedPlaten final : public PreparedContact {
         }
         solution.approach = depth + state.lift;
         solution.force = (solution.pressure * problem.coverage).sum() * grid().cell_area();
-        solution.area = (solution.pressure > 0.0).select(problem.coverage, 0.0).sum() *
-                        grid().cell_area();
+        solution.area =
+            (solution.pressure > 0.0).select(problem.coverage, 0.0).sum() * grid().cell_area();
         solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
         solution.iterations = state.iterations;
         solution.converged = state.converged;

@@ -73,12 +73,11 @@ SurfaceUnderBelt::Height SurfaceUnderBelt::at(int row, double x) const {
         if (std::isfinite(z[0] + z[1] + z[2] + z[3])) {
             // Lagrange's cubic through four cells.
             const std::array<double, 4> l = {-(t - 1) * (t - 2) * (t - 3) / 6,
-                                             t * (t - 2) * (t - 3) / 2,
-                                             -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6};
-            const std::array<double, 4> d = {-(3 * t * t - 12 * t + 11) / 6,
-                                             (3 * t * t - 10 * t + 6) / 2,
-                                             -(3 * t * t - 8 * t + 3) / 2,
-                                             (3 * t * t - 6 * t + 2) / 6};
+                                             t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
+                                             t * (t - 1) * (t - 2) / 6};
+            const std::array<double, 4> d = {
+                -(3 * t * t - 12 * t + 11) / 6, (3 * t * t - 10 * t + 6) / 2,
+                -(3 * t * t - 8 * t + 3) / 2, (3 * t * t - 6 * t + 2) / 6};
             Height h{0.0, 0.0, cover};
             for (std::size_t k = 0; k < 4; ++k) {
                 h.z += l[k] * z[k];
@@ -139,13 +138,13 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
             }
             if (!(h.cover > 0.0)) continue;
             // The middle surface lies half a thickness off, along the surface's own normal.
-            const int cell = std::clamp(
-                static_cast<int>(std::lround((path.x[c] - u * sine) / grid_.ds +
-                                             0.5 * (grid_.nx - 1))),
-                0, grid_.nx - 1);
+            const int cell =
+                std::clamp(static_cast<int>(std::lround((path.x[c] - u * sine) / grid_.ds +
+                                                        0.5 * (grid_.nx - 1))),
+                           0, grid_.nx - 1);
             const double across = slope_(cell, k);
-            const double facing = (cosine + h.slope * sine) /
-                                  std::sqrt(1.0 + h.slope * h.slope + across * across);
+            const double facing =
+                (cosine + h.slope * sine) / std::sqrt(1.0 + h.slope * h.slope + across * across);
             if (facing < kSteepest) continue;
             gap.reach(k, i) = u + half_ / facing;
             gap.cover(k, i) = h.cover;

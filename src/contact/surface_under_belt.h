@@ -45,9 +45,9 @@ class SurfaceUnderBelt {
     const ContactGrid& grid_;
     const ContactProblem& problem_;
     const std::vector<BeltRow>& rows_;
-    double half_;                 // thickness, mm
-    Eigen::ArrayXXd height_;      // mm, (nx, rows); -inf: nothing there
-    Eigen::ArrayXXd slope_;       // along y, mm/mm
+    double half_;             // thickness, mm
+    Eigen::ArrayXXd height_;  // mm, (nx, rows); -inf: nothing there
+    Eigen::ArrayXXd slope_;   // along y, mm/mm
 };
 
 }  // namespace beltgrinding

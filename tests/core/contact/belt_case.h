@@ -61,9 +61,9 @@ ContactProblem at_depth(const ContactGrid& grid, double approach, Depth depth) {
 
 /// A belt's contact by finite elements: forces of rows of 1 mm, of a quarter.
 struct BeltReference {
-    double force = 0.0;                  // N
-    double x_max = 0.0, y_max = 0.0;     // mm
-    std::vector<double> by_x, by_y;      // N, of both sides of the other axis
+    double force = 0.0;               // N
+    double x_max = 0.0, y_max = 0.0;  // mm
+    std::vector<double> by_x, by_y;   // N, of both sides of the other axis
 };
 
 inline std::filesystem::path reference_file(const std::string& name) {

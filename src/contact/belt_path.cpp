@@ -6,9 +6,10 @@
 namespace beltgrinding {
 namespace {
 
+constexpr double kFinest = 0.25;    // bending lengths: half columns are of use down to this
 constexpr double kHalved = 3.0;     // bending lengths beside first and last touch with half columns
-constexpr double kGrowth = 1.5;     // of the columns' widths beyond the fine ones
-constexpr double kCoarsest = 10.0;  // mm, of a free run's columns
+constexpr double kGrowth = 1.7;     // of the columns' widths beyond the fine ones
+constexpr double kCoarsest = 16.0;  // mm, of a free run's columns
 constexpr int kRollerMoves = 6;     // until the belt's length is kept to far below a micrometre
 
 /// (x, z), and x on the work.
@@ -194,7 +195,8 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request) {
         const double middle = 0.5 * (low + high);
         const bool halved =
             request.halves && std::min(std::abs(middle - touch), std::abs(middle - leave)) < near;
-        const double wanted = (halved ? 0.5 : 1.0) * request.cell;
+        const double wanted =
+            halved ? std::max(0.5 * request.cell, kFinest * request.bending) : request.cell;
         const int parts = std::max(1, static_cast<int>(std::lround((to - from) / wanted)));
         if (fine.empty()) fine.push_back(from);
         for (int k = 1; k <= parts; ++k) {

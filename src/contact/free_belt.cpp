@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -179,6 +178,10 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
         depth += state.lift;
         pull = state.pull;
         if (std::abs(state.lift) <= kSamePath * nearest) break;
+        if (k + 1 == kMostPaths) {
+            state.converged = false;
+            break;
+        }
         guess = on_grid(problem, state, depth).pressure;
         before = std::move(state);
     }

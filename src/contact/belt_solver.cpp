@@ -16,6 +16,7 @@ constexpr double kFollow = 0.7;    // share of a change of the stress that is ta
 // deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
 constexpr double kThick = 0.2;
+constexpr double kPatience = 30.0;         // iterations after which half as much is taken
 constexpr int kHalvings = 8;               // of the way to the next state, for the least energy
 constexpr double kLeastStep = 1.0 / 64.0;  // of that way
 constexpr double kLessStress = 0.5;        // of a stress under which the sides would buckle
@@ -211,6 +212,7 @@ double BeltSolver::least_energy(const Request& request, const BeltPath& path, co
 BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state, const Cells& cells) {
     Sums sums;
     for (int i = 0; i < state.path.columns.count(); ++i) {
+        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const auto row = static_cast<Eigen::Index>(k);
             const double u = cells.deflection(row, i);
@@ -219,6 +221,7 @@ BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state, const Cel
             sums.same = sums.same && touches == request.touching[cell(i, k)];
             request.touching[cell(i, k)] = touches;
             sums.total += now;
+            sums.along_z += now * cosine;
             sums.change += std::abs(now - state.load(row, i));
             state.load(row, i) = now;
             if (request.backing == nullptr) continue;
@@ -329,11 +332,14 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         }
         cells = std::move(now);
         const double stretch = follow_length(request, state, stress);
+        // Less and less where the belt's sides are near to buckling.
+        const double follow = kFollow / (1.0 + state.iterations / kPatience);
         if (request.backing == nullptr || sums.same)
-            state.function += kFollow * (stress.function(state.deflection) - state.function);
+            state.function += follow * (stress.function(state.deflection) - state.function);
+        const double off = problem.force_control ? std::abs(sums.along_z - problem.force) : 0.0;
         state.converged = state.iterations > (follows ? 1 : kWarmUp) && sums.same &&
                           sums.change <= problem.tolerance * sums.total &&
-                          bears <= problem.tolerance &&
+                          off <= problem.tolerance * problem.force && bears <= problem.tolerance &&
                           std::abs(stretch) <= problem.tolerance * state.pull;
         if (state.converged) break;
     }

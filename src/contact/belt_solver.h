@@ -78,7 +78,7 @@ class BeltSolver {
         double raised = 0.0;
     };
     struct Sums {
-        double total = 0.0, change = 0.0;  // N
+        double total = 0.0, change = 0.0, along_z = 0.0;  // N
         bool same = true;
     };
     void assemble(const Request& request, const BeltState& state, const BeltForces& forces);

@@ -163,7 +163,7 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     if (warm) before = std::move(last_.state);
     last_.pressure.resize(0);
     int iterations = 0;
-    for (int k = 0; k < kMostPaths; ++k) {
+    for (int k = 0;; ++k) {
         BeltPath path = belt_path(run_, path_request(ridge, depth, pull));
         if (path.columns.count() == 0) return nothing;
         const BeltGap gap = surface.seen_from(path, depth);

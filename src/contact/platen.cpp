@@ -41,13 +41,19 @@ class LayerBacking final : public BeltBacking {
         layers_->apply(ones_, ones_, sunk_);
         stiffness_ = kSpring / (1.0 / face_ + sunk_.maxCoeff());
     }
-    void start(Eigen::Index rows) {
+    /// `pressure`: of the layers, MPa, to start from; empty: none.
+    void start(Eigen::Index rows, const Eigen::ArrayXd& pressure) {
         rest_.resize(rows, static_cast<Eigen::Index>(cell_.size()));
         for (std::size_t i = 0; i < cell_.size(); ++i)
             rest_.col(static_cast<Eigen::Index>(i))
                 .setConstant(on_[i] != 0 ? 0.0 : std::numeric_limits<double>::infinity());
-        if (layers_ != nullptr) pressure_.setZero(layers_->grid().cells());
+        if (layers_ == nullptr) return;
+        pressure_.setZero(layers_->grid().cells());
+        if (pressure.size() != pressure_.size()) return;
+        pressure_ = pressure;
+        follow_pressure();
     }
+    const Eigen::ArrayXd& pressure() const { return pressure_; }
     double follow(const Eigen::ArrayXXd& deflection) override {
         if (layers_ == nullptr) return 0.0;
         const int nx = layers_->grid().nx;
@@ -60,6 +66,14 @@ class LayerBacking final : public BeltBacking {
             nx);
         const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
         pressure_ = std::move(now);
+        follow_pressure();
+        return change;
+    }
+
+  private:
+    /// Where the springs are at rest under the layers' pressure.
+    void follow_pressure() {
+        const int nx = layers_->grid().nx;
         layers_->apply(pressure_, ones_, sunk_);
         for_cells(
             [&](Eigen::Index row, Eigen::Index column, int cell) {
@@ -67,10 +81,7 @@ class LayerBacking final : public BeltBacking {
                     sunk_[cell] + pressure_[cell] * (1.0 / face_ - 1.0 / stiffness_);
             },
             nx);
-        return change;
     }
-
-  private:
     template <class Visit>
     void for_cells(Visit visit, int nx) const {
         for (std::size_t i = 0; i < cell_.size(); ++i) {
@@ -117,17 +128,23 @@ class PreparedPlaten final : public PreparedContact {
             if (!std::isfinite(depth)) return solution;
         }
         BeltPath path = straight_path(run_, grid().ds, grid().nx);
-        const BeltGap gap = surface.seen_from(path, depth);
         LayerBacking backing(layers_.get(), face(), path, 0.5 * platen_.length);
-        backing.start(static_cast<Eigen::Index>(solver_.rows().size()));
+        const bool warm = start != nullptr && last_.pressure.size() == start->size() &&
+                          (*start == last_.pressure).all();
+        if (warm && problem.force_control) depth = last_.depth;
+        const BeltState before = warm ? std::move(last_.state) : BeltState{};
+        backing.start(static_cast<Eigen::Index>(solver_.rows().size()),
+                      warm ? last_.layers : Eigen::ArrayXd{});
+        const BeltGap gap = surface.seen_from(path, depth);
         ContactProblem longer = problem;
         longer.max_iterations = kPlatenIterations * problem.max_iterations;
         BeltSolver::Request request;
         request.problem = &longer;
         request.gap = &gap;
         request.backing = &backing;
+        if (warm) request.before = &before;
         if (start != nullptr && (*start > 0.0).any()) request.touching = pressed(path, *start);
-        const BeltState state = solver_.solve(std::move(path), std::move(request));
+        BeltState state = solver_.solve(std::move(path), std::move(request));
         for (int i = 0; i < state.path.columns.count(); ++i) {
             const int column = state.path.cell[static_cast<std::size_t>(i)];
             if (column < 0) continue;
@@ -145,6 +162,7 @@ class PreparedPlaten final : public PreparedContact {
         solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
         solution.iterations = state.iterations;
         solution.converged = state.converged;
+        last_ = {solution.pressure, std::move(state), backing.pressure(), solution.approach};
         return solution;
     }
     double face() const {
@@ -165,6 +183,13 @@ class PreparedPlaten final : public PreparedContact {
     Platen platen_;
     BeltSolver solver_;
     std::unique_ptr<ComplianceOperator> layers_;
+    // Of the last solution: its stress and its layers' pressure, for one that starts from it.
+    struct Last {
+        Eigen::ArrayXd pressure;
+        BeltState state;
+        Eigen::ArrayXd layers;
+        double depth = 0.0;
+    } last_;
 };
 
 }  // namespace

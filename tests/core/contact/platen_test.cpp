@@ -70,6 +70,18 @@ TEST(Platen, ForceAndPositionControlAreOneContact) {
     EXPECT_NEAR(solution.approach, 0.25, 0.002);
 }
 
+TEST(Platen, AStartDoesNotMatter) {
+    const auto contact = make_belt_contact(platen())->prepare(kGrid);
+    ContactProblem problem = with_tolerance(problem_of(kGrid, crest));
+    problem.force = 60.0;
+    const ContactSolution cold = contact->solve(problem);
+    problem.gap += 0.1;
+    const ContactSolution warm = contact->solve(problem, &cold.pressure);
+    EXPECT_LT(warm.iterations, cold.iterations);
+    EXPECT_NEAR(warm.approach, cold.approach + 0.1, 1e-3);
+    EXPECT_LT((warm.pressure - cold.pressure).abs().sum(), 0.02 * cold.pressure.sum());
+}
+
 TEST(Platen, OnAPlaneTheLayersDecide) {
     // An even gap over the whole belt: but for its sides and its ends, the layer is compressed
     // evenly, by E (1 - nu) / ((1 + nu) (1 - 2 nu)) / h in series with both faces.

@@ -38,13 +38,13 @@ struct BeltRun {
     double length = 200.0;  ///< mm between the rollers
     /// mm along the belt from the middle between the rollers to the origin of the contact frame.
     double position = 0.0;
-    Rollers rollers = Rollers::kFixed;
+    Rollers rollers = Rollers::kFixed;  ///< what the pull comes from
 
     /// Throws InputError unless the origin lies between the rollers.
     void validate() const;
 };
 
-/// A plate with elastic layers under the belt. Flat, or curved along the travel.
+/// A flat plate with elastic layers under the belt.
 struct Platen {
     double length = 120.0;  ///< mm along the travel, its middle at the origin
     /// From the plate outwards; empty: the plate itself is in touch with the belt.
@@ -57,12 +57,14 @@ struct Platen {
 
 /// A belt machine as far as its contact goes: what presses the belt on the part.
 struct BeltMachine {
+    /// What presses: a wheel with the belt round it, the belt itself between two rollers, a plate
+    /// behind it, a wheel in a fork.
     enum class Kind { kContactWheel, kFreeBelt, kPlaten, kSmallWheel };
 
-    Kind kind = Kind::kContactWheel;
-    AbrasiveBelt belt;  ///< free belt, platen
-    BeltRun run;        ///< free belt, platen: its rollers
-    Platen platen;      ///< platen
+    Kind kind = Kind::kContactWheel;  ///< which of them
+    AbrasiveBelt belt;                ///< free belt, platen
+    BeltRun run;                      ///< free belt, platen: its rollers
+    Platen platen;                    ///< platen
 };
 
 /// The contact model of a free belt or a platen. The gap of its problems is that to the flat belt

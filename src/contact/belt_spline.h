@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace beltgrinding {
+
+/// Cubic B-splines across the belt, from -width/2 to width/2, whose knots lie closer at the side
+/// edges, where the belt curls. All ones is the constant 1 (de Boor: A Practical Guide to Splines).
+class BeltSpline {
+  public:
+    static constexpr int kLocal = 4;  // splines that are not 0 at a place
+
+    /// `interval`: mm, largest distance of the knots; `finest`: at the side edges.
+    BeltSpline(double width, double interval, double finest);
+
+    int count() const { return static_cast<int>(knots_.size()) - 4; }
+
+    /// The splines `first` to `first + 3`, their first and second derivatives, at one place.
+    struct Local {
+        int first = 0;
+        std::array<double, kLocal> value{}, slope{}, curvature{};
+    };
+    /// At y, mm from the belt's middle.
+    Local at(double y) const;
+
+    /// Places (mm) and weights of Gauss's rule, three to an interval of the knots.
+    const std::vector<double>& places() const { return places_; }
+    const std::vector<double>& weights() const { return weights_; }
+    /// The splines at `places`.
+    const std::vector<Local>& locals() const { return locals_; }
+
+    /// Integrals over the width of products: value value, slope slope, curvature curvature, value
+    /// (row) curvature (column).
+    const Eigen::MatrixXd& values() const { return values_; }
+    const Eigen::MatrixXd& slopes() const { return slopes_; }
+    const Eigen::MatrixXd& curvatures() const { return curvatures_; }
+    const Eigen::MatrixXd& value_curvature() const { return value_curvature_; }
+
+  private:
+    std::vector<double> knots_;  // mm
+    std::vector<double> places_, weights_;
+    std::vector<Local> locals_;
+    Eigen::MatrixXd values_, slopes_, curvatures_, value_curvature_;
+};
+
+}  // namespace beltgrinding

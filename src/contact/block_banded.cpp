@@ -1,0 +1,171 @@
+#include "block_banded.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace beltgrinding {
+namespace {
+
+using Four = double __attribute__((vector_size(32)));
+constexpr int kFour = 4;
+constexpr int kStrip = 4;  // registers of a column that are summed at a time
+constexpr int kPair = 2;   // columns that share what is loaded
+
+/// to[rows, columns] -= L[rows, :] L[columns, :]', `pairs` columns of one strip of `fours` times
+/// four rows; both have the outer stride `height`.
+template <int fours, int pairs>
+[[gnu::always_inline]] inline void subtract_strip(const double* l, std::ptrdiff_t height, int depth,
+                                                  int row, int column, double* to,
+                                                  std::ptrdiff_t to_height) {
+    Four sum[pairs][fours] = {};
+    for (int k = 0; k < depth; ++k) {
+        const double* from = l + k * height;
+        Four values[fours];
+        for (int f = 0; f < fours; ++f)
+            std::memcpy(&values[f], from + row + f * kFour, sizeof(Four));
+        for (int p = 0; p < pairs; ++p)
+            for (int f = 0; f < fours; ++f) sum[p][f] += values[f] * from[column + p];
+    }
+    for (int p = 0; p < pairs; ++p) {
+        double* at = to + (column + p) * to_height + row;
+        for (int f = 0; f < fours; ++f) {
+            Four old;
+            std::memcpy(&old, at + f * kFour, sizeof(Four));
+            old -= sum[p][f];
+            std::memcpy(at + f * kFour, &old, sizeof(Four));
+        }
+    }
+}
+
+template <int pairs>
+[[gnu::always_inline]] inline void subtract_columns(const double* l, std::ptrdiff_t height,
+                                                    int depth, int first_row, int rows, int column,
+                                                    double* to, std::ptrdiff_t to_height) {
+    int row = first_row;
+    for (; row + kStrip * kFour <= rows; row += kStrip * kFour)
+        subtract_strip<kStrip, pairs>(l, height, depth, row, column, to, to_height);
+    for (; row < rows; row += kFour)
+        subtract_strip<1, pairs>(l, height, depth, row, column, to, to_height);
+}
+
+/// The lower triangle of to -= L L', for the columns from `first` to `end`; rows are padded to a
+/// multiple of four.
+// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
+// the loader chooses between them.
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+__attribute__((target_clones("avx2", "default")))
+#endif
+void subtract_square(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
+                     int end, double* to, std::ptrdiff_t to_height) {
+    int column = first;
+    for (; column + kPair <= end; column += kPair)
+        subtract_columns<kPair>(l, height, depth, column / kFour * kFour, rows, column, to,
+                                to_height);
+    for (; column < end; ++column)
+        subtract_columns<1>(l, height, depth, column / kFour * kFour, rows, column, to, to_height);
+}
+
+/// Cholesky's factor of the first `columns` rows of a panel, and what that makes of the rows below.
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+__attribute__((target_clones("avx2", "default")))
+#endif
+bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows) {
+    for (int j = first; j < end; ++j) {
+        double* column = panel + j * height;
+        for (int k = first; k < j; ++k) {
+            const double* before = panel + k * height;
+            const double factor = before[j];
+            for (int r = j; r < rows; ++r) column[r] -= factor * before[r];
+        }
+        if (!(column[j] > 0.0) || !std::isfinite(column[j])) return false;
+        const double inverse = 1.0 / std::sqrt(column[j]);
+        for (int r = j; r < rows; ++r) column[r] *= inverse;
+    }
+    return true;
+}
+
+constexpr int kBlock = 8;  // columns of a panel that are factorised at a time
+
+}  // namespace
+
+BlockBanded::BlockBanded(int count, int size)
+    : count_(count), size_(size), height_((3 * size + kFour - 1) / kFour * kFour) {
+    blocks_.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(height_) *
+                       static_cast<std::size_t>(size),
+                   0.0);
+}
+
+void BlockBanded::set_zero() {
+    std::fill(blocks_.begin(), blocks_.end(), 0.0);
+}
+
+bool BlockBanded::factorise() {
+    const int m = size_;
+    const auto padded = [](int rows) { return (rows + kFour - 1) / kFour * kFour; };
+    for (int i = 0; i < count_; ++i) {
+        double* own = panel(i);
+        for (int first = 0; first < m; first += kBlock) {
+            const int end = std::min(first + kBlock, m);
+            if (first > 0) subtract_square(own, height_, first, height_, first, end, own, height_);
+            if (!factorise_columns(own, height_, first, end, height_)) return false;
+        }
+        // What is left of the two panels behind: their blocks (0, 0), (1, 0) and (1, 1).
+        const int behind = std::min(2, count_ - 1 - i);
+        if (behind == 0) break;
+        const int rows = padded(behind * m);
+        corner_.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(behind * m), 0.0);
+        // The rows from m on need not start at a whole register.
+        shifted_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(m));
+        for (int k = 0; k < m; ++k) {
+            double* to = shifted_.data() + std::ptrdiff_t{k} * rows;
+            std::copy_n(own + std::ptrdiff_t{k} * height_ + m, behind * m, to);
+            std::fill(to + behind * m, to + rows, 0.0);
+        }
+        subtract_square(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data(), rows);
+        const auto add = [&](int row, int column, double* to) {
+            for (int k = 0; k < m; ++k) {
+                const double* from = corner_.data() + (std::ptrdiff_t{column} * m + k) * rows +
+                                     std::ptrdiff_t{row} * m;
+                double* at = to + std::ptrdiff_t{k} * height_;
+                for (int r = row == column ? k : 0; r < m; ++r) at[r] += from[r];
+            }
+        };
+        add(0, 0, panel(i + 1));
+        if (behind == 2) {
+            add(1, 0, panel(i + 1) + m);
+            add(1, 1, panel(i + 2));
+        }
+    }
+    return true;
+}
+
+void BlockBanded::solve(Eigen::MatrixXd& values) const {
+    const int m = size_;
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+        double* x = values.data() + c * values.rows();
+        for (int i = 0; i < count_; ++i) {
+            const int rows = m * std::min(3, count_ - i);
+            double* at = x + std::ptrdiff_t{i} * m;
+            for (int k = 0; k < m; ++k) {
+                const double* column = panel(i) + std::ptrdiff_t{k} * height_;
+                const double value = at[k] /= column[k];
+                for (int r = k + 1; r < rows; ++r) at[r] -= value * column[r];
+            }
+        }
+        for (int i = count_; i-- > 0;) {
+            const int rows = m * std::min(3, count_ - i);
+            double* at = x + std::ptrdiff_t{i} * m;
+            for (int k = m; k-- > 0;) {
+                const double* column = panel(i) + std::ptrdiff_t{k} * height_;
+                const Eigen::Map<const Eigen::VectorXd> below(column + k + 1, rows - k - 1);
+                const Eigen::Map<const Eigen::VectorXd> known(at + k + 1, rows - k - 1);
+                at[k] = (at[k] - below.dot(known)) / column[k];
+            }
+        }
+    }
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,276 @@
+#include "contact/free_belt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "belt_path.h"
+#include "belt_solver.h"
+#include "contact/peak_pressure.h"
+#include "surface_under_belt.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kMargin = 2.0;       // bending lengths beside the contact with fine columns
+constexpr double kMarginCells = 5.0;  // the same at least, in cells
+constexpr int kMostPaths = 6;         // until the path that is linearised about is the belt's
+constexpr double kSamePath = 0.004;   // rad that a free run may turn from the path's
+constexpr int kCoarsen = 32;     // cells of a side, of grids that are first solved on half as many
+constexpr double kRough = 0.02;  // tolerance there
+constexpr int kSearch = 40;      // halvings, for a first guess of the depth
+
+/// The belt over the work on one grid.
+class PreparedFreeBelt final : public PreparedContact {
+  public:
+    PreparedFreeBelt(const ContactGrid& grid, const std::string& description,
+                     const AbrasiveBelt& belt, const BeltRun& run)
+        : PreparedContact(grid, description),
+          belt_(belt),
+          run_(run),
+          solver_(belt, run, grid, BeltSolver::Sheet::kThin) {
+        if (std::min(grid.nx, grid.ny) < kCoarsen) return;
+        const ContactGrid half{(grid.nx + 1) / 2, (grid.ny + 1) / 2, 2.0 * grid.ds, 2.0 * grid.dy};
+        coarse_ = std::make_unique<PreparedFreeBelt>(half, description, belt, run);
+    }
+
+  private:
+    ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd* start) override;
+    /// mm at which a string over the ridge presses with the force.
+    double first_depth(const ContactProblem& problem, const std::vector<RidgePoint>& ridge) const;
+    BeltPathRequest path_request(const std::vector<RidgePoint>& ridge, double depth,
+                                 double pull) const;
+    /// Where the start has pressure; empty: nowhere.
+    std::vector<std::uint8_t> pressed(const BeltPath& path, const Eigen::ArrayXd& start) const;
+    ContactSolution on_grid(const ContactProblem& problem, const BeltState& state,
+                            double depth) const;
+    /// The cell of `coarse_` that a cell lies in.
+    int coarse_cell(int cell) const;
+    /// A solution on the coarse grid, to start from.
+    Eigen::ArrayXd rough(const ContactProblem& problem, double& depth);
+
+    AbrasiveBelt belt_;
+    BeltRun run_;
+    BeltSolver solver_;
+    std::unique_ptr<PreparedFreeBelt> coarse_;
+    // Of the last solution: its stress, for one that starts from its pressure.
+    struct Last {
+        Eigen::ArrayXd pressure;
+        BeltState state;
+        double depth = 0.0;
+    } last_;
+};
+
+int PreparedFreeBelt::coarse_cell(int cell) const {
+    const ContactGrid& to = coarse_->grid();
+    const auto at = [](double place, int cells, double size) {
+        return std::clamp(static_cast<int>(std::floor(place / size + 0.5 * cells)), 0, cells - 1);
+    };
+    return at(grid().y(cell / grid().nx), to.ny, to.dy) * to.nx +
+           at(grid().s(cell % grid().nx), to.nx, to.ds);
+}
+
+Eigen::ArrayXd PreparedFreeBelt::rough(const ContactProblem& problem, double& depth) {
+    const int cells = coarse_->grid().cells();
+    ContactProblem half = problem;
+    half.gap = Eigen::ArrayXd::Zero(cells);
+    half.coverage = Eigen::ArrayXd::Zero(cells);
+    half.drop.resize(0);
+    half.tolerance = std::max(problem.tolerance, kRough);
+    Eigen::ArrayXd count = Eigen::ArrayXd::Zero(cells);
+    for (int c = 0; c < grid().cells(); ++c) {
+        const int to = coarse_cell(c);
+        count[to] += 1.0;
+        if (!std::isfinite(problem.gap[c])) continue;
+        half.gap[to] += problem.coverage[c] * problem.gap[c];
+        half.coverage[to] += problem.coverage[c];
+    }
+    half.gap =
+        (half.coverage > 0.0)
+            .select(half.gap / half.coverage.max(1e-300), std::numeric_limits<double>::infinity());
+    half.coverage /= count.max(1.0);
+    const ContactSolution solution = coarse_->solve(half);
+    if (solution.force > 0.0 && problem.force_control) depth = solution.approach;
+    Eigen::ArrayXd start(grid().cells());
+    for (int c = 0; c < grid().cells(); ++c) start[c] = solution.pressure[coarse_cell(c)];
+    return start;
+}
+
+double PreparedFreeBelt::first_depth(const ContactProblem& problem,
+                                     const std::vector<RidgePoint>& ridge) const {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const RidgePoint& p : ridge) highest = std::max(highest, p.z);
+    if (!std::isfinite(highest)) return 0.0;
+    // Of a string over the ridge, whose force rises with the depth.
+    BeltPathRequest request;
+    request.obstacle = ridge;
+    const auto force = [&](double depth) {
+        request.lift = depth;
+        const BeltPath path = belt_path(run_, request);
+        if (path.columns.count() == 0) return 0.0;
+        return solver_.pull_of(path, 0.0) * belt_.width *
+               (std::sin(path.left_angle) + std::sin(path.right_angle));
+    };
+    double low = -highest, high = low + 0.5 * run_.length;
+    for (int k = 0; k < kSearch && high - low > 1e-3; ++k) {
+        const double middle = 0.5 * (low + high);
+        (force(middle) < problem.force ? low : high) = middle;
+    }
+    return high;
+}
+
+std::vector<std::uint8_t> PreparedFreeBelt::pressed(const BeltPath& path,
+                                                    const Eigen::ArrayXd& start) const {
+    const std::size_t rows = solver_.rows().size();
+    std::vector<std::uint8_t> result(rows * path.x.size(), 0);
+    bool any = false;
+    for (std::size_t i = 0; i < path.x.size(); ++i) {
+        const auto column = std::lround(path.x[i] / grid().ds + 0.5 * (grid().nx - 1));
+        if (column < 0 || column >= grid().nx) continue;
+        for (std::size_t k = 0; k < rows; ++k) {
+            const bool here = start[solver_.rows()[k].row * grid().nx + column] > 0.0;
+            result[i * rows + k] = here ? 1 : 0;
+            any = any || here;
+        }
+    }
+    if (!any) result.clear();
+    return result;
+}
+
+ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
+                                           const Eigen::ArrayXd* start) {
+    ContactSolution nothing;
+    nothing.pressure = Eigen::ArrayXd::Zero(grid().cells());
+    nothing.approach = problem.force_control ? 0.0 : problem.approach;
+    nothing.converged = !problem.force_control || problem.force == 0.0;
+    if (problem.force_control && problem.force == 0.0) return nothing;
+
+    const SurfaceUnderBelt surface(grid(), problem, solver_.rows(), belt_.thickness);
+    const std::vector<RidgePoint> ridge = surface.ridge();
+    const bool warm = start != nullptr && last_.pressure.size() == start->size() &&
+                      (*start == last_.pressure).all();
+    double depth = problem.approach, pull = warm ? last_.state.pull : belt_.tension;
+    if (problem.force_control) depth = warm ? last_.depth : first_depth(problem, ridge);
+    Eigen::ArrayXd guess;
+    if (start != nullptr && (*start > 0.0).any())
+        guess = *start;
+    else if (coarse_)
+        guess = rough(problem, depth);
+    BeltState state, before;
+    if (warm) before = std::move(last_.state);
+    last_.pressure.resize(0);
+    int iterations = 0;
+    for (int k = 0;; ++k) {
+        BeltPath path = belt_path(run_, path_request(ridge, depth, pull));
+        if (path.columns.count() == 0) return nothing;
+        const BeltGap gap = surface.seen_from(path, depth);
+        BeltSolver::Request request;
+        request.problem = &problem;
+        request.gap = &gap;
+        if (guess.size() > 0) request.touching = pressed(path, guess);
+        if (before.function.size() > 0) request.before = &before;
+        state = solver_.solve(std::move(path), std::move(request));
+        iterations += state.iterations;
+        const double nearest = std::min(-state.path.left, state.path.right);
+        depth += state.lift;
+        pull = state.pull;
+        if (std::abs(state.lift) <= kSamePath * nearest) break;
+        if (k + 1 == kMostPaths) {
+            state.converged = false;
+            break;
+        }
+        guess = on_grid(problem, state, depth).pressure;
+        before = std::move(state);
+    }
+    ContactSolution solution = on_grid(problem, state, depth);
+    solution.iterations = iterations;
+    solution.converged = state.converged;
+    last_ = {solution.pressure, std::move(state), depth};
+    return solution;
+}
+
+BeltPathRequest PreparedFreeBelt::path_request(const std::vector<RidgePoint>& ridge, double depth,
+                                               double pull) const {
+    BeltPathRequest request;
+    request.obstacle = ridge;
+    request.lift = depth;
+    request.half = 0.5 * belt_.thickness;
+    request.cell = grid().ds;
+    request.cells = grid().nx;
+    request.halves = coarse_ != nullptr;
+    request.bending = std::sqrt(belt_.bending() / pull);
+    request.margin = std::max(kMargin * request.bending, kMarginCells * grid().ds);
+    return request;
+}
+
+ContactSolution PreparedFreeBelt::on_grid(const ContactProblem& problem, const BeltState& state,
+                                          double depth) const {
+    const BeltPath& path = state.path;
+    const int n = path.columns.count(), nx = grid().nx;
+    ContactSolution solution;
+    solution.pressure = Eigen::ArrayXd::Zero(grid().cells());
+    solution.approach = depth;
+    const double area = grid().cell_area();
+    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        const auto place = [&](int i) {  // x of the belt's face, in columns of the grid
+            const auto c = static_cast<std::size_t>(i);
+            const double u = solver_.deflection_at(path.columns, state.deflection, k, i);
+            return (path.x[c] + (0.5 * belt_.thickness - u) * std::sin(path.angle[c])) / grid().ds +
+                   0.5 * nx;
+        };
+        for (int i = 0; i < n; ++i) {
+            if (!(state.load(row, i) > 0.0)) continue;
+            // The force along z, shared by the columns of the grid that it lies on.
+            const double force =
+                state.load(row, i) * std::cos(path.angle[static_cast<std::size_t>(i)]);
+            if (const int own = path.cell[static_cast<std::size_t>(i)]; own >= 0) {
+                const int cell = solver_.rows()[k].row * nx + own;
+                if (problem.coverage[cell] > 0.0)
+                    solution.pressure[cell] += force / (area * problem.coverage[cell]);
+                continue;
+            }
+            const double here = place(i);
+            double from = i > 0 ? 0.5 * (place(i - 1) + here) : here;
+            double to = i + 1 < n ? 0.5 * (place(i + 1) + here) : here;
+            from = std::clamp(from, 0.0, nx - 1e-9);
+            to = std::clamp(to, from + 1e-9, static_cast<double>(nx));
+            for (int c = static_cast<int>(from); c < nx && c < to; ++c) {
+                const double share = std::min(to, c + 1.0) - std::max(from, static_cast<double>(c));
+                const int cell = solver_.rows()[k].row * nx + c;
+                if (problem.coverage[cell] > 0.0)
+                    solution.pressure[cell] +=
+                        force * share / (to - from) / (area * problem.coverage[cell]);
+            }
+        }
+    }
+    solution.force = (solution.pressure * problem.coverage).sum() * area;
+    solution.area = (solution.pressure > 0.0).select(problem.coverage, 0.0).sum() * area;
+    solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
+    return solution;
+}
+
+}  // namespace
+
+FreeBelt::FreeBelt(const AbrasiveBelt& belt, const BeltRun& run) : belt_(belt), run_(run) {
+    belt_.validate();
+    run_.validate();
+}
+
+std::string FreeBelt::describe() const {
+    std::ostringstream text;
+    text << "free belt, " << belt_.width << " mm wide, " << belt_.thickness << " mm thick, E "
+         << belt_.youngs_modulus << " MPa, nu " << belt_.poissons_ratio << ", " << belt_.tension
+         << " N/mm over " << run_.length << " mm, rollers "
+         << (run_.rollers == BeltRun::Rollers::kFixed ? "fixed" : "tensioned");
+    return text.str();
+}
+
+std::unique_ptr<PreparedContact> FreeBelt::do_prepare(const ContactGrid& grid) const {
+    return std::make_unique<PreparedFreeBelt>(grid, describe(), belt_, run_);
+}
+
+}  // namespace beltgrinding

@@ -1,0 +1,231 @@
+#include "contact/platen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "belt_path.h"
+#include "belt_solver.h"
+#include "contact/peak_pressure.h"
+#include "surface_under_belt.h"
+
+namespace beltgrinding {
+namespace {
+
+// Radius of a rim that is flat: its layers' stiffness differs by thickness / radius.
+constexpr double kFlat = 1000.0;          // mm
+constexpr double kFlatThicknesses = 100;  // the same, in thicknesses
+constexpr int kPlatenIterations = 4;      // times those that a problem allows: the layers follow
+constexpr double kSpring = 1.4;           // times the layers' stiffness under even pressure
+
+/// The layers under the belt. Their pressure is that of springs, about as stiff as the layers
+/// are under even pressure, from where they are at rest under the pressure of all others; that is
+/// followed until it is true.
+class LayerBacking final : public BeltBacking {
+  public:
+    /// `layers`: none, the plate alone; `face`: MPa/mm between belt and layers.
+    LayerBacking(ComplianceOperator* layers, double face, const BeltPath& path, double half_length)
+        : layers_(layers), face_(face) {
+        for (std::size_t i = 0; i < path.x.size(); ++i) {
+            cell_.push_back(path.cell[i]);
+            on_.push_back(std::abs(path.x[i]) < half_length ? 1 : 0);
+        }
+        stiffness_ = face_;
+        if (layers_ == nullptr) return;
+        // Following converges while no pressure sinks in more than twice as far as the springs do.
+        ones_.setOnes(layers_->grid().cells());
+        layers_->apply(ones_, ones_, sunk_);
+        stiffness_ = kSpring / (1.0 / face_ + sunk_.maxCoeff());
+    }
+    /// `pressure`: of the layers, MPa, to start from; empty: none.
+    void start(Eigen::Index rows, const Eigen::ArrayXd& pressure) {
+        rest_.resize(rows, static_cast<Eigen::Index>(cell_.size()));
+        for (std::size_t i = 0; i < cell_.size(); ++i)
+            rest_.col(static_cast<Eigen::Index>(i))
+                .setConstant(on_[i] != 0 ? 0.0 : std::numeric_limits<double>::infinity());
+        if (layers_ == nullptr) return;
+        pressure_.setZero(layers_->grid().cells());
+        if (pressure.size() != pressure_.size()) return;
+        pressure_ = pressure;
+        follow_pressure();
+    }
+    const Eigen::ArrayXd& pressure() const { return pressure_; }
+    double follow(const Eigen::ArrayXXd& deflection) override {
+        if (layers_ == nullptr) return 0.0;
+        const int nx = layers_->grid().nx;
+        Eigen::ArrayXd now = Eigen::ArrayXd::Zero(pressure_.size());
+        for_cells(
+            [&](Eigen::Index row, Eigen::Index column, int cell) {
+                now[cell] =
+                    std::max(0.0, stiffness_ * (deflection(row, column) - rest_(row, column)));
+            },
+            nx);
+        const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
+        pressure_ = std::move(now);
+        follow_pressure();
+        return change;
+    }
+
+  private:
+    /// Where the springs are at rest under the layers' pressure.
+    void follow_pressure() {
+        const int nx = layers_->grid().nx;
+        layers_->apply(pressure_, ones_, sunk_);
+        for_cells(
+            [&](Eigen::Index row, Eigen::Index column, int cell) {
+                rest_(row, column) =
+                    sunk_[cell] + pressure_[cell] * (1.0 / face_ - 1.0 / stiffness_);
+            },
+            nx);
+    }
+    template <class Visit>
+    void for_cells(Visit visit, int nx) const {
+        for (std::size_t i = 0; i < cell_.size(); ++i) {
+            if (cell_[i] < 0 || on_[i] == 0) continue;
+            for (Eigen::Index row = 0; row < rest_.rows(); ++row)
+                visit(row, static_cast<Eigen::Index>(i), static_cast<int>(row) * nx + cell_[i]);
+        }
+    }
+
+    ComplianceOperator* layers_;
+    double face_;
+    std::vector<int> cell_;         // of the grid along x, by column
+    std::vector<std::uint8_t> on_;  // by column: the platen is there
+    Eigen::ArrayXd pressure_, sunk_, ones_;
+};
+
+class PreparedPlaten final : public PreparedContact {
+  public:
+    PreparedPlaten(const ContactGrid& grid, std::string description, const AbrasiveBelt& belt,
+                   const BeltRun& run, const Platen& platen, const WheelRim* layers)
+        : PreparedContact(grid, std::move(description)),
+          belt_(belt),
+          run_(run),
+          platen_(platen),
+          solver_(belt, run, grid, BeltSolver::Sheet::kThick) {
+        const auto rows = static_cast<int>(solver_.rows().size());
+        if (layers != nullptr && rows > 0)
+            layers_ = layers->compliance({grid.nx, rows, grid.ds, belt.width / rows});
+    }
+
+  private:
+    ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd* start) override {
+        ContactSolution solution;
+        solution.pressure = Eigen::ArrayXd::Zero(grid().cells());
+        solution.converged = !problem.force_control || problem.force == 0.0;
+        solution.approach = problem.force_control ? 0.0 : problem.approach;
+        if (problem.force_control && problem.force == 0.0) return solution;
+        const SurfaceUnderBelt surface(grid(), problem, solver_.rows(), belt_.thickness);
+        // Under a force, the work is lifted from where it touches.
+        double depth = problem.approach;
+        if (problem.force_control) {
+            depth = std::numeric_limits<double>::infinity();
+            for (const RidgePoint& p : surface.ridge()) depth = std::min(depth, -p.z);
+            if (!std::isfinite(depth)) return solution;
+        }
+        BeltPath path = straight_path(run_, grid().ds, grid().nx);
+        LayerBacking backing(layers_.get(), face(), path, 0.5 * platen_.length);
+        const bool warm = start != nullptr && last_.pressure.size() == start->size() &&
+                          (*start == last_.pressure).all();
+        if (warm && problem.force_control) depth = last_.depth;
+        const BeltState before = warm ? std::move(last_.state) : BeltState{};
+        backing.start(static_cast<Eigen::Index>(solver_.rows().size()),
+                      warm ? last_.layers : Eigen::ArrayXd{});
+        const BeltGap gap = surface.seen_from(path, depth);
+        ContactProblem longer = problem;
+        longer.max_iterations = kPlatenIterations * problem.max_iterations;
+        BeltSolver::Request request;
+        request.problem = &longer;
+        request.gap = &gap;
+        request.backing = &backing;
+        if (warm) request.before = &before;
+        if (start != nullptr && (*start > 0.0).any()) request.touching = pressed(path, *start);
+        BeltState state = solver_.solve(std::move(path), std::move(request));
+        for (int i = 0; i < state.path.columns.count(); ++i) {
+            const int column = state.path.cell[static_cast<std::size_t>(i)];
+            if (column < 0) continue;
+            for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+                const int cell = solver_.rows()[k].row * grid().nx + column;
+                if (problem.coverage[cell] > 0.0)
+                    solution.pressure[cell] += state.load(static_cast<Eigen::Index>(k), i) /
+                                               (grid().cell_area() * problem.coverage[cell]);
+            }
+        }
+        solution.approach = depth + state.lift;
+        solution.force = (solution.pressure * problem.coverage).sum() * grid().cell_area();
+        solution.area =
+            (solution.pressure > 0.0).select(problem.coverage, 0.0).sum() * grid().cell_area();
+        solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
+        solution.iterations = state.iterations;
+        solution.converged = state.converged;
+        last_ = {solution.pressure, std::move(state), backing.pressure(), solution.approach};
+        return solution;
+    }
+    double face() const {
+        return platen_.layer_surface_stiffness > 0.0 ? platen_.layer_surface_stiffness
+                                                     : belt_.face();
+    }
+    std::vector<std::uint8_t> pressed(const BeltPath& path, const Eigen::ArrayXd& start) const {
+        std::vector<std::uint8_t> result;
+        for (std::size_t i = 0; i < path.x.size(); ++i)
+            for (const BeltRow& row : solver_.rows())
+                result.push_back(
+                    path.cell[i] >= 0 && start[row.row * grid().nx + path.cell[i]] > 0.0 ? 1 : 0);
+        return result;
+    }
+
+    AbrasiveBelt belt_;
+    BeltRun run_;
+    Platen platen_;
+    BeltSolver solver_;
+    std::unique_ptr<ComplianceOperator> layers_;
+    // Of the last solution: its stress and its layers' pressure, for one that starts from it.
+    struct Last {
+        Eigen::ArrayXd pressure;
+        BeltState state;
+        Eigen::ArrayXd layers;
+        double depth = 0.0;
+    } last_;
+};
+
+}  // namespace
+
+PlatenBelt::PlatenBelt(const AbrasiveBelt& belt, const BeltRun& run, const Platen& platen,
+                       std::shared_ptr<RimCache> cache)
+    : belt_(belt), run_(run), platen_(platen) {
+    belt_.validate();
+    run_.validate();
+    platen_.validate();
+    if (platen_.layers.empty()) return;
+    WheelRimDesign design;
+    design.width = belt_.width;
+    for (const auto& layer : platen_.layers)
+        design.layers.push_back({layer.thickness, {layer.youngs_modulus, layer.poissons_ratio}});
+    design.outer_radius = std::max(kFlat, kFlatThicknesses * design.thickness());
+    layers_ = std::make_unique<WheelRim>(std::move(design), BeltPlate{}, std::move(cache));
+}
+
+double PlatenBelt::thickness() const {
+    return layers_ ? layers_->thickness() : std::numeric_limits<double>::infinity();
+}
+
+std::string PlatenBelt::describe() const {
+    std::ostringstream text;
+    text << "platen, " << platen_.length << " mm long";
+    for (const auto& layer : platen_.layers)
+        text << ", " << layer.thickness << " mm of E " << layer.youngs_modulus << " MPa, nu "
+             << layer.poissons_ratio;
+    text << "; belt " << belt_.width << " mm wide, " << belt_.thickness << " mm thick, E "
+         << belt_.youngs_modulus << " MPa, " << belt_.tension << " N/mm";
+    return text.str();
+}
+
+std::unique_ptr<PreparedContact> PlatenBelt::do_prepare(const ContactGrid& grid) const {
+    return std::make_unique<PreparedPlaten>(grid, describe(), belt_, run_, platen_, layers_.get());
+}
+
+}  // namespace beltgrinding

@@ -1,6 +1,7 @@
 #include "heat/conduction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "heat/heat_rows.h"
@@ -18,6 +19,8 @@ constexpr double kBorder = 0.25;
 constexpr int kMostParts = 4;
 constexpr double kDue = 0.05;   // of the time in which what is there changes: an interval of sweeps
 constexpr double kGrow = 0.25;  // of the time since heat came: an interval when none comes
+constexpr std::size_t kLevels = 32;
+constexpr int kLevelled = 8;         // sweeps from one look at the levels to the next
 constexpr float kLeastRise = 1e-3f;  // K: less is none
 constexpr double kCold = 0.01;       // K: less does not warm the neighbours
 
@@ -34,6 +37,7 @@ Conduction::Conduction(const PartHeat& part, int rings)
       ring_(nodes_.size(), kOutside),
       place_(nodes_.size(), ThermalNodes::kNone),
       direct_(nodes_.size(), 0.0f),
+      level_(nodes_.size(), 0),
       zone_time_(state_.time),
       zone_made_(state_.time) {}
 
@@ -245,25 +249,34 @@ void Conduction::note_peaks(std::span<const std::uint32_t> nodes, bool heated) {
     }
 }
 
+// What was heated changes in the time since; what is not yet, in that of the way to it.
+void Conduction::set_levels(double now) {
+    for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
+        const double away =
+            std::max((nodes_.point[k] - state_.centre).norm() - state_.radius, nodes_.spacing);
+        const double way = now - state_.heated + away * away / (4.0 * diffusivity_);
+        const double wanted = kDue * std::min(now - state_.last[k], way);
+        const int level = wanted > longest_ ? std::ilogb(wanted / longest_) : 0;
+        level_[k] = static_cast<std::uint8_t>(std::min(level, static_cast<int>(kLevels) - 1));
+    }
+}
+
 void Conduction::sweep(double now, std::span<const std::uint32_t> must, bool everything) {
     enum : std::uint8_t { kNot, kBeside, kDueNow };
     const auto in_zone = [this](std::uint32_t k) { return ring_[k] != kOutside; };
     due_.assign(nodes_.size(), kNot);
     for (const std::uint32_t k : must)
         if (state_.warm[k] != 0) due_[k] = kDueNow;
+    if (sweeps_++ % kLevelled == 0) set_levels(now);
+    // All of a level at the same times: neighbours are due together.
+    std::array<double, kLevels> begun;
+    for (std::size_t level = 0; level < kLevels; ++level) {
+        const double interval = std::ldexp(longest_, static_cast<int>(level));
+        begun[level] = interval * std::floor(now / interval);
+    }
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
         if (state_.warm[k] == 0) continue;
-        if (everything || in_zone(k)) due_[k] = kDueNow;
-        if (due_[k] == kDueNow) continue;
-        // What was heated changes in the time since; what is not yet, in that of the way to it.
-        const double away =
-            std::max((nodes_.point[k] - state_.centre).norm() - state_.radius, nodes_.spacing);
-        const double way = now - state_.heated + away * away / (4.0 * diffusivity_);
-        const double wanted = kDue * std::min(now - state_.last[k], way);
-        // Powers of two, all at the same times: neighbours are due together.
-        const double interval = longest_ * std::exp2(std::max(0, std::ilogb(wanted / longest_)));
-        if (std::floor(now / interval) > std::floor(state_.conducted[k] / interval))
-            due_[k] = kDueNow;
+        if (everything || in_zone(k) || state_.conducted[k] < begun[level_[k]]) due_[k] = kDueNow;
     }
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
         if (due_[k] != kDueNow) continue;

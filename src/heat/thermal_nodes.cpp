@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "beltgrinding/error.h"
 #include "point_hash.h"
@@ -135,28 +136,52 @@ void choose(ThermalNodes& nodes, const HeightField& field) {
     PointHash hash(nodes.spacing);
     std::vector<std::uint32_t> near;
     PointHash::Cube looked{};
+    bool any = false;
+    std::uint32_t last = ThermalNodes::kNone;  // that covered a sample
+    const auto covers = [&](std::uint32_t k, std::uint32_t s) {
+        return (nodes.point[k] - field.point[s]).squaredNorm() < nodes.spacing * nodes.spacing &&
+               nodes.normal[k].dot(field.normal[s]) >= kSameSide;
+    };
+    std::vector<std::uint32_t> covering(field.size());
     for (std::uint32_t s = 0; s < field.size(); ++s) {
-        const PointHash::Cube cube = hash.cube(field.point[s]);
-        if (s == 0 || cube != looked) hash.near(looked = cube, 1, near);
-        if (nearest(nodes, near, field.point[s], field.normal[s], nodes.spacing) !=
-            ThermalNodes::kNone) {
-            continue;
+        if (last == ThermalNodes::kNone || !covers(last, s)) {
+            const PointHash::Cube cube = hash.cube(field.point[s]);
+            if (!any || cube != looked) hash.near(looked = cube, 1, near);
+            any = true;
+            last = nearest(nodes, near, field.point[s], field.normal[s], nodes.spacing);
         }
-        const auto number = static_cast<std::uint32_t>(nodes.size());
-        nodes.sample.push_back(s);
-        nodes.point.push_back(field.point[s]);
-        nodes.normal.push_back(field.normal[s]);
-        hash.add(number, field.point[s]);
-        near.push_back(number);
+        if (last == ThermalNodes::kNone) {
+            last = static_cast<std::uint32_t>(nodes.size());
+            nodes.sample.push_back(s);
+            nodes.point.push_back(field.point[s]);
+            nodes.normal.push_back(field.normal[s]);
+            hash.add(last, field.point[s]);
+            near.push_back(last);
+        }
+        covering[s] = last;
     }
-    nodes.node_of.resize(field.size());
+    // The nearest is less than twice the spacing from one that covers.
+    std::vector<std::size_t> first = {0};
+    std::vector<std::uint32_t> others;
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        hash.near(hash.cube(nodes.point[k]), 2, near);
+        std::sort(near.begin(), near.end());
+        for (const std::uint32_t other : near) {
+            const double away = (nodes.point[other] - nodes.point[k]).norm();
+            if (other != k && away < 2.0 * nodes.spacing) others.push_back(other);
+        }
+        first.push_back(others.size());
+    }
+    nodes.node_of = std::move(covering);
     for (std::uint32_t s = 0; s < field.size(); ++s) {
-        const PointHash::Cube cube = hash.cube(field.point[s]);
-        if (s == 0 || cube != looked) hash.near(looked = cube, 1, near);
-        // A node is nearest to itself, whatever its normal, which may not be a number.
-        const std::uint32_t k =
-            nearest(nodes, near, field.point[s], field.normal[s], 1.001 * nodes.spacing);
-        nodes.node_of[s] = k != ThermalNodes::kNone ? k : 0;
+        const std::uint32_t from = nodes.node_of[s];
+        double least = (nodes.point[from] - field.point[s]).squaredNorm();
+        for (std::size_t e = first[from]; e < first[from + 1]; ++e) {
+            const std::uint32_t other = others[e];
+            const double away = (nodes.point[other] - field.point[s]).squaredNorm();
+            if (away < least && nodes.normal[other].dot(field.normal[s]) >= kSameSide)
+                least = away, nodes.node_of[s] = other;
+        }
     }
 }
 

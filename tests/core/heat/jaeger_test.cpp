@@ -127,7 +127,7 @@ TEST(JaegerPoint, TheTemperatureRoundItIsTheClosedForm) {
         const Vec3& p = field.point[part.samples()[k]];
         const double x = p.x() - at, y = p.y() - middle, r = std::hypot(x, y);
         // Nearer to it, the node that it flows into is no point.
-        if (r < 9.0 * h || r > 5.0) continue;
+        if (r < 10.0 * h || r > 5.0) continue;
         const double exact = power / (2.0 * M_PI * m.conductivity * r) *
                              std::exp(-speed * (r + x) / (2.0 * m.diffusivity()));
         EXPECT_NEAR(conduction.rise(k), exact, 0.01 * exact + 0.02) << x << ' ' << y;

@@ -60,6 +60,7 @@ class Conduction {
     /// Brings those to `now` that are due, all of the zone and of `must`, or `everything`; a way is
     /// conducted through for the time since one of its ends was due, so that nothing is lost.
     void sweep(double now, std::span<const std::uint32_t> must, bool everything);
+    void set_levels(double now);
     /// The zone is given up, and what is due brought to the state's time.
     void catch_up();
     void leave_zone();
@@ -80,6 +81,8 @@ class Conduction {
     std::vector<float> rows_[3];        // K, of a patch
     DepthModes::Row decay_{}, gain_{};  // after a `duration_` s
     double duration_ = -1.0;
+    std::vector<std::uint8_t> level_;  // by node: swept every longest_ times 2^level s
+    int sweeps_ = 0;
     std::vector<std::uint8_t> due_;  // by node: in the sweep
     double zone_time_;               // s: what the zone is brought to
     double zone_made_;               // s: when

@@ -105,11 +105,11 @@ struct HeatRequest {
     PartHeat* part = nullptr;  ///< goes on with this path; stays as it was on cancel or error
     double friction = 0.0;     ///< mu, of the belt on the work: q = mu p V_b
     double partition = 0.0;    ///< share of q that flows into the work
-    /// Shares of the rise that it may be less and more, friction and partition being uncertain: the
-    /// rise is in proportion to both.
-    double low = 1.0, high = 1.0;
-    double start = 20.0;  ///< degrees C, of the part
-    double burn = 0.0;    ///< degrees C above which the material is burnt; 0: not known
+    double low = 1.0;          ///< share of the rise that it may be at least, and
+    double high = 1.0;         ///< at most: friction and partition, which it is in proportion to,
+                               ///< being uncertain
+    double start = 20.0;       ///< degrees C, of the part
+    double burn = 0.0;         ///< degrees C above which the material is burnt; 0: not known
 
     /// Throws InputError naming the setting that is none.
     void validate(std::size_t samples) const;
@@ -192,10 +192,10 @@ struct SimulationResult {
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, pose by pose. Only
-/// `field.height`, `field.trace` and, with heat, `field.heat` change; a trace goes on with what is there. On cancel or error
-/// the field is left as it was before the call.
-/// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
-/// path, bad options) and Cancelled.
+/// `field.height`, `field.trace` and, with heat, `field.heat` change; a trace goes on with what is
+/// there. On cancel or error the field is left as it was before the call. Results do not depend on
+/// the number of threads. Throws InputError (no contact anywhere on the path, bad options) and
+/// Cancelled.
 SimulationResult simulate(HeightField& field, const ToolPath& path, const ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});

@@ -55,7 +55,7 @@ function(beltgrinding_library name)
 endfunction()
 
 beltgrinding_library(core
-  ROOMS base foreign mesh heightfield contact removal toolpath events simulation inspection
+  ROOMS base foreign mesh heightfield contact removal toolpath events heat simulation inspection
   PUBLIC Eigen3::Eigen TBB::tbb PRIVATE hdf5::hdf5 ${CMAKE_DL_LIBS})
 if(BELTGRINDING_HAS_BREP)
   get_target_property(toolkits bg_brep BELTGRINDING_PACKAGES)

@@ -80,10 +80,6 @@
         <translation>der verglichene Scan des geschliffenen Teils</translation>
     </message>
     <message>
-        <source>what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan</source>
-        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes; measured, difference: eines Scans</translation>
-    </message>
-    <message>
         <source>what the user should know of the mesh</source>
         <translation>was der Benutzer über das Netz wissen sollte</translation>
     </message>
@@ -1546,6 +1542,30 @@
     <message>
         <source>which of the varied depend on each other: a Gaussian copula</source>
         <translation>welche der variierten Größen voneinander abhängen: eine Gauß-Copula</translation>
+    </message>
+    <message>
+        <source>What temperatures are computed with; without it there are none.</source>
+        <translation>Womit Temperaturen berechnet werden; ohne das gibt es keine.</translation>
+    </message>
+    <message>
+        <source>likely, of the hottest sample, degrees C; 0: not computed</source>
+        <translation>wahrscheinlich, des heißesten Stützpunkts, Grad C; 0: nicht berechnet</translation>
+    </message>
+    <message>
+        <source>of the part before it was ground, degrees C</source>
+        <translation>des Teils vor dem Schleifen, Grad C</translation>
+    </message>
+    <message>
+        <source>share of the area likely above the limit, percent</source>
+        <translation>Anteil der Fläche, der wahrscheinlich über der Grenze liegt, Prozent</translation>
+    </message>
+    <message>
+        <source>the same, if friction and partition are the most that they may be</source>
+        <translation>dasselbe, wenn Reibung und Wärmeanteil am größten sind</translation>
+    </message>
+    <message>
+        <source>what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; temperature: the greatest, of a job with Heat</source>
+        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes; measured, difference: eines Scans; temperature: die höchste, einer Aufgabe mit Heat</translation>
     </message>
 </context>
 <context>
@@ -4803,6 +4823,14 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>only runs that pass</source>
         <translation>nur Läufe, die bestehen</translation>
+    </message>
+    <message>
+        <source>Greatest temperature</source>
+        <translation>Höchste Temperatur</translation>
+    </message>
+    <message>
+        <source>greatest temperature, °C</source>
+        <translation>höchste Temperatur, °C</translation>
     </message>
 </context>
 <context>

@@ -52,8 +52,10 @@ constexpr std::array kKinds = {
               "pressing direction is not the surface's normal",
               "turn the pose so that its z axis points against the surface's normal"},
     EventKind{"burn_risk", kError, "MPa m/s", kLarger,
-              "pressure times belt speed exceeds the limit of heat",
-              "lower the force or the belt speed"},
+              "pressure times belt speed exceeds the limit of heat; or, in °C, the temperature "
+              "exceeds the material's limit",
+              "lower the force or the belt speed, raise the feed, or let the part cool between "
+              "passes"},
     EventKind{"law_out_of_range", kWarning, "", kLarger,
               "the process law is asked for what was not measured; its last value is used",
               "come back into the measured range, or measure there and calibrate again"},

@@ -31,7 +31,8 @@ std::size_t HeightField::bytes() const {
            rays.capacity() * sizeof(Vec3f) + area.capacity() * sizeof(float) +
            stock_height.capacity() * sizeof(float) + height.capacity() * sizeof(double) +
            face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
-           (height_sd.capacity() + measured.capacity()) * sizeof(float) + trace.bytes() +
+           (height_sd.capacity() + measured.capacity() + heat.rise.capacity()) * sizeof(float) +
+           heat.motion.capacity() * sizeof(std::uint32_t) + trace.bytes() +
            triangles.capacity() * sizeof(Triangle);
 }
 

@@ -36,6 +36,8 @@ void each_trace_array(Trace& t, Visit&& visit) {
     visit("trace_peak_pressure_MPa", t.peak_pressure, H5T_NATIVE_FLOAT);
 }
 
+constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
+constexpr const char* kHeatMotion = "heat_motion";    // with it
 constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
 constexpr const char* kMeasured = "measured_mm";      // where a scan was compared
 constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
@@ -64,6 +66,10 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
             write_array(file, name, data, type, 1);
         });
     }
+    if (!field.heat.empty()) {
+        write_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
+        write_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
+    }
     write_text(file, "attributes", attributes);
 }
 
@@ -79,6 +85,19 @@ void check(const RemovalTrace& t, std::size_t n) {
         if ((t.last[i] == kNever) != never || (t.dominant[i] == kNever) != never ||
             !std::isfinite(depth) || depth < 0.0F || !std::isfinite(pressure) || pressure < 0.0F) {
             require(false, "heightfield.trace", "the trace of sample {sample} makes no sense",
+                    {{"sample", i}});
+        }
+    }
+}
+
+void check(const HeatTrace& t, std::size_t n) {
+    if (t.empty() && t.motion.empty()) return;
+    require(t.rise.size() == n && t.motion.size() == n, "heightfield.lengths",
+            "its arrays differ in length");
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool never = t.motion[i] == HeatTrace::kNever;
+        if (!std::isfinite(t.rise[i]) || t.rise[i] < 0.0F || (never && t.rise[i] > 0.0F)) {
+            require(false, "heightfield.heat", "the temperature of sample {sample} makes no sense",
                     {{"sample", i}});
         }
     }
@@ -170,8 +189,13 @@ HeightField read_hdf5_image(std::string_view image, const std::string& name,
                 read_array(file, array, data, type, 1);
             });
         }
+        if (H5Lexists(file, kHeat, H5P_DEFAULT) > 0) {
+            read_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
+            read_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
+        }
         check(field);
         check(field.trace, field.size());
+        check(field.heat, field.size());
         if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return field;
     } catch (const FileFault& fault) {

@@ -76,6 +76,7 @@ void bind_events(py::module_& m);
 void bind_surrogate(py::module_& m);
 void bind_calibration(py::module_& m);
 void bind_recording(py::module_& m);
+void bind_heat(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_planning(py::module_& m);
 void bind_inspection(py::module_& m);

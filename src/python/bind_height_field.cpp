@@ -72,6 +72,19 @@ void bind_height_field(py::module_& m) {
             "(numbers of motions through all programs from 0; NEVER: none), dominant_depth (mm "
             "that the dominant one removed), peak_pressure (MPa, largest that the sample saw); "
             "None where it was not kept.")
+        .def_property_readonly(
+            "heat",
+            [](const py::object& self) -> py::object {
+                const HeatTrace& heat = self.cast<const HeightField&>().heat;
+                if (heat.empty()) return py::none();
+                py::dict d;
+                d["rise"] = view<float>(heat.rise, 1, self);
+                d["motion"] = view<std::uint32_t>(heat.motion, 1, self);
+                return d;
+            },
+            "How hot each sample became: a dict of (n,) arrays rise (K, greatest above the start's "
+            "temperature) and motion (as in trace, at that moment; NEVER: no heat came there); "
+            "None where it was not computed.")
         .def("copy", [](const HeightField& field) { return HeightField(field); })
         .def(
             "set_height",

@@ -76,6 +76,19 @@ void take_dynamics(const py::dict& given, SimulationOptions& o) {
     refuse_rest(d, "force_dynamics");
 }
 
+void take_heat(const py::dict& given, HeatRequest& heat) {
+    if (given.empty()) return;
+    py::dict d = copy_of(given);
+    heat.part = take<PartHeat*>(d, "part", nullptr);
+    heat.friction = take(d, "friction", heat.friction);
+    heat.partition = take(d, "partition", heat.partition);
+    heat.low = take(d, "low", heat.low);
+    heat.high = take(d, "high", heat.high);
+    heat.start = take(d, "start", heat.start);
+    heat.burn = take(d, "burn", heat.burn);
+    refuse_rest(d, "heat");
+}
+
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
     o.process.wheel = wheel_from(wheel_given);
@@ -107,6 +120,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.outputs.influence = take(d, "influence", o.outputs.influence);
     o.outputs.force_influence = take(d, "force_influence", o.outputs.force_influence);
     o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
+    take_heat(take(d, "heat", py::dict()), o.heat);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
     return o;
@@ -160,6 +174,7 @@ py::dict to_dict(const SimulationResult& result) {
     wall["removal"] = result.wall.removal;
     wall["trace"] = result.wall.trace;
     wall["events"] = result.wall.events;
+    if (result.wall.heat > 0.0) wall["heat"] = result.wall.heat;
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;

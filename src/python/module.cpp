@@ -88,6 +88,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_calibration(m);
     bind_events(m);
     bind_recording(m);
+    bind_heat(m);
     bind_simulation(m);
     bind_planning(m);
     bind_inspection(m);

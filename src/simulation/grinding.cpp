@@ -18,13 +18,14 @@ constexpr double kJoule = 1e-3;  // of a N mm
 }  // namespace
 
 Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-                   const SimulationOptions& options, TraceKeeper* trace)
+                   const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat)
     : blocks_(blocks),
       pressing_(pressing),
       law_(law),
       process_(options.process),
       outputs_(options.outputs),
       trace_(trace),
+      heat_(heat),
       belt_(options.process.belt),
       shifts_(
           Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(blocks.field().size()),
@@ -132,9 +133,13 @@ double Grinding::holds(double left, double least) const {
 }
 
 double Grinding::remove(double part) {
-    const Stopwatch watch(times_.removal);
     GapMap& map = pressing_.map();
     const ContactSolution& contact = pressing_.solution();
+    if (heat_ != nullptr) {
+        const Stopwatch watch(times_.heat);
+        heat_->press(map, pressing_.displaced_pressure(), contact.force, part);
+    }
+    const Stopwatch watch(times_.removal);
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.
     const Eigen::ArrayXd most = (contact.approach - map.gap()).max(0.0) / part;
     rate_ = rate_.min(most);

@@ -219,6 +219,37 @@ void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
     }
 }
 
+void ProcessMonitor::heated(const HeatKeeper& heat, const HeatRequest& request) {
+    if (!(request.burn > 0.0)) return;
+    const double rise = heat.hottest(), highest = request.start + request.high * rise;
+    if (!(highest > request.burn)) return;
+    // Beside that of pressure times belt speed, in the same steps.
+    constexpr int kByTemperature = 1;
+    const double likely = request.start + rise, least = request.start + request.low * rise;
+    Event* event = note("burn_risk", steps_.size() - 1, likely, kByTemperature);
+    if (event == nullptr) return;
+    event->limit = request.burn;
+    event->unit = "°C";
+    const Arguments arguments = {
+        {"likely", likely}, {"least", least}, {"highest", highest}, {"limit", request.burn}};
+    if (likely > request.burn) {
+        event->severity = Severity::kError;
+        event->facts = {{"event.burns",
+                         "the surface reaches {likely:.0f} °C (from {least:.0f} to {highest:.0f} "
+                         "°C, friction and partition being uncertain), above the material's limit "
+                         "of {limit:.0f} °C",
+                         arguments}};
+    } else {
+        event->severity = Severity::kWarning;
+        event->facts = {{"event.may_burn",
+                         "the surface reaches {likely:.0f} °C, but up to {highest:.0f} °C where "
+                         "friction and partition are at the upper end of their ranges, above the "
+                         "material's limit of {limit:.0f} °C",
+                         arguments}};
+    }
+    put(*event, heat.hottest_position());
+}
+
 void ProcessMonitor::ground(std::span<const SampleBlocks::Change> changes) {
     const std::size_t index = steps_.size() - 1;
     double deepest = 0.0, worst = 0.0;

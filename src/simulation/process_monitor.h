@@ -8,6 +8,7 @@
 
 #include "beltgrinding/simulation.h"
 #include "events/event_log.h"
+#include "heat_keeper.h"
 #include "pressing.h"
 
 namespace beltgrinding {
@@ -35,6 +36,8 @@ class ProcessMonitor {
     void moved(const Pressing& pressing, Pressing::State state, double force, double bounce);
     /// Of the `asked` mm3 that the law takes in the step, `removed` were taken from the field.
     void lost(const Pressing& pressing, double asked, double removed);
+    /// The step has heated the part.
+    void heated(const HeatKeeper& heat, const HeatRequest& request);
     /// All events, in order of time.
     std::vector<Event> take();
 

@@ -9,6 +9,7 @@
 #include "beltgrinding/error.h"
 #include "checkpoint_keeper.h"
 #include "grinding.h"
+#include "heat_keeper.h"
 #include "heightfield/sample_blocks.h"
 #include "influence_keeper.h"
 #include "pressing.h"
@@ -97,6 +98,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     process.validate();
     resolution.validate();
     options.limits.validate(field.size());
+    options.heat.validate(field.size());
     StepQueue steps(path, {resolution.max_travel, resolution.max_angle, process.force});
     if (steps.planned() == 0) {
         throw InputError(
@@ -119,7 +121,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     SampleBlocks& blocks = *built;
     if (recording != nullptr) recording->begin(field, path.duration(), blocks.samples());
     std::optional<CheckpointKeeper> keeper;
-    if (options.outputs.checkpoints != nullptr) {
+    // The heat in the part is not among what they hold.
+    if (options.outputs.checkpoints != nullptr && options.heat.part == nullptr) {
         keeper.emplace(*options.outputs.checkpoints, steps, blocks, options);
         keeper->restore(blocks);
     }
@@ -135,7 +138,13 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         const Stopwatch watch(wall.build);
         pressing.map().prepare(field);
     }
-    Grinding grinding(blocks, pressing, law, options, trace ? &*trace : nullptr);
+    std::optional<HeatKeeper> heat;
+    if (options.heat.part != nullptr && !model.rigid()) {
+        const Stopwatch watch(wall.build);
+        heat.emplace(blocks, options.heat, process.belt_speed);
+    }
+    Grinding grinding(blocks, pressing, law, options, trace ? &*trace : nullptr,
+                      heat ? &*heat : nullptr);
     std::optional<ActuatedWheel> wheel;  // of a force control that takes time
     if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);
     bool touched = false;
@@ -220,6 +229,12 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             if (moving) monitor.moved(pressing, state, grinding.greatest_force(), wheel->bounce());
         }
         if (wheel) wheel->end(step);
+        if (heat) {
+            const Stopwatch watch(wall.heat);
+            heat->end_step(step.time - 0.5 * step.duration, step.duration,
+                           options.outputs.first_motion + step.pose);
+            if (heat->hottest() > 0.0) monitor.heated(*heat, options.heat);
+        }
         const auto changes = blocks.changes();
         if (trace && !changes.empty()) {
             const Stopwatch watch(wall.trace);
@@ -255,6 +270,10 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     wall += pressing.times();
     wall += grinding.times();
     if (recording != nullptr) recording->end(blocks);
+    if (heat) {
+        const Stopwatch watch(wall.heat);
+        heat->keep(path.duration(), field);
+    }
     if (trace) {
         trace->keep(field);
     } else {

@@ -71,6 +71,24 @@ void MonitorLimits::validate(std::size_t samples) const {
     }
 }
 
+void HeatRequest::validate(std::size_t samples) const {
+    if (part == nullptr) return;
+    if (part->node_of().size() != samples) {
+        throw InputError("heat.other_field", "the heat is of another height field");
+    }
+    if (!is_limit(friction) || !is_limit(partition) || partition > 1.0) {
+        throw InputError("heat.shares",
+                         "the coefficient of friction must be positive, and the share of the heat "
+                         "into the work between 0 and 1");
+    }
+    if (!is_limit(low) || !is_limit(high) || low > 1.0 || high < 1.0) {
+        throw InputError("heat.range", "the range of the heat must hold what is most likely");
+    }
+    if (!std::isfinite(start) || !is_limit(burn)) {
+        throw InputError("heat.temperatures", "a temperature of the heat is none");
+    }
+}
+
 PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
     build += more.build;
     localise += more.localise;
@@ -79,6 +97,7 @@ PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
     removal += more.removal;
     trace += more.trace;
     events += more.events;
+    heat += more.heat;
     return *this;
 }
 

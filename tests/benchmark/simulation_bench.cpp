@@ -11,6 +11,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/lanes.h"
 #include "beltgrinding/simulation.h"
@@ -197,6 +198,51 @@ void trace_cost(benchmark::State& state) {
     state.counters["step_us"] = 1e6 * seconds[1] / steps;
 }
 BENCHMARK(trace_cost)->Unit(benchmark::kMillisecond)->Iterations(3);
+
+// What heat adds to a run, with its nodes: processor time with and without, in turns.
+void heat_cost(benchmark::State& state) {
+    const double side = kSpacing * 1000.0;
+    const HeightField before = testing::plate(side, side, kSpacing, 0.3);
+    ElasticFoundation foundation(0.5);
+    const LocalLaw law({1e-5});
+    SimulationOptions options;
+    options.process.wheel = {100.0, 50.0, 0.0};
+    options.process.force = 100.0;
+    std::vector<PathPose> poses;
+    for (int k = 0; k < 8; ++k) {  // to and fro, neighbouring passes overlap
+        PathPose pose;
+        pose.base_from_tcp = Eigen::Translation3d((k / 2 + k) % 2 == 0 ? 20.0 : side - 20.0,
+                                                  40.0 + 30.0 * (k / 2), 0.3) *
+                             Eigen::AngleAxisd(M_PI, Vec3::UnitX());
+        poses.push_back(pose);
+    }
+    const ToolPath path(poses, {});
+    const HeatMaterial steel{15.0, 500.0, 7900.0}, aluminium{191.0, 911.0, 2700.0};
+    const std::array materials = {steel, aluminium};
+    std::array<double, 3> seconds{};
+    double nodes = 0.0, bytes = 0.0;
+    for (auto _ : state) {
+        for (std::size_t k = 0; k < 3; ++k) {  // without, and with either material
+            HeightField field = before;
+            const std::clock_t start = std::clock();
+            std::optional<PartHeat> part;
+            if (k > 0) {
+                part.emplace(field, options.resolution.contact_spacing, materials[k - 1]);
+                part->set_thickness(std::vector<float>(part->size(), 8.0f));
+                nodes = static_cast<double>(part->size());
+                bytes = static_cast<double>(part->bytes()) / static_cast<double>(field.size());
+            }
+            options.heat = {part ? &*part : nullptr, 0.5, 0.7};
+            benchmark::DoNotOptimize(simulate(field, path, foundation, law, options));
+            seconds[k] += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+        }
+    }
+    state.counters["ratio_steel"] = seconds[1] / seconds[0];
+    state.counters["ratio_aluminium"] = seconds[2] / seconds[0];
+    state.counters["nodes"] = nodes;
+    state.counters["bytes_a_sample"] = bytes;
+}
+BENCHMARK(heat_cost)->Unit(benchmark::kMillisecond)->Iterations(2);
 
 }  // namespace
 }  // namespace beltgrinding

@@ -18,6 +18,8 @@ from beltgrinding.presets import library
 from beltgrinding.simulation import run as runs
 from test_job import DOWN
 
+HEAT = {"conductivity_W_mK": 15.0, "heat_capacity_J_kgK": 500.0, "density_kg_m3": 7900.0}
+HEAT |= {"friction": [0.3, 0.6], "partition": [0.5, 0.8]}
 ROBOT, DH_ROBOT = (library.find("robots", name)["model"] for name in ("kuka_kr16_2", "ur10e"))
 
 
@@ -183,6 +185,11 @@ VALUES = {
     "law.calibration.parameters": lambda _: ["coefficient_mm2_per_N"],
     "law.calibration.covariance": lambda _: [[1e-12]],
     "law.calibration.fit": lambda _: {"grinds": 7},
+    "heat.material": lambda _: "another",
+    "heat.friction": lambda _: [0.2, 0.5],
+    "heat.partition": lambda _: [0.4, 0.9],
+    "heat.burn_source": lambda _: "another",
+    "heat.burn_temperature_C": lambda _: 25.0,
     "cell.bodies.0.name": lambda _: "pillar",
     "cell.bodies.0.file": lambda folder: str(folder / "other.brep"),
     "cell.bodies.0.brep": lambda _: OwnBrep(box(4.0, 4.0)[0]),
@@ -208,6 +215,9 @@ ALONG = {  # keys that must come or go with a key
     "stock.file": {"stock.kind": "mesh"},
     "cell.bodies.0.brep": {"cell.bodies.0.file": None},
     "cell.bodies.0.file": {"cell.bodies.0.brep": None},
+    **{
+        f"heat.{name}": {"heat": HEAT} for name in jobs.schema()["properties"]["heat"]["properties"]
+    },
     "robot.preset": {"robot.model": {}},
     "programs.0.file": {"programs.0.poses": None},
     "programs.0.values": {"programs.0.poses": None, "programs.0.file": "pass.csv"},

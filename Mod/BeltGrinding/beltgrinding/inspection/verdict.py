@@ -14,6 +14,7 @@ from ..engine import InputError, core
 from ..job import resolution
 from ..job.poses import program_name
 from . import edge_profile
+from . import heat as heats
 from .verdict_text import text
 
 __all__ = ["cluster_samples", "judge", "of_result", "text", "verdict"]
@@ -85,6 +86,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
     del whole["verdict"]
     verdicts = {one["verdict"] for one in [*judged, *faces]}
     kinds = [event["kind"] for event in events]
+    heat = heats.figures(job, field, motions)
     return {
         "format": FORMAT,
         "resolution": resolution.mode(job),
@@ -106,6 +108,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
                 ("below", "above"), found["cluster_counts"], found["cluster_areas"]
             )
         },
+        **({"heat": heat} if heat is not None else {}),
         "programs": _programs(job, motions),
         "notes": notes,
         "note_facts": [fact_data(note) for note in notes],
@@ -170,7 +173,7 @@ def thickness_deviation(job, field, shape=None, context=None):
     if not limited:
         return None
     samples = np.flatnonzero(np.isin(zone_of_samples(job, field), limited))
-    others = _other_faces(job, field, shape, [], context)
+    others = other_faces(job, field, shape, [], context)
     found = np.full(field.size, np.nan)
     found[samples] = core.measure_thickness(field, samples, others, context)[1]
     return found
@@ -351,7 +354,7 @@ def _thicknesses(job, field, zones, zone_of, shape, notes, context):
     """What each zone's thickness is like; None for those without a tolerance for it."""
     if not any("thickness_mm" in zone for zone in zones):
         return [None] * len(zones)
-    others = _other_faces(job, field, shape, notes, context)
+    others = other_faces(job, field, shape, notes, context)
     return [
         (
             _thickness(field, zone["thickness_mm"], np.flatnonzero(zone_of == i), others, context)
@@ -362,7 +365,7 @@ def _thicknesses(job, field, zones, zone_of, shape, notes, context):
     ]
 
 
-def _other_faces(job, field, shape, notes, context):
+def other_faces(job, field, shape, notes, context):
     """Triangles of the design's faces that are not ground."""
     from ..job import workpiece
 

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from . import heat
+
 
 def text(verdict):
     """A few lines that say it all."""
@@ -35,6 +37,8 @@ def text(verdict):
     lines += [_edge(zone) for zone in verdict["zones"] if zone.get("edge")]
     for cluster in verdict["clusters"][:3]:
         lines.append(f"  {cluster['number']}. {_told(cluster, verdict['programs'])}")
+    if verdict.get("heat"):
+        lines.append(heat.text(verdict["heat"], verdict["programs"]))
     doubts = [
         ("rays that met no stock", verdict["missed_rays"]),
         ("samples with defective stock", verdict["defective_samples"]),

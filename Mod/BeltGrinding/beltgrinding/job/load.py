@@ -44,6 +44,13 @@ def validate(job, folder="."):
             check_values(program["values"], f"programs.{i}.values")
         elif "values" in program:
             program["values"] = absolute(folder, program["values"])
+    for name in ("friction", "partition"):
+        if "heat" in job and job["heat"][name][0] > job["heat"][name][1]:
+            raise InputError(
+                "job.heat_span",
+                "{key}: the least value is more than the greatest",
+                key=f"heat.{name}",
+            )
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])

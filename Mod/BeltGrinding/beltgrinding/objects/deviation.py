@@ -19,7 +19,8 @@ MEASURED, DIFFERENCE = (
     "measured",
     "difference",
 )  # of a scan: its height, and that less the predicted
-SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE]
+TEMPERATURE = "temperature"
+SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE]
 BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
 SETTINGS = (  # name, kind, first value, text
     ("Bounds", "Enumeration", [BY_HAND, BY_TOLERANCE, BY_PERCENTILE], "where the ramps end"),
@@ -57,6 +58,24 @@ OUTPUTS = (
     Output("UncertaintyMean", "Distance", "Statistics", "mean standard deviation of the deviation"),
     Output("Uncertainty95", "Distance", "Statistics", "95 % of the area are surer than that"),
     Output("ExpectedInTolerance", "Float", "Statistics", "mean probability, percent; 0: not known"),
+    Output(
+        "StartTemperature", "Float", "Temperature", "of the part before it was ground, degrees C"
+    ),
+    Output(
+        "GreatestTemperature",
+        "Float",
+        "Temperature",
+        "likely, of the hottest sample, degrees C; 0: not computed",
+    ),
+    Output(
+        "GreatestTemperatureAtMost",
+        "Float",
+        "Temperature",
+        "the same, if friction and partition are the most that they may be",
+    ),
+    Output(
+        "BurntArea", "Float", "Temperature", "share of the area likely above the limit, percent"
+    ),
     Output("RemovedVolume", "Volume", "Statistics", "removed by grinding"),
     Output("DesignArea", "Area", "Statistics", "of the faces"),
     Output("Shown", "String", "Deviation", "which result the colours show", True),
@@ -90,7 +109,10 @@ class Deviation(Proxy):
             obj.addProperty("App::PropertyLink", "Simulation", "Deviation", "the result shown")
             obj.setEditorMode("Simulation", 1)
         if "ColourBy" not in obj.PropertiesList:
-            text = "what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan"
+            text = (
+                "what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; "
+                "temperature: the greatest, of a job with Heat"
+            )
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
             obj.ColourBy = SHOWN
         if obj.getEnumerationsOfProperty("ColourBy") != SHOWN:  # an older file's
@@ -209,6 +231,20 @@ def _mesh(field):
     return mesh
 
 
+def temperature_span(obj):
+    """K between the ends of the temperature's colours."""
+    return max(obj.GreatestTemperature - obj.StartTemperature, 1.0)
+
+
+def _show_temperatures(obj, field):
+    stored = json.loads(getattr(obj.Simulation, "VerdictData", "") or "{}")
+    heat = stored.get("verdict", {}).get("heat") if field.heat is not None else None
+    obj.StartTemperature = heat["start_C"] if heat else 0.0
+    obj.GreatestTemperature = heat["worst"]["temperature_C"] if heat else 0.0
+    obj.GreatestTemperatureAtMost = heat["worst"]["greatest_C"] if heat else 0.0
+    obj.BurntArea = 100.0 * (heat["burnt_share"] or 0.0) if heat else 0.0
+
+
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
@@ -217,10 +253,14 @@ def show(obj, field, scale, new_mesh=True):
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
     obj.UncertaintyLimit = _round_up(sd)
+    _show_temperatures(obj, field)
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
         colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
     elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
         colours = core.height_colours(scan_heights(obj, field), field.flags, *scale)
+    elif obj.ColourBy == TEMPERATURE and field.heat is not None:
+        rise = np.array(field.heat["rise"], dtype=float)
+        colours = core.magnitude_colours(rise, field.flags, temperature_span(obj))
     else:
         colours = core.deviation_colours(field, *scale, bands_of(obj), preferences.colours())
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale

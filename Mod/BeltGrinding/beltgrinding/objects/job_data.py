@@ -36,6 +36,7 @@ KEYS = (
     Key("FeedCurve", "VectorList", "Law", "law.feed_curve"),
     Key("LandCurve", "VectorList", "Law", "law.land_curve"),
     Key("HeatLimit", "Float", "Law", "law.heat_limit_MPa_m_s"),
+    Key("Heat", "JSON", "Law", "heat"),
     Key("PressureLimit", "Pressure", "Law", "law.pressure_limit_MPa"),
     Key("Calibration", "JSON", "Law", "law.calibration"),
     Key("WearModel", "Enumeration", "Wear", "law.wear.model"),

@@ -243,7 +243,9 @@ def to_job(obj, keys, job):
         for i, part in enumerate(path):
             following = [*path, last][i + 1]
             node = node.setdefault(part, [None, None] if following.isdigit() else {})
-        node[int(last) if last.isdigit() else last] = get_value(obj, key)
+        value = get_value(obj, key)
+        if value is not None:  # else a key that the job may lack
+            node[int(last) if last.isdigit() else last] = value
 
 
 def from_job(obj, keys, job):

@@ -101,7 +101,10 @@ def verdict_of(job, simulation, inspection):
     judged_by = _limits(inspection)
     if stored.get("inspection") == judged_by:
         return stored["verdict"]
-    return judge(job, simulation, judged_by)
+    found = judge(job, simulation, judged_by)
+    if "heat" in stored.get("verdict", {}):  # no tolerance changes it
+        found["heat"] = stored["verdict"]["heat"]
+    return found
 
 
 def limits_changed(job, simulation):

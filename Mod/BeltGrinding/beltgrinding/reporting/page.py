@@ -1,7 +1,7 @@
 """A report's page, put together from its sections."""
 
 from ..base.resources import resources
-from . import charts, facts, findings, reproduction, view
+from . import charts, facts, findings, heat_section, reproduction, view
 from .layout import facts as rows, section, whole_page
 from .markup import element
 
@@ -17,6 +17,7 @@ def document(content, words, scale, spots, drawn, shown=None, lacking=None):
         findings.head(content, words, scale),
         _pictures(content, words, scale, spots, drawn, shown, lacking),
         findings.tolerance(content, words, scale),
+        heat_section.heat(content.verdict, words),
         findings.events(content, words),
         _process(content, words),
         findings.trust(content, words),

@@ -9,6 +9,7 @@ of its legend, or ``swatches`` ([colour, text]); ``missing``: what it means wher
 import numpy as np
 
 from ..engine import core
+from ..inspection import heat
 from ..inspection import verdict as verdicts
 from ..inspection.section_plot import ticks
 from . import view_mesh
@@ -34,6 +35,10 @@ def modes(content, scale, packed, chosen, words, context=None):
         pressure = trace["peak_pressure"]
         found.append(made.ramp("pressure", words("Largest pressure"), "MPa", 3, pressure))
         found.append(made.motion(trace["dominant"], result.motions))
+    hot = heat.temperatures(result.job, field)
+    if hot is not None:
+        start = result.job["heat"]["start_temperature_C"]
+        found.append(made.ramp("temperature", words("Greatest temperature"), "°C", 0, hot, start))
     if len(field.height_sd) == field.size:
         found.append(
             made.ramp("sd", words("Uncertainty (one standard deviation)"), "mm", 4, field.height_sd)
@@ -137,17 +142,17 @@ class _Maker:
             swatches=[[colour, text] for colour, text in zip(colours[::-1], told[::-1])],
         )
 
-    def ramp(self, key, label, unit, decimals, values):
-        """What has no sign: light at 0, dark where all but a few values lie below."""
+    def ramp(self, key, label, unit, decimals, values, low=0.0):
+        """What has no sign: light at ``low``, dark where all but a few values lie below."""
         values = np.asarray(values, dtype=float)
         known = self.seen & np.isfinite(values)
         if not known.any():
             return None
         most = float(values[known].max())
         limit = float(np.percentile(values[known], TAIL))
-        limit = max(limit, 1e-3 * most, 1e-9)
-        marks, digits = ticks(0.0, limit, 4)
-        marks = [value for value in marks if value < 0.93 * limit]
+        limit = max(limit, low + 1e-3 * (most - low), low + 1e-9)
+        marks, digits = ticks(low, limit, 4)
+        marks = [value for value in marks if value < low + 0.93 * (limit - low)]
         told = [[value, self.words.number(value, digits)] for value in marks]
         beyond = "≥ " if most > limit else ""
         told.append([limit, beyond + self.words.number(limit, max(digits, decimals - 1))])
@@ -159,7 +164,7 @@ class _Maker:
             False,
             values,
             known,
-            scale={"low": 0.0, "high": limit, "colours": _ramp()},
+            scale={"low": low, "high": limit, "colours": _ramp()},
             ticks=told,
             words=[],
         )

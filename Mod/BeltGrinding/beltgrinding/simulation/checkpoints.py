@@ -19,10 +19,10 @@ OF_FIELD += ("triangles",)  # which say what a sample on a border stands for
 class RunCheckpoints:
     """Those of one run, program by program."""
 
-    def __init__(self, field, settings, recorded, programs):
+    def __init__(self, field, settings, recorded, programs, wanted=True):
         """``settings``: what core.simulate takes for the first program, plain data; ``recorded``: the run has a
-        recording; ``programs``: how many there are."""
-        self._most = SHARE * kept.largest() / programs  # bytes of a program's
+        recording; ``programs``: how many there are; ``wanted``: else none are kept."""
+        self._most = SHARE * kept.largest() / programs if wanted else 0.0  # bytes of a program's
         self._programs, self._resumed, self._same = [], 0, True
         if self._most < 1.0:
             return

@@ -15,7 +15,7 @@ from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
 from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
-from . import idle
+from . import heat, idle
 from .checkpoints import RunCheckpoints
 from .result import Result
 
@@ -113,6 +113,9 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     phases.end("stock")
     met = collision.check(job, shape, paths, warnings, context.part(0.27, 0.3), reached)
     phases.end("collisions")
+    heated = heat.options(job, field, shape, warnings, context.part(0.3, 0.3))
+    if heated:
+        phases.end("heat")
     if early is not None:
         early(list(warnings))
 
@@ -124,10 +127,12 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
         influence=influence,
         force_influence=forces,
         lower_limits=verdicts.lower_limits(job, field),
+        heat=heated,
     )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
+    # The heat in the part is not among what a checkpoint holds.
     checkpoints = RunCheckpoints(
-        field, (wheel, compliance, law, options), recording is not None, len(paths)
+        field, (wheel, compliance, law, options), recording is not None, len(paths), not heated
     )
     phases.end("hash")
     found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}

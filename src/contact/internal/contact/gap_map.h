@@ -124,6 +124,30 @@ class GapMap {
     /// that is more.
     void raise(const DisplacedPressure& pressure, std::span<float> largest) const;
 
+    /// Calls visit(position, MPa) for the pressure at each sample, where there is some.
+    template <class Visit>
+    void for_pressed(const DisplacedPressure& pressure, Visit visit) const {
+        tabulate(pressure.pressure, 1.0);
+        float values[kBlockLanes];
+        for (std::size_t k = 0; k < placed_count_; ++k) {
+            if (!interpolate(placed_[k], table_.data(), 0.0f, values)) continue;
+            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+                if (values[lane] > 0.0f)
+                    visit(std::size_t{placed_[k].block} * kBlockLanes + lane, values[lane]);
+            }
+        }
+        for (const Footprint& f : footprints_) {
+            if (!f.nearest || !(f.inside > 0.0f)) continue;
+            if (const double value = at(f, pressure.pressure); value > 0.0)
+                visit(f.position, value);
+        }
+        for (const BesidePatch& patch : beside_patches_) {
+            if (!(patch.share > 0.0)) continue;
+            const double value = beside_at(patch, pressure.beside);
+            if (value > 0.0) visit(footprints_[patch.footprint].position, value);
+        }
+    }
+
     /// Position of the sample of the nearest layer that lies nearest to (s, y), mm; none if the map
     /// is empty.
     std::optional<std::size_t> sample_near(double s, double y) const;

@@ -42,6 +42,20 @@ struct RemovalTrace {
     std::size_t bytes() const;
 };
 
+/// How hot each sample became. Both arrays have one value per sample, or are empty: not computed.
+struct HeatTrace {
+    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< heat never came there
+
+    std::vector<float> rise;  ///< K, greatest rise of temperature above the start's
+    std::vector<std::uint32_t>
+        motion;  ///< numbered as in a RemovalTrace, at that moment; or kNever
+
+    /// Nothing is known.
+    bool empty() const { return rise.empty(); }
+    /// Forgets all.
+    void clear() { *this = {}; }
+};
+
 /// The discrete height field: samples of the design surface, each with the segment of its normal
 /// ray that is still material, as a structure of arrays. Frame: work (the part's own). Lengths in
 /// mm.
@@ -68,6 +82,7 @@ struct HeightField {
     std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
     std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
+    HeatTrace heat;                   ///< how hot it became where; empty: not computed
     std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm

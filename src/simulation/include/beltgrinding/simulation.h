@@ -13,6 +13,7 @@
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/event.h"
+#include "beltgrinding/heat.h"
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/removal_law.h"
 #include "beltgrinding/run_context.h"
@@ -100,6 +101,21 @@ struct MonitorLimits {
     void validate(std::size_t samples) const;
 };
 
+/// How hot the part becomes, if asked for.
+struct HeatRequest {
+    PartHeat* part = nullptr;  ///< goes on with this path; stays as it was on cancel or error
+    double friction = 0.0;     ///< mu, of the belt on the work: q = mu p V_b
+    double partition = 0.0;    ///< share of q that flows into the work
+    double low = 1.0;          ///< share of the rise that it may be at least, and
+    double high = 1.0;         ///< at most: friction and partition, which it is in proportion to,
+                               ///< being uncertain
+    double start = 20.0;       ///< degrees C, of the part
+    double burn = 0.0;         ///< degrees C above which the material is burnt; 0: not known
+
+    /// Throws InputError naming the setting that is none.
+    void validate(std::size_t samples) const;
+};
+
 /// What a simulation keeps besides the heights and the time series.
 struct OutputRequest {
     bool trace = true;  ///< keep `field.trace`; without, what it holds is dropped
@@ -124,6 +140,7 @@ struct SimulationOptions {
     Resolution resolution;    ///< how finely it is computed
     MonitorLimits limits;     ///< what is noted as an event
     OutputRequest outputs;    ///< what is kept
+    HeatRequest heat;         ///< how hot the part becomes
     bool must_touch = true;   ///< a path that never touches the stock is an error
 };
 
@@ -136,6 +153,7 @@ struct PhaseTimes {
     double removal = 0.0;   ///< lowering the samples
     double trace = 0.0;     ///< noting what removed
     double events = 0.0;    ///< watching for them
+    double heat = 0.0;      ///< conducting heat
 
     /// Adds each phase.
     PhaseTimes& operator+=(const PhaseTimes& more);
@@ -180,10 +198,10 @@ struct SimulationResult {
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, pose by pose. Only
-/// `field.height` and `field.trace` change; a trace goes on with what is there. On cancel or error
-/// the field is left as it was before the call.
-/// Results do not depend on the number of threads. Throws InputError (no contact anywhere on the
-/// path, bad options) and Cancelled.
+/// `field.height`, `field.trace` and, with heat, `field.heat` change; a trace goes on with what is
+/// there. On cancel or error the field is left as it was before the call. Results do not depend on
+/// the number of threads. Throws InputError (no contact anywhere on the path, bad options) and
+/// Cancelled.
 SimulationResult simulate(HeightField& field, const ToolPath& path, const ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});

@@ -39,12 +39,17 @@ class DeviationPanel(Panel):
         colours.add("Bands", translate("BeltGrinding", "Steps of each ramp"))
         self.colours, self.tolerance = colours, form
         self.body.addWidget(colours)
-        if obj.ExpectedInTolerance > 0.0 or getattr(obj.Simulation, "ScanFigures", ""):
+        if (
+            obj.ExpectedInTolerance > 0.0
+            or getattr(obj.Simulation, "ScanFigures", "")
+            or (obj.GreatestTemperature > 0.0)
+        ):
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
                 "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
                 "measured": translate("BeltGrinding", "Scan"),
                 "difference": translate("BeltGrinding", "Scan less prediction"),
+                "temperature": translate("BeltGrinding", "Greatest temperature"),
             }
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
         self.table = QtGui.QTableWidget(0, 2)

@@ -2,10 +2,19 @@
 
 import json
 
+import numpy as np
 from pivy import coin
 
 from ...objects import preferences
-from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of, scan_heights
+from ...objects.deviation import (
+    DIFFERENCE,
+    MEASURED,
+    TEMPERATURE,
+    UNCERTAINTY,
+    bands_of,
+    scan_heights,
+    temperature_span,
+)
 from ...objects.fields import field_of
 from . import field_view
 from .field_view import FieldView
@@ -70,6 +79,9 @@ class CrispColours:
         elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
             heights = scan_heights(obj, field)
             self.shape.colour_by(field_view.DEVIATION, *scale, values=heights)
+        elif obj.ColourBy == TEMPERATURE and field.heat is not None:
+            rise = np.array(field.heat["rise"], dtype=float)
+            self.shape.colour_by(field_view.TEMPERATURE, temperature_span(obj), values=rise)
         else:
             self.shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
 

@@ -15,10 +15,10 @@ from ...engine import InputError, core, library
 STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHeightField
 PICK_RADIUS = 1.0  # pixels
 DEVIATION, REMOVED, UNCERTAINTY, FACE = "deviation", "removed depth", "uncertainty", "face"
-PRESSURE, CONTACT = "pressure", "contact"
+PRESSURE, CONTACT, TEMPERATURE = "pressure", "contact", "temperature"
 LEAST = 1e-9  # of a scale: half its range
 PALETTE = 2048  # colours from one end of a scale to the other
-MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT)
+MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE)
 
 
 def _coin_module():

@@ -2,7 +2,14 @@
 
 from pivy import coin
 
-from ...objects.deviation import DIFFERENCE, MEASURED, UNCERTAINTY, bands_of
+from ...objects.deviation import (
+    DIFFERENCE,
+    MEASURED,
+    TEMPERATURE,
+    UNCERTAINTY,
+    bands_of,
+    temperature_span,
+)
 from ..common.compat import QtCore
 from ..scene import legend
 from ..scene.crisp_colours import CrispColours
@@ -14,6 +21,7 @@ LEGEND = (
     "ToleranceUpper",
     "ColourLimit",
     "UncertaintyLimit",
+    "GreatestTemperature",
     "Bands",
     "Minimum",
     "Maximum",
@@ -82,6 +90,8 @@ class DeviationView(ColouredMeshView):
             return legend.uncertainty(obj.UncertaintyLimit.Value, obj.OutOfDate)
         if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
             return legend.scan(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
+        if obj.ColourBy == TEMPERATURE and obj.GreatestTemperature > 0.0:
+            return legend.temperature(obj.StartTemperature, temperature_span(obj), obj.OutOfDate)
         beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
         return legend.deviation(*scale, obj.OutOfDate, bands_of(obj), beyond)
 

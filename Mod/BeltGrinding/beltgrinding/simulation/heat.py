@@ -1,0 +1,51 @@
+"""The heat in a part while a job grinds it, where the job says what the material is."""
+
+from ..engine import core
+from ..inspection import heat as figures
+from ..inspection import verdict as verdicts
+
+
+def options(job, field, shape, warnings, context=None):
+    """The dict that core.simulate takes as ``heat``, with a core.PartHeat that has seen none yet; {} for a job
+    without ``heat``, or one whose rigid tool has no pressure, which is told. Raises InputError and Cancelled.
+    """
+    given = job.get("heat")
+    if given is None:
+        return {}
+    if job["law"]["model"] == "geometric":
+        warnings.append(
+            core.Fact(
+                "simulation.no_heat_of_rigid",
+                "a geometric (rigid) tool has no pressure: no temperatures are computed",
+            )
+        )
+        return {}
+    part = core.PartHeat(
+        field,
+        float(job["belt_machine"]["contact_spacing_mm"]),
+        float(given["conductivity_W_mK"]),
+        float(given["heat_capacity_J_kgK"]),
+        float(given["density_kg_m3"]),
+    )
+    notes = []
+    others = verdicts.other_faces(job, field, shape, notes, context)
+    warnings += notes
+    part.set_thickness(core.measure_thickness(field, part.samples, others, context)[0])
+    if not given["burn_temperature_C"]:
+        warnings.append(
+            core.Fact(
+                "simulation.no_burn_temperature",
+                "{key} is not given: temperatures are computed, but not judged",
+                key="heat.burn_temperature_C",
+            )
+        )
+    low, likely, high = figures.shares(given)
+    return {
+        "part": part,
+        "friction": figures.middle(given["friction"]),
+        "partition": figures.middle(given["partition"]),
+        "low": low / likely,
+        "high": high / likely,
+        "start": float(given["start_temperature_C"]),
+        "burn": float(given["burn_temperature_C"]),
+    }

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "beltgrinding/error.h"
+#include "beltgrinding/heat.h"
+#include "heat/thermal_nodes.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kSamplesPerNode = 1.5;  // of the field's spacing, at least
+
+void check(double value, const char* name) {
+    if (!std::isfinite(value) || value <= 0.0) {
+        throw InputError("heat.material", "the material's {name} must be positive and finite",
+                         {{"name", name}});
+    }
+}
+
+/// K/mm, by node: least squares over the neighbours, in the tangent plane.
+std::vector<Vec3f> gradients(const ThermalNodes& nodes, const std::vector<float>& values) {
+    std::vector<Vec3f> found(nodes.size(), Vec3f::Zero());
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        const Vec3 n = nodes.normal[k].cast<double>();
+        // Along the normal nothing is known: 0.
+        Eigen::Matrix3d square = n * n.transpose();
+        Vec3 right = Vec3::Zero();
+        int count = 0;
+        for (std::uint32_t e = nodes.first[k]; e < nodes.first[k + 1]; ++e) {
+            const std::uint32_t other = nodes.neighbour[e];
+            Vec3 way = nodes.point[other] - nodes.point[k];
+            way = (way - n.dot(way) * n).eval();
+            const double weight = 1.0 / way.squaredNorm();
+            if (!std::isfinite(weight)) continue;
+            square += weight * way * way.transpose();
+            right += weight * (values[other] - values[k]) * way;
+            ++count;
+        }
+        if (count < 3 || !(square.determinant() > 1e-3)) continue;
+        found[k] = (square.inverse() * right).cast<float>();
+    }
+    return found;
+}
+
+}  // namespace
+
+void HeatMaterial::validate() const {
+    check(conductivity, "conductivity");
+    check(heat_capacity, "heat capacity");
+    check(density, "density");
+}
+
+PartHeat::PartHeat(const HeightField& field, double spacing, const HeatMaterial& material)
+    : material_(material) {
+    material.validate();
+    if (field.size() == 0) throw InputError("heat.empty_field", "the height field is empty");
+    if (!std::isfinite(spacing) || spacing <= 0.0) {
+        throw InputError("heat.spacing", "the distance of the heat's nodes must be positive");
+    }
+    nodes_ = std::make_shared<ThermalNodes>(
+        make_thermal_nodes(field, std::max(spacing, kSamplesPerNode * field.spacing)));
+    const std::size_t n = nodes_->size();
+    state_.modes.assign(n * DepthModes::kModes, 0.0f);
+    state_.current.assign(n, 0.0);
+    state_.conducted.assign(n, 0.0);
+    state_.last.assign(n, -1e30);
+    state_.warm.assign(n, 0);
+    state_.peak.assign(n, 0.0f);
+    state_.source.assign(n, HeatState::kNever);
+}
+
+double PartHeat::spacing() const {
+    return nodes_->spacing;
+}
+
+std::size_t PartHeat::size() const {
+    return nodes_->size();
+}
+
+const std::vector<std::uint32_t>& PartHeat::samples() const {
+    return nodes_->sample;
+}
+
+const std::vector<std::uint32_t>& PartHeat::node_of() const {
+    return nodes_->node_of;
+}
+
+void PartHeat::set_thickness(const std::vector<float>& thickness) {
+    auto nodes = std::make_shared<ThermalNodes>(*nodes_);
+    beltgrinding::set_thickness(*nodes, thickness);
+    nodes_ = std::move(nodes);
+}
+
+void PartHeat::set_state(HeatState state) {
+    const std::size_t n = nodes_->size();
+    if (state.modes.size() != n * DepthModes::kModes || state.current.size() != n ||
+        state.conducted.size() != n || state.last.size() != n || state.warm.size() != n ||
+        state.peak.size() != n || state.source.size() != n) {
+        throw InputError("heat.other_state", "the heat's state is of another part");
+    }
+    state_ = std::move(state);
+}
+
+std::size_t PartHeat::bytes() const {
+    return nodes_->bytes() +
+           nodes_->size() * (DepthModes::kModes * sizeof(float) + 3 * sizeof(double) +
+                             sizeof(std::uint8_t) + sizeof(float) + sizeof(std::uint32_t));
+}
+
+void PartHeat::keep(HeightField& field) const {
+    const ThermalNodes& nodes = *nodes_;
+    if (field.size() != nodes.node_of.size()) {
+        throw InputError("heat.other_field", "the heat is of another height field");
+    }
+    const std::vector<Vec3f> slope = gradients(nodes, state_.peak);
+    field.heat.rise.resize(field.size());
+    field.heat.motion.resize(field.size());
+    const double reach = 2.0 * nodes.spacing;
+    for (std::size_t s = 0; s < field.size(); ++s) {
+        const std::uint32_t node = nodes.node_of[s];
+        float least = state_.peak[node], most = least;
+        double sum = 0.0, weights = 0.0;
+        const auto add = [&](std::uint32_t k) {
+            const Vec3 way = field.point[s] - nodes.point[k];
+            // Modified Shepard weights, each node with its plane (Franke & Nielson 1980).
+            const double away = std::max(way.norm(), 1e-6 * reach);
+            const double share = std::max(reach - away, 0.0) / (reach * away);
+            const double weight = share * share;
+            sum += weight * (state_.peak[k] + slope[k].cast<double>().dot(way));
+            weights += weight;
+            least = std::min(least, state_.peak[k]);
+            most = std::max(most, state_.peak[k]);
+        };
+        add(node);
+        for (std::uint32_t e = nodes.first[node]; e < nodes.first[node + 1]; ++e)
+            add(nodes.neighbour[e]);
+        const auto value = weights > 0.0 ? static_cast<float>(sum / weights) : state_.peak[node];
+        const bool any = state_.source[node] != HeatState::kNever;
+        field.heat.rise[s] = any ? std::clamp(value, least, most) : 0.0f;
+        field.heat.motion[s] = state_.source[node];
+    }
+}
+
+}  // namespace beltgrinding

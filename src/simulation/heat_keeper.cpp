@@ -1,0 +1,73 @@
+#include "heat_keeper.h"
+
+namespace beltgrinding {
+
+HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, double belt_speed)
+    : blocks_(blocks),
+      request_(request),
+      belt_speed_(belt_speed),
+      start_(request.part->state().time),
+      conduction_(*request.part),
+      position_(request.part->size(), 0),
+      area_(request.part->size(), 0.0),
+      force_(request.part->size(), 0.0),
+      work_(request.part->size(), 0.0) {
+    const auto& node_of = request.part->node_of();
+    const auto samples = blocks.samples();
+    node_.resize(samples.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const std::uint32_t node = node_of[samples[k]];
+        node_[k] = node;
+        area_[node] += blocks.field().area[samples[k]];
+        if (request.part->samples()[node] == samples[k])
+            position_[node] = static_cast<std::uint32_t>(k);
+    }
+}
+
+void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, double force,
+                       double duration) {
+    constexpr auto kLanes = SampleBlocks::kLanes;
+    map.for_pressed(pressure, [this](std::size_t position, double value) {
+        const std::uint32_t node = node_[position];
+        const float area =
+            blocks_.block(static_cast<std::uint32_t>(position / kLanes)).area[position % kLanes];
+        if (force_[node] == 0.0) pressed_.push_back(node);
+        force_[node] += value * area;
+    });
+    // Their samples' mean pressure is the nodes'. The force is the contact's, to the last bit.
+    const ThermalNodes& nodes = request_.part->nodes();
+    double sum = 0.0;
+    for (const std::uint32_t k : pressed_) {
+        force_[k] *= nodes.area[k] / area_[k];
+        sum += force_[k];
+    }
+    for (const std::uint32_t k : pressed_) {
+        if (work_[k] == 0.0) worked_.push_back(k);
+        work_[k] += force * force_[k] / sum * duration;
+        force_[k] = 0.0;
+    }
+    pressed_.clear();
+}
+
+void HeatKeeper::end_step(double begin, double duration, std::uint32_t motion) {
+    conduction_.idle(start_ + begin);
+    const double share = request_.friction * request_.partition * belt_speed_ / duration;
+    for (const std::uint32_t k : worked_) {
+        conduction_.add(k, share * work_[k]);
+        work_[k] = 0.0;
+    }
+    worked_.clear();
+    conduction_.advance(duration, motion);
+}
+
+std::size_t HeatKeeper::hottest_position() const {
+    return position_[conduction_.hottest_node()];
+}
+
+void HeatKeeper::keep(double duration, HeightField& field) {
+    conduction_.idle(start_ + duration);
+    request_.part->set_state(conduction_.settle());
+    request_.part->keep(field);
+}
+
+}  // namespace beltgrinding

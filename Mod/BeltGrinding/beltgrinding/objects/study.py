@@ -79,7 +79,7 @@ class Study(Proxy):
         data = {}
         to_job(obj, KEYS, data)
         found = data["study"]
-        found["vary"] = found["vary"] or []
+        found["vary"] = found.get("vary") or []
         return found
 
     def table(self, obj):

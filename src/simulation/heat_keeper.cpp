@@ -31,6 +31,7 @@ void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, dou
         const std::uint32_t node = node_[position];
         const float area =
             blocks_.block(static_cast<std::uint32_t>(position / kLanes)).area[position % kLanes];
+        if (!(area > 0.0f)) return;  // it stands for nothing
         if (force_[node] == 0.0) pressed_.push_back(node);
         force_[node] += value * area;
     });

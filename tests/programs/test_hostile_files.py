@@ -208,6 +208,7 @@ def test_a_line_without_end_is_refused(tmp_path, suffix):
         (b"<URProgram><!--" + b"x" * (9 << 20), "programs.xml.token"),
         (b"<URProgram><cachedContents>" + b"x" * (70 << 20), "programs.xml.too_large"),
     ],
+    ids=["attribute", "comment", "contents"],  # else the bytes name the test, in every report
 )
 def test_a_packed_program_that_swells_is_refused(tmp_path, xml, code):
     (tmp_path / "a.urp").write_bytes(gzip.compress(xml, 6))

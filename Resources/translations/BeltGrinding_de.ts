@@ -4832,6 +4832,14 @@ im Mittel {} abgetragen</translation>
         <source>greatest temperature, °C</source>
         <translation>höchste Temperatur, °C</translation>
     </message>
+    <message>
+        <source>Hottest</source>
+        <translation>Heißeste Stelle</translation>
+    </message>
+    <message>
+        <source>Hottest, at most</source>
+        <translation>Höchstens</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

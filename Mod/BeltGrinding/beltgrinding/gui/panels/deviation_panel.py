@@ -42,7 +42,7 @@ class DeviationPanel(Panel):
         if (
             obj.ExpectedInTolerance > 0.0
             or getattr(obj.Simulation, "ScanFigures", "")
-            or (obj.GreatestTemperature > 0.0)
+            or obj.GreatestTemperature > 0.0
         ):
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
@@ -115,6 +115,12 @@ class DeviationPanel(Panel):
                     translate("BeltGrinding", "Uncertainty, 95 %"),
                     mm(obj.Uncertainty95, ""),
                 ),
+            )
+        if obj.GreatestTemperature > 0.0:  # never without its range
+            most = f"{obj.GreatestTemperatureAtMost:.0f} °C"
+            rows += (
+                (translate("BeltGrinding", "Hottest"), f"{obj.GreatestTemperature:.0f} °C"),
+                (translate("BeltGrinding", "Hottest, at most"), most),
             )
         self.table.setRowCount(len(rows))
         for i, (name, text) in enumerate(rows):

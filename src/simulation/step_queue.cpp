@@ -2,29 +2,33 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 
 namespace beltgrinding {
 namespace {
 
-/// All numbers of a step; does not compile where a step has got more.
-std::array<double, 24> numbers(const PathStep& step) {
+using StepBits = std::array<std::uint64_t, 24>;
+
+/// The bits of all numbers of a step; does not compile where a step has got more.
+StepBits bits(const PathStep& step) {
     static_assert(sizeof(Frame) == 16 * sizeof(double));
     const auto& [work_from_contact, time, duration, feed, force, pose, plunging, begin, end] = step;
-    std::array<double, 24> values{};
+    StepBits values{};
     std::memcpy(values.data(), work_from_contact.data(), sizeof(Frame));
     const std::array<double, 8> rest = {
         time, duration, feed, force, static_cast<double>(pose), plunging ? 1.0 : 0.0, begin, end};
-    std::copy(rest.begin(), rest.end(), values.begin() + 16);
+    std::transform(rest.begin(), rest.end(), values.begin() + 16,
+                   [](double value) { return std::bit_cast<std::uint64_t>(value); });
     return values;
 }
 
 /// To the last bit: what is simulated must not tell them apart.
 bool same(const PathStep& a, const PathStep& b) {
-    const auto of_a = numbers(a), of_b = numbers(b);
-    return std::memcmp(of_a.data(), of_b.data(), sizeof of_a) == 0;
+    return bits(a) == bits(b);
 }
 
 }  // namespace

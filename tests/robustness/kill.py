@@ -112,8 +112,24 @@ def kill_after_start(command, delay, environment, stream):
         process.wait()
 
 
+def first_result(command, environment):
+    """How long (s) a process takes from "ready" to its first whole result, on this machine, now."""
+    process = subprocess.Popen(
+        command, env=environment, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
+    )
+    try:
+        assert process.stdout.readline().strip() == "ready", "it did not begin"
+        begin = time.monotonic()
+        assert process.stdout.readline(), "it ended without a result"
+        return time.monotonic() - begin
+    finally:
+        process.kill()
+        process.wait()
+
+
 def kill_runs(kills, seed, longest, tell=lambda text: None):
-    """Kills command-line runs. Returns {what was left: how often}; raises AssertionError."""
+    """Kills command-line runs, each after ``longest`` times what a first result takes or earlier.
+    Returns {what was left: how often}; raises AssertionError."""
     from beltgrinding.engine import InputError
     from beltgrinding.simulation.result import Result
 
@@ -122,9 +138,13 @@ def kill_runs(kills, seed, longest, tell=lambda text: None):
         job, out = Path(folder, "job.json"), Path(folder, "out")
         job.write_text(json.dumps(plate()))
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        command = [sys.executable, "-c", GRIND, str(job), str(out), json.dumps(SPACINGS)]
+
+        def command(out):
+            return [sys.executable, "-c", GRIND, str(job), str(out), json.dumps(SPACINGS)]
+
+        longest *= first_result(command(Path(folder, "timed")), environment)
         for number in range(kills):
-            kill_after_start(command, dice.uniform(0.0, longest), environment, "stdout")
+            kill_after_start(command(out), dice.uniform(0.0, longest), environment, "stdout")
             try:
                 result = Result.read(out)
                 spacing = result.job["sampling"]["spacing_mm"]
@@ -199,7 +219,12 @@ def main():
     parser.add_argument("what", choices=("run", "document"))
     parser.add_argument("--kills", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--longest", type=float, default=1.5, help="s until the kill (1.5)")
+    parser.add_argument(
+        "--longest",
+        type=float,
+        default=3.0,
+        help="s until the kill; of a run, in " "times what its first result takes (3.0)",
+    )
     arguments = parser.parse_args()
     kill = kill_runs if arguments.what == "run" else kill_documents
     print(kill(arguments.kills, arguments.seed, arguments.longest, print))

@@ -114,7 +114,7 @@ def test_a_wrong_result_is_a_finding(changes, words):
 
 
 def test_killed_runs_leave_whole_results():
-    counts = kill.kill_runs(8, 1, 1.0)
+    counts = kill.kill_runs(8, 1, 3.0)
     assert sum(counts.values()) == 8 and counts.get("a whole result", 0) > 0
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from support.freecad import SHARED
+from support.thorough import cases
 
 import beltgrinding
 from beltgrinding.engine import InputError, core
@@ -22,6 +23,7 @@ from beltgrinding.programs.program import ProgramError
 from beltgrinding.programs.registry import read_program
 
 ROUNDS = 300
+PROCESSES = cases(100, 300)  # damaged files that are read in a process of their own each
 LEAST_READ = 0.03  # of the damaged files: fewer, and nothing would be learnt of what is read
 HERE = Path(__file__).resolve().parent
 PATHS = (HERE, HERE.parent, HERE.parents[1] / "Mod" / "BeltGrinding")
@@ -197,7 +199,7 @@ READERS = {
     "mesh.obj": "core.read_mesh(str(path))",
 }
 # How many of the damaged files OpenCASCADE heals without end: known, and ended at the time limit.
-CAD_ROUNDS = {"shape.brep": ROUNDS, "key_k1_alias.stp": 40, "blade_marine_root.iges": 40}
+CAD_ROUNDS = {"shape.brep": PROCESSES, "key_k1_alias.stp": 40, "blade_marine_root.iges": 40}
 CAD_ROUNDS["casting_3flange_open_shell.stp"] = 40
 ENDLESS = {"shape.brep": 2, "blade_marine_root.iges": 1}
 REFUSED = {"cad.not_readable", "cad.null_shape", "cad.failure", "brep.no_faces"}
@@ -227,7 +229,7 @@ def test_libraries_readers(tmp_path, name):
     write_sample(path)
     script = path.with_name("read.py")
     paths = [str(p) for p in PATHS]
-    values = {"paths": paths, "path": str(path), "call": READERS[name], "rounds": ROUNDS}
+    values = {"paths": paths, "path": str(path), "call": READERS[name], "rounds": PROCESSES}
     script.write_text(BINARY.format(**values))
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
     assert done.returncode == 0, (done.returncode, done.stdout[-500:], done.stderr[-2000:])

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from support.thorough import cases
+
 ROOT = Path(__file__).resolve().parents[2]
 for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
     if str(folder) not in sys.path:
@@ -25,7 +27,7 @@ from beltgrinding.engine import core  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
-MOMENTS = 200
+MOMENTS = cases(100, 200)
 WORKERS = 4
 SPACINGS = (2.0, 2.5)  # mm: what was written says which
 START = ROOT / "Mod" / "BeltGrinding" / "beltgrind.py"
@@ -82,7 +84,7 @@ def moments(worker, folder):
     return found
 
 
-def test_ctrl_c_at_two_hundred_moments(tmp_path):
+def test_ctrl_c_at_many_moments(tmp_path):
     with ThreadPoolExecutor(WORKERS) as pool:
         work = [pool.submit(moments, k, tmp_path / str(k)) for k in range(WORKERS)]
         found = [one for part in work for one in part.result()]

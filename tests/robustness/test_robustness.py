@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from support.freecad import SHARED
+from support.thorough import cases
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
@@ -20,8 +21,8 @@ import fault_injection  # noqa: E402
 import fuzz_jobs  # noqa: E402
 import kill  # noqa: E402
 
-JOBS = 25
-GROUND = 8  # at least so many of them grind
+JOBS = cases(14, 25)
+GROUND = JOBS // 3  # at least so many of them grind
 
 
 def test_random_jobs():

@@ -11,6 +11,7 @@ from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs
 from beltgrinding.planning import rounds, sure
 from beltgrinding.simulation import run as runs
+from support.thorough import cases
 from test_plan import SETTINGS, job  # noqa: F401 (a fixture)
 
 COVARIANCE = np.array([[0.0012, 0.001], [0.001, 0.004]])
@@ -25,6 +26,7 @@ LAW = {
 }
 WANTED = {**SETTINGS, "rounds": 8, "probability": 0.95, "goal": "time"}
 DRAWN = 150  # whole simulations
+CASES = cases([("wavy", 0.1, 0.9)], [("wavy", 0.1, 0.9), ("even", 0.06, 0.8)])
 
 
 def calibrated(given, tolerance, **changes):
@@ -53,7 +55,7 @@ def whole(plan, seed, count):
     return np.array(shares)
 
 
-@pytest.mark.parametrize("part, tolerance, wanted", [("wavy", 0.1, 0.9), ("even", 0.06, 0.8)])
+@pytest.mark.parametrize("part, tolerance, wanted", CASES)
 def test_as_many_drawn_laws_pass_as_are_asked_for(job, part, tolerance, wanted):
     even = {"stock": {"allowance_mm": 0.2, "kind": "allowance"}} if part == "even" else {}
     plan = planning.plan(calibrated(job, tolerance, **even), {**WANTED, "wanted_share": wanted})

@@ -221,7 +221,7 @@ void GapMap::find_pressable(const Nearest* nearest, double pressable) {
     }
 }
 
-bool GapMap::map_smooth(double pressable) {
+bool GapMap::map_smooth(const SampleBlocks& blocks, double pressable) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     low_.assign(cells, std::numeric_limits<float>::infinity());
     high_.assign(cells, -std::numeric_limits<float>::infinity());
@@ -242,6 +242,7 @@ bool GapMap::map_smooth(double pressable) {
         });
     }
     find_pressable(low_.data(), pressable);
+    if (find_low_steps(blocks)) return false;
     const auto nx = static_cast<std::size_t>(grid_.nx);
     const auto layer = static_cast<float>(layer_);
     for (std::size_t k = 0; k < cells; ++k) {

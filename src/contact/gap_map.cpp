@@ -45,7 +45,7 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     grid_.ds = spacing;
     grid_.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
     grid_.dy = wheel.width / grid_.ny;
-    layer_ = kLayer * std::max(grid_.ds, grid_.dy);
+    layer_ = whole_layer_ = kLayer * std::max(grid_.ds, grid_.dy);
     const double half = 0.5 * wheel.width;
     for (const double y : {-half, half})
         steepest_flank_ = std::max(steepest_flank_, std::abs(wheel.drop_slope(y)));
@@ -93,9 +93,10 @@ void GapMap::put_on_grid(Footprint& f) const {
 void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
                     const Frame& work_from_contact, double reach, double ahead, double pressable) {
     find_borders(blocks.field());
+    find_steps(blocks);
     contact_from_work_ = work_from_contact.inverse();
     reach_gap_ = reach;
-    seen_gap_ = reach + layer_;  // else the surface had edges where its gap is `reach`
+    seen_gap_ = reach + whole_layer_;  // else the surface had edges where its gap is `reach`
     ahead_ = ahead;
     footprints_.clear();
     beside_patches_.clear();
@@ -225,7 +226,7 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
 void GapMap::map(const SampleBlocks& blocks, double pressable) {
     for (Footprint& f : footprints_)
         f.on_grid = f.nearest = std::abs(f.s) <= 0.5 * (grid_.nx - 1) * grid_.ds;
-    if (map_smooth(pressable)) return;
+    if (map_smooth(blocks, pressable)) return;
     gap_.setZero();
     weight_.setZero();
     nearest_.assign(static_cast<std::size_t>(grid_.cells()), kNone);

@@ -1,5 +1,6 @@
-// Steps in the stock that are taller than what the wheel reaches into, and edges of the work: all
-// that the belt presses on is ground, and nothing else changes where a cell's border lies.
+// Steps in the stock, taller than what the wheel reaches into or lower than half a cell, and edges
+// of the work: all that the belt presses on is ground, and nothing else changes where a cell's
+// border lies.
 
 #include <gtest/gtest.h>
 
@@ -113,6 +114,50 @@ TEST(TallSteps, ATerraceLosesWhatTheLawSays) {
             EXPECT_NEAR(share_of_the_law(result, 2e-5), 1.0, 0.01) << height << ", " << spacing;
         }
     }
+}
+
+/// mm3 that a pass 0.15 mm below the top of a rib takes, which lies beside the cells by `off` mm.
+double taken_from_a_rib(double height, double off) {
+    HeightField field = ribbed(0.25, height, 0.0);
+    SimulationOptions o = options();
+    o.process.force_control = false;
+    o.resolution.max_travel = 0.5;
+    const ToolPath path({pressing_down(20.0 + off, 30.0, height - 0.15, kFeed, 0.0),
+                         pressing_down(40.0 + off, 30.0, height - 0.15, kFeed, 0.0)},
+                        {});
+    return simulate(field, path, rim(), LocalLaw({2e-6}), o).removed_volume;
+}
+
+TEST(LowSteps, AWheelThatDoesNotReachTheGroundBesideARibTakesTheSameWhateverItsHeight) {
+    for (const double off : {0.0, 0.13}) {
+        const double tall = taken_from_a_rib(3.0, off);
+        for (const double height : {0.2, 0.35, 0.5, 0.65})
+            EXPECT_NEAR(taken_from_a_rib(height, off) / tall, 1.0, 0.03) << height << ", " << off;
+    }
+}
+
+TEST(LowSteps, ACurvedSurfaceOfFewSamplesHasNone) {
+    // A ridge of R 3 mm along y: samples 0.8 mm apart, whose gaps have bands as those of a step.
+    const double radius = 3.0;
+    const auto at = [&](double u, double v) {
+        const double x = u - 2.0;
+        return Vec3(x, v, std::sqrt(radius * radius - x * x) - radius);
+    };
+    const auto normal = [&](double u, double) {
+        const double x = u - 2.0;
+        return Vec3(x, 0.0, std::sqrt(radius * radius - x * x)).normalized();
+    };
+    const WheelRim wheel = rim();
+    std::vector<double> approach;
+    for (const double spacing : {0.8, 0.2}) {
+        const HeightField field = testing::mapped_field(4.0, 40.0, spacing, 0.0, at, normal);
+        const ToolPath path(
+            {pressing_down(0.0, 20.0, 0.0, kFeed, 0.0), pressing_down(0.0, 30.0, 0.0, kFeed, 0.0)},
+            {});
+        const PoseContact contact = contact_at(field, path, 0, wheel, options().process);
+        approach.push_back(contact.placed + contact.solution.approach);
+    }
+    EXPECT_NEAR(approach[0], approach[1], 0.06 * approach[1]);
 }
 
 TEST(TallSteps, AnEdgeCrossesACellWithoutAJump) {

@@ -225,7 +225,11 @@ class GapMap {
     void map(const SampleBlocks& blocks, double pressable);
     /// The same where no edge, step or second layer is near what may bear pressure; false, with
     /// nothing of use done, where one may be.
-    bool map_smooth(double pressable);
+    bool map_smooth(const SampleBlocks& blocks, double pressable);
+    /// True where the surface steps, near what may bear pressure, by less than `whole_layer_`:
+    /// `layer_` is half of the lowest such step then, else `whole_layer_`. By `low_`, `high_` and
+    /// `matters_`.
+    bool find_low_steps(const SampleBlocks& blocks);
     /// Which cells may bear pressure, their gaps (`nearest`, mm, by cell) being up to `pressable`.
     template <class Nearest>
     void find_pressable(const Nearest* nearest, double pressable);
@@ -235,6 +239,8 @@ class GapMap {
     void note_beside(const Patch& patch);
     /// Once for each field.
     void find_borders(const HeightField& field);
+    /// The same for the samples at which the surface may step.
+    void find_steps(const SampleBlocks& blocks);
     /// The same for the patches' forms, where samples do not lie evenly.
     void find_forms(const HeightField& field);
     /// Null if the sample lies on no border.
@@ -283,7 +289,8 @@ class GapMap {
     double steepest_flank_ = 0.0;  // of the wheel's profile, mm per mm of width
     Frame contact_from_work_ = Frame::Identity();
     ContactGrid grid_;
-    double layer_ = 0.0;  // mm: what lies further behind the nearest belongs to another layer
+    double whole_layer_ = 0.0;  // mm: steps as high are told without looking for them
+    double layer_ = 0.0;        // mm: what lies further behind the nearest belongs to another layer
     Coverage coverage_;
     Eigen::ArrayXd gap_, weight_;
     std::vector<double> nearest_, farthest_;  // mm, of the samples in a cell
@@ -299,7 +306,10 @@ class GapMap {
     Eigen::ArrayXd reach_;  // mm, of what bulges; empty: nothing does
     const HeightField* borders_of_ = nullptr;
     std::size_t borders_size_ = 0;  // samples that it had
-    double scale_ = 1.0;            // of the last `remove`, so that volumes are equal
+    const HeightField* steps_of_ = nullptr;
+    std::size_t steps_size_ = 0;        // samples that it had
+    std::vector<std::uint64_t> steps_;  // by block: lanes beside which the surface may step
+    double scale_ = 1.0;                // of the last `remove`, so that volumes are equal
 
     std::vector<PlacedBlock> placed_;  // `placed_count_` of them are in use
     std::size_t placed_count_ = 0, samples_ = 0;
@@ -309,6 +319,17 @@ class GapMap {
     std::vector<std::uint8_t> matters_;  // by cell: so near to a pressable one that an edge counts
     std::vector<float> low_, high_;      // mm, by cell, of what is in its mean
     std::vector<std::uint8_t> inhabited_;  // by cell: a sample lies in it
+    /// A sample near a cell that may be stepped, in cells, and its gap there carried to the cell.
+    struct NearStep {
+        std::uint32_t cell;
+        float carried, own;      // mm, to the cell's centre, at the sample
+        float ground;            // mm, what has been taken from it
+        float s, y;              // cells
+        float slope_s, slope_y;  // mm by a cell
+    };
+    double step_between(std::span<NearStep> samples) const;
+    std::vector<NearStep> near_steps_;
+    std::vector<std::uint8_t> stepped_;    // by cell: 1 may be, 2 beside a sample that may step
     std::vector<float> limit_;             // mm, by cell: what lies deeper is another layer's
     mutable std::vector<Bilinear> table_;  // by cell
     std::vector<float> lowering_;          // mm, of regular lanes

@@ -1,0 +1,160 @@
+// Steps of the surface that are lower than half a cell: two samples beside each other lie at other
+// heights than their slopes tell. A mean over both would round the step off, and the pressure at
+// its edge would be a tenth of what it is.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "contact/gap_map.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr double kLowest = 0.1;      // cells: lower steps are averaged
+constexpr std::size_t kLooked = 40;  // of the samples on either side of a step, about
+constexpr float kBand = 0.5F;        // of the gaps' range: at a step there is as much between them
+
+}  // namespace
+
+void GapMap::find_steps(const SampleBlocks& blocks) {
+    const HeightField& field = blocks.field();
+    if (steps_of_ == &field && steps_size_ == field.size()) return;
+    steps_of_ = &field;
+    steps_size_ = field.size();
+    // By what does not change while it is ground: a run that goes on from a checkpoint sees it too.
+    const double lowest = kLowest * std::max(grid_.ds, grid_.dy);
+    std::vector<std::uint8_t> may_step(field.size(), 0);
+    for (std::size_t k = 0; k < field.size(); ++k)
+        may_step[k] = (field.flags[k] & kOnBoundary) != 0 ? 1 : 0;
+    for (const Triangle& triangle : field.triangles) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t a = triangle[corner], b = triangle[(corner + 1) % 3];
+            if (std::abs(field.stock_height[a] - field.stock_height[b]) > lowest)
+                may_step[a] = may_step[b] = 1;
+        }
+    }
+    steps_.assign(blocks.count(), 0);
+    for (std::size_t k = 0; k < blocks.samples().size(); ++k) {
+        if (may_step[blocks.sample(k)] != 0)
+            steps_[k / kBlockLanes] |= std::uint64_t{1} << (k % kBlockLanes);
+    }
+}
+
+double GapMap::step_between(std::span<NearStep> samples) const {
+    std::sort(samples.begin(), samples.end(),
+              [](const NearStep& a, const NearStep& b) { return a.carried < b.carried; });
+    std::size_t above = 0;  // the first beyond the widest band
+    float band = 0.0F;
+    for (std::size_t k = 1; k < samples.size(); ++k) {
+        const float between = samples[k].carried - samples[k - 1].carried;
+        if (between <= band) continue;
+        band = between;
+        above = k;
+    }
+    if (!(band >= kBand * (samples.back().carried - samples.front().carried))) return 0.0;
+    // A curved surface has such bands as well, where samples are few: it rises from one sample to
+    // the other by what lies between their slopes.
+    double nearest = kNone, step = 0.0;
+    const std::size_t by_below = 1 + above / kLooked;
+    const std::size_t by_above = 1 + (samples.size() - above) / kLooked;
+    for (std::size_t a = 0; a < above; a += by_below) {
+        for (std::size_t b = above; b < samples.size(); b += by_above) {
+            const NearStep &one = samples[a], &other = samples[b];
+            const double along = static_cast<double>(other.s - one.s);
+            const double across = static_cast<double>(other.y - one.y);
+            const double apart = along * along + across * across;
+            if (apart >= nearest) continue;
+            nearest = apart;
+            const double rise = static_cast<double>(other.own - one.own);
+            const double by_one = static_cast<double>(one.slope_s) * along +
+                                  static_cast<double>(one.slope_y) * across;
+            const double by_other = static_cast<double>(other.slope_s) * along +
+                                    static_cast<double>(other.slope_y) * across;
+            const auto beyond = [&](double by) {
+                return std::max(
+                    {std::min(by_one, by_other) - by, by - std::max(by_one, by_other), 0.0});
+            };
+            // What the wheel has ground itself is a step at its side face only, and no edge.
+            step = std::min(beyond(rise),
+                            beyond(rise - static_cast<double>(other.ground - one.ground)));
+        }
+    }
+    return step;
+}
+
+bool GapMap::find_low_steps(const SampleBlocks& blocks) {
+    layer_ = whole_layer_;
+    const auto cells = static_cast<std::size_t>(grid_.cells());
+    const auto nx = static_cast<std::size_t>(grid_.nx);
+    const std::size_t above = grid_.ny > 1 ? nx : 0;
+    const auto lowest = static_cast<float>(kLowest * std::max(grid_.ds, grid_.dy));
+    stepped_.clear();
+    const auto mark = [&](std::size_t first) {
+        for (const std::size_t cell : {first, first + 1, first + above, first + above + 1})
+            if (matters_[cell] != 0 && high_[cell] - low_[cell] > lowest) stepped_[cell] = 1;
+    };
+    const auto steps = [&](std::size_t position) {
+        return (steps_[position / kBlockLanes] >> (position % kBlockLanes) & 1U) != 0;
+    };
+    for (std::size_t k = 0; k < placed_count_; ++k) {
+        const PlacedBlock& placed = placed_[k];
+        std::uint64_t lanes = placed.regular & steps_[placed.block];
+        if (lanes != 0) stepped_.resize(cells, 0);
+        for (; lanes != 0; lanes &= lanes - 1)
+            mark(static_cast<std::size_t>(placed.cell[std::countr_zero(lanes)]));
+    }
+    for (const Footprint& f : footprints_) {
+        if (!f.on_grid || f.inside <= 0.0F || !steps(f.position)) continue;
+        stepped_.resize(cells, 0);
+        mark(static_cast<std::size_t>(f.cell));
+    }
+    if (std::find(stepped_.begin(), stepped_.end(), 1) == stepped_.end()) return false;
+    near_steps_.clear();
+    const auto note = [&](std::size_t position, std::size_t first, float gap, float u, float v,
+                          float slope_s, float slope_y) {
+        const auto column = static_cast<float>(first % nx), row = static_cast<float>(first / nx);
+        const std::uint32_t sample = blocks.sample(position);
+        const auto ground = static_cast<float>(
+            static_cast<double>(blocks.field().stock_height[sample]) - blocks.height(position));
+        const float own = gap + u * slope_s + v * slope_y;
+        const auto at = [&](std::size_t cell, float carried) {
+            if (stepped_[cell] != 0)
+                near_steps_.push_back({static_cast<std::uint32_t>(cell), carried, own, ground,
+                                       column + u, row + v, slope_s, slope_y});
+        };
+        at(first, gap);
+        at(first + 1, gap + slope_s);
+        if (above == 0) return;
+        at(first + above, gap + slope_y);
+        at(first + above + 1, gap + slope_s + slope_y);
+    };
+    for (std::size_t k = 0; k < placed_count_; ++k) {
+        const PlacedBlock& placed = placed_[k];
+        for (std::uint64_t lanes = placed.regular; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            note(std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane),
+                 static_cast<std::size_t>(placed.cell[lane]), placed.gap[lane], placed.u[lane],
+                 placed.v[lane], placed.slope_s[lane], placed.slope_y[lane]);
+        }
+    }
+    for (const Footprint& f : footprints_)
+        if (f.on_grid && f.inside > 0.0F)
+            note(f.position, static_cast<std::size_t>(f.cell), static_cast<float>(f.gap), f.u, f.v,
+                 f.slope_s, f.slope_y);
+    std::stable_sort(near_steps_.begin(), near_steps_.end(),
+                     [](const NearStep& a, const NearStep& b) { return a.cell < b.cell; });
+    double least = 2.0 * whole_layer_;
+    for (auto first = near_steps_.begin(); first != near_steps_.end();) {
+        const auto last = std::find_if(first, near_steps_.end(), [&](const NearStep& sample) {
+            return sample.cell != first->cell;
+        });
+        const double step = step_between({first, last});
+        if (step >= static_cast<double>(lowest)) least = std::min(least, step);
+        first = last;
+    }
+    layer_ = 0.5 * least;
+    return layer_ < whole_layer_;
+}
+
+}  // namespace beltgrinding

@@ -15,6 +15,21 @@ constexpr double kLowest = 0.1;      // cells: lower steps are averaged
 constexpr std::size_t kLooked = 40;  // of the samples on either side of a step, about
 constexpr float kBand = 0.5F;        // of the gaps' range: at a step there is as much between them
 
+/// mm by which the stock steps from one sample to the other: either lies on another side of the
+/// other's tangent plane. Round a ridge both lie below, in a groove above; where rays lean, at a
+/// sharp edge between faces, no plane tells.
+double stock_step(const HeightField& field, std::uint32_t a, std::uint32_t b) {
+    if (field.leans(a) || field.leans(b)) return 0.0;
+    const auto top = [&](std::uint32_t k) -> Vec3 {
+        return field.point[k] +
+               static_cast<double>(field.stock_height[k]) * field.ray(k).cast<double>();
+    };
+    const Vec3 way = top(b) - top(a);
+    const double above_a = way.dot(field.normal[a].cast<double>());
+    const double above_b = -way.dot(field.normal[b].cast<double>());
+    return above_a * above_b < 0.0 ? std::min(std::abs(above_a), std::abs(above_b)) : 0.0;
+}
+
 }  // namespace
 
 void GapMap::find_steps(const SampleBlocks& blocks) {
@@ -41,7 +56,7 @@ void GapMap::find_steps(const SampleBlocks& blocks) {
     }
 }
 
-double GapMap::step_between(std::span<NearStep> samples) const {
+double GapMap::step_between(const HeightField& field, std::span<NearStep> samples) const {
     std::sort(samples.begin(), samples.end(),
               [](const NearStep& a, const NearStep& b) { return a.carried < b.carried; });
     std::size_t above = 0;  // the first beyond the widest band
@@ -54,33 +69,34 @@ double GapMap::step_between(std::span<NearStep> samples) const {
     }
     if (!(band >= kBand * (samples.back().carried - samples.front().carried))) return 0.0;
     // A curved surface has such bands as well, where samples are few: it rises from one sample to
-    // the other by what lies between their slopes.
-    double nearest = kNone, step = 0.0;
+    // the other by what lies between their slopes. And what the wheel has ground itself is a step
+    // at its side face only, and no edge.
+    double nearest = kNone;
+    const NearStep *low = nullptr, *high = nullptr;
     const std::size_t by_below = 1 + above / kLooked;
     const std::size_t by_above = 1 + (samples.size() - above) / kLooked;
     for (std::size_t a = 0; a < above; a += by_below) {
         for (std::size_t b = above; b < samples.size(); b += by_above) {
-            const NearStep &one = samples[a], &other = samples[b];
-            const double along = static_cast<double>(other.s - one.s);
-            const double across = static_cast<double>(other.y - one.y);
+            const double along = static_cast<double>(samples[b].s - samples[a].s);
+            const double across = static_cast<double>(samples[b].y - samples[a].y);
             const double apart = along * along + across * across;
             if (apart >= nearest) continue;
             nearest = apart;
-            const double rise = static_cast<double>(other.own - one.own);
-            const double by_one = static_cast<double>(one.slope_s) * along +
-                                  static_cast<double>(one.slope_y) * across;
-            const double by_other = static_cast<double>(other.slope_s) * along +
-                                    static_cast<double>(other.slope_y) * across;
-            const auto beyond = [&](double by) {
-                return std::max(
-                    {std::min(by_one, by_other) - by, by - std::max(by_one, by_other), 0.0});
-            };
-            // What the wheel has ground itself is a step at its side face only, and no edge.
-            step = std::min(beyond(rise),
-                            beyond(rise - static_cast<double>(other.ground - one.ground)));
+            low = &samples[a];
+            high = &samples[b];
         }
     }
-    return step;
+    if (low == nullptr) return 0.0;
+    const double along = static_cast<double>(high->s - low->s);
+    const double across = static_cast<double>(high->y - low->y);
+    const double rise = static_cast<double>(high->own - low->own);
+    const double by_low =
+        static_cast<double>(low->slope_s) * along + static_cast<double>(low->slope_y) * across;
+    const double by_high =
+        static_cast<double>(high->slope_s) * along + static_cast<double>(high->slope_y) * across;
+    const double step =
+        std::max({std::min(by_low, by_high) - rise, rise - std::max(by_low, by_high), 0.0});
+    return std::min(step, stock_step(field, low->sample, high->sample));
 }
 
 bool GapMap::find_low_steps(const SampleBlocks& blocks) {
@@ -115,12 +131,10 @@ bool GapMap::find_low_steps(const SampleBlocks& blocks) {
                           float slope_s, float slope_y) {
         const auto column = static_cast<float>(first % nx), row = static_cast<float>(first / nx);
         const std::uint32_t sample = blocks.sample(position);
-        const auto ground = static_cast<float>(
-            static_cast<double>(blocks.field().stock_height[sample]) - blocks.height(position));
         const float own = gap + u * slope_s + v * slope_y;
         const auto at = [&](std::size_t cell, float carried) {
             if (stepped_[cell] != 0)
-                near_steps_.push_back({static_cast<std::uint32_t>(cell), carried, own, ground,
+                near_steps_.push_back({static_cast<std::uint32_t>(cell), carried, own, sample,
                                        column + u, row + v, slope_s, slope_y});
         };
         at(first, gap);
@@ -149,7 +163,7 @@ bool GapMap::find_low_steps(const SampleBlocks& blocks) {
         const auto last = std::find_if(first, near_steps_.end(), [&](const NearStep& sample) {
             return sample.cell != first->cell;
         });
-        const double step = step_between({first, last});
+        const double step = step_between(blocks.field(), {first, last});
         if (step >= static_cast<double>(lowest)) least = std::min(least, step);
         first = last;
     }

@@ -322,12 +322,12 @@ class GapMap {
     /// A sample near a cell that may be stepped, in cells, and its gap there carried to the cell.
     struct NearStep {
         std::uint32_t cell;
-        float carried, own;      // mm, to the cell's centre, at the sample
-        float ground;            // mm, what has been taken from it
+        float carried, own;  // mm, to the cell's centre, at the sample
+        std::uint32_t sample;
         float s, y;              // cells
         float slope_s, slope_y;  // mm by a cell
     };
-    double step_between(std::span<NearStep> samples) const;
+    double step_between(const HeightField& field, std::span<NearStep> samples) const;
     std::vector<NearStep> near_steps_;
     std::vector<std::uint8_t> stepped_;    // by cell: 1 may be, 2 beside a sample that may step
     std::vector<float> limit_;             // mm, by cell: what lies deeper is another layer's

@@ -9,6 +9,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/large_memory.h"
 #include "base/whole_file.h"
 
 namespace beltgrinding::hdf5 {
@@ -125,6 +126,7 @@ void* grown(void* memory, std::size_t size, H5FD_file_image_op_t /*operation*/, 
         void* larger = std::realloc(memory, wanted);
         if (larger == nullptr) continue;
         room = wanted;
+        expect_large_use(larger, wanted);
         return larger;
     }
     return nullptr;
@@ -141,7 +143,10 @@ herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* image) {
         if (held >= kSuperblock) std::memcpy(&size, begin + kEndOfFile, sizeof size);
         if (size <= held) {
             try {
-                static_cast<Image*>(image)->bytes.assign(begin, size);
+                std::string& bytes = static_cast<Image*>(image)->bytes;
+                bytes.reserve(size);
+                expect_large_use(bytes.data(), size);
+                bytes.assign(begin, size);
             } catch (const std::bad_alloc&) {  // through C; an empty image says it
             }
         }

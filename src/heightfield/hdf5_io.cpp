@@ -9,6 +9,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/large_memory.h"
 #include "base/whole_file.h"
 
 namespace beltgrinding::hdf5 {
@@ -110,9 +111,30 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
 
 namespace {
 
+/// A file in memory while HDF5 fills it, and what came of it.
+struct Image {
+    std::string bytes;
+    std::size_t room = 0;  // of HDF5's memory
+};
+
+/// HDF5 asks for 1 MiB more each time, which would copy all that is there; it gets twice the room
+/// where that can be had.
+void* grown(void* memory, std::size_t size, H5FD_file_image_op_t /*operation*/, void* image) {
+    std::size_t& room = static_cast<Image*>(image)->room;
+    if (size <= room) return memory;
+    for (const std::size_t wanted : {std::max(size, 2 * room), size}) {
+        void* larger = std::realloc(memory, wanted);
+        if (larger == nullptr) continue;
+        room = wanted;
+        expect_large_use(larger, wanted);
+        return larger;
+    }
+    return nullptr;
+}
+
 /// What HDF5 hands over when it closes a file in memory. (H5Fget_file_image of 1.10 changes a flag
 /// below the superblock's checksum: such a file cannot be opened.)
-herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* bytes) {
+herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* image) {
     if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE && memory) {
         constexpr std::size_t kEndOfFile = 28, kSuperblock = 48;  // of version 3, in bytes
         std::uint64_t size = 0;
@@ -121,7 +143,10 @@ herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* bytes) {
         if (held >= kSuperblock) std::memcpy(&size, begin + kEndOfFile, sizeof size);
         if (size <= held) {
             try {
-                static_cast<std::string*>(bytes)->assign(begin, size);
+                std::string& bytes = static_cast<Image*>(image)->bytes;
+                bytes.reserve(size);
+                expect_large_use(bytes.data(), size);
+                bytes.assign(begin, size);
             } catch (const std::bad_alloc&) {  // through C; an empty image says it
             }
         }
@@ -130,21 +155,21 @@ herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* bytes) {
     return 0;
 }
 
-void* same(void* bytes) {
-    return bytes;
+void* same(void* image) {
+    return image;
 }
 
-herr_t nothing_to_free(void* /*bytes*/) {
+herr_t nothing_to_free(void* /*image*/) {
     return 0;
 }
 
 }  // namespace
 
 std::string image_of(const std::function<void(hid_t)>& write) {
-    std::string image;
+    Image image;
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     const Handle access = in_memory();
-    H5FD_file_image_callbacks_t calls{nullptr, nullptr,         nullptr, keep_image,
+    H5FD_file_image_callbacks_t calls{nullptr, nullptr,         grown, keep_image,
                                       same,    nothing_to_free, &image};
     // In the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
     // damaged ones lead it beyond its memory.
@@ -158,8 +183,8 @@ std::string image_of(const std::function<void(hid_t)>& write) {
         write(file);
         require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.memory", "does not fit into memory");
     }
-    require(!image.empty(), "hdf5.memory", "does not fit into memory");
-    return image;
+    require(!image.bytes.empty(), "hdf5.memory", "does not fit into memory");
+    return std::move(image.bytes);
 }
 
 }  // namespace beltgrinding::hdf5

@@ -1,13 +1,24 @@
 #pragma once
 
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "arrays.h"
+#include "base/large_memory.h"
 
 namespace beltgrinding::python {
+
+/// As py::bytes, in large pages where it pays: a file's bytes are copied once and then read.
+inline py::bytes large_bytes(const std::string& image) {
+    auto* made = PyBytes_FromStringAndSize(nullptr, static_cast<py::ssize_t>(image.size()));
+    if (made == nullptr) throw py::error_already_set();
+    expect_large_use(PyBytes_AS_STRING(made), image.size());
+    std::memcpy(PyBytes_AS_STRING(made), image.data(), image.size());
+    return py::reinterpret_steal<py::bytes>(made);
+}
 
 /// Binds the four ways between an object and an HDF5 file: `write_hdf5`, `hdf5`, `from_hdf5`,
 /// `from_hdf5_bytes`. `read(path, attributes*)`, `read_image(bytes, name, attributes*)`. Python's
@@ -30,7 +41,7 @@ void bind_hdf5(Class& bound, const char* returns, Read read, ReadImage read_imag
                     const py::gil_scoped_release release;
                     image = hdf5_image(object, attributes);
                 }
-                return py::bytes(image);
+                return large_bytes(image);
             },
             py::arg("attributes") = "", "The bytes that write_hdf5 writes.")
         .def_static(

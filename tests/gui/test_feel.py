@@ -282,6 +282,45 @@ assert not [w for w in widgets(QtGui.QWidget, "BeltGrinding_Progress")
     )
 
 
+def test_progress_is_told_seldom_and_painted_once(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import time
+from beltgrinding.gui.common import runner, status_progress
+from beltgrinding.gui.panels import simulation_panel
+job.Spacing = 0.05
+doc.recompute()
+told, painted = [], []
+progress = simulation_panel.SimulationPanel.progress
+def tell(self, share):
+    painted.clear()
+    progress(self, share)
+    told.append((time.monotonic(), list(painted), self.bar.value()))
+patch(simulation_panel.SimulationPanel, "progress", tell)
+class Look(QtCore.QObject):
+    def eventFilter(self, widget, event):
+        if event.type() == QtCore.QEvent.Paint:
+            painted.append(widget.objectName() or type(widget).__name__)
+        return False
+look = Look()
+QtGui.QApplication.instance().installEventFilter(look)
+try:
+    menu("Simulate")
+    wait(lambda: len(told) > 4)
+    field("cancel").click()
+    wait(lambda: "Cancelled" in field("state").text())
+finally:
+    QtGui.QApplication.instance().removeEventFilter(look)
+apart = [b[0] - a[0] for a, b in zip(told, told[1:])]
+assert min(apart) > 0.9 * runner.TOLD, apart
+assert told[-1][2] > told[0][2], told  # there was something to paint
+assert not any(names for _, names, _ in told), told  # while it was told nothing was painted: all of it afterwards
+""",
+        window=True,
+    )
+
+
 def test_mistakes_are_marked_at_the_field(freecad):
     freecad.run(
         PREPARE

@@ -123,10 +123,10 @@ def test_settings_that_are_too_coarse_are_told_with_the_one_to_refine():
 def test_a_level_that_cannot_be_run_is_said(monkeypatch):
     run = runs.run
 
-    def refuse(job, context=None, recording=None):
+    def refuse(job, context=None, recording=None, **options):
         if job["sampling"]["spacing_mm"] < 0.5:
             raise InputError("sampling.spacing_mm: too many samples")
-        return run(job, context, recording)
+        return run(job, context, recording, **options)
 
     monkeypatch.setattr(runs, "run", refuse)
     answer = convergence.converge(jobs.validate(plate_job())).convergence

@@ -328,12 +328,12 @@ def others(key, rule, before, folder):
 HEIGHTS = 2 + 5  # of an outcome
 
 
-def outcome(job):
+def outcome(job, **options):
     """All that a run gives, as bytes and text; of one that fails its error."""
     recording = core.Recording()
     try:
         job = jobs.validate(job)
-        result = runs.run(job, None, recording, influence=True, shifts=True)
+        result = runs.run(job, None, recording, influence=True, shifts=True, **options)
     except InputError as error:
         return [error.code, str(error)]
     field = result.field
@@ -529,6 +529,16 @@ def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(varia
     for at, quick in found.items():
         with kept.instead(kept.Kept(0)):
             assert outcome(made(at)) == quick, at
+
+
+def test_a_run_that_nothing_follows_keeps_no_states(folder):
+    with kept.instead(kept.Kept()) as stages:
+        outcome(raster_job(folder), resume=False)
+        assert "grinding" not in stages.made and "field" in stages.made
+        outcome(raster_job(folder))
+        assert stages.made["grinding"] == 1
+        outcome(raster_job(folder), resume=False)
+        assert "grinding" not in stages.hits
 
 
 def test_a_program_that_ends_sooner_leaves_another_part_to_the_next(folder):

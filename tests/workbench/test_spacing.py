@@ -176,3 +176,16 @@ def test_what_is_too_coarse_is_told_before_anything_is_ground(parts):
     ((told, seconds),) = early
     assert "job.few_samples_in_contact" in [fact.code for fact in told] and seconds == 0
     assert result.summary["warnings"][: len(told)] == told and recording.duration > 0
+
+
+@pytest.mark.parametrize("radius, width", [(20.0, 80.0), (60.0, 3.0), (100.0, 25.0)])
+def test_no_contact_on_a_plane_is_larger_than_is_thought(parts, radius, width):
+    found = []
+    for force in (1.0, 100.0, 3000.0):
+        job = job_of(parts / "block.brep", [6])
+        job["belt_machine"]["wheel"].update(radius_mm=radius, width_mm=width)
+        job["belt_machine"].update(force_N=force, contact_spacing_mm=0.2 * width)
+        contact = spacing._contact(job, 0.0)
+        if contact is not None:
+            found.append(max(contact) / max(2.0 * radius, width))
+    assert found and 0.05 < max(found) <= spacing.MOST_ON_PLANE, found

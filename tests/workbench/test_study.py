@@ -173,6 +173,19 @@ def test_parquet_has_the_same_where_pyarrow_is(made):
 # What is there is not made again ------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize(
+    "key, resumed",
+    [
+        ("belt_machine.force_N", False),
+        ("programs[0].feed_mm_s", True),
+        ("inspection.tolerance_mm[1]", True),
+    ],
+)
+def test_states_of_runs_are_kept_where_another_run_can_begin_with_them(key, resumed):
+    entry = {"key": key, "how": "values", "values": [0.1, 0.2]}
+    assert one.Base(jobs.validate(quick_job()), [entry], None).resume == resumed
+
+
 def test_a_run_that_is_there_is_not_made_again(copied, counted, made):
     assert make(study_of(), copied).reused == 4 and not counted
     found = make(study_of([*FORCES, 60.0]), copied)
@@ -288,10 +301,10 @@ def test_a_run_that_fails_says_why_and_the_others_go_on(tmp_path, counted):
 def test_what_another_try_may_mend_is_tried_again(tmp_path, monkeypatch):
     run = runs.run
 
-    def no_memory(job, context=None):
+    def no_memory(job, context=None, **options):
         if job["belt_machine"]["force_N"] == 30.0:
             raise MemoryError
-        return run(job, context)
+        return run(job, context, **options)
 
     monkeypatch.setattr(runs, "run", no_memory)
     found = make(study_of(), tmp_path)

@@ -35,7 +35,9 @@ def _run(arguments):
             arguments.messages.print_warnings(warnings)
             said.extend(warnings)
 
-    result = background.run(lambda context: runs.run(given, context, early=early), arguments.quiet)
+    result = background.run(
+        lambda context: runs.run(given, context, early=early, resume=False), arguments.quiet
+    )
     result.write(arguments.output, arguments.force, used)
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])

@@ -28,6 +28,7 @@ TOUCHED = 0.75  # of the area on which the contact is as large as it is told, or
 SMALL = 1000  # bytes of a few figures
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 EDGE = 1e-3  # of the area: less that is sharper than the contact's cells is no edge
+MOST_ON_PLANE = 2.0  # of the wheel's diameter or width: no contact with its whole cells is larger
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
 
 
@@ -51,7 +52,8 @@ def look(job, shape, faces, context=None):
     """What the rules need to know of the faces (from 0) of a core.Shape: dict(area mm2, size mm (largest
     extent), radius mm (of curvature; inf: plane), width mm (of the narrowest face that counts), narrow: that
     face from 1, length, breadth mm: the contact's extents on a place as curved as a quarter of the area,
-    plane mm: the larger one on a plane; None for a rigid tool).
+    plane mm: the larger one on a plane; None for a rigid tool, plane also where the faces are so large that nobody
+    asks how large it is).
     """
     name = kept.name(shape)
     if name is None:
@@ -60,7 +62,9 @@ def look(job, shape, faces, context=None):
         look = lambda: _look_at_faces(shape, faces, context)
         seen = kept.get("look", lambda: (name, list(faces)), look, lambda _: SMALL)
     length, breadth = _contact(job, seen["convex"]) or (None, None)
-    plane = _contact(job, 0.0)
+    wheel = job["belt_machine"]["wheel"]
+    most = MOST_ON_PLANE * max(2.0 * wheel["radius_mm"], wheel["width_mm"])
+    plane = _contact(job, 0.0) if seen["size"] < WITHIN * most else None
     return {
         **{key: value for key, value in seen.items() if key != "convex"},
         "length": length,

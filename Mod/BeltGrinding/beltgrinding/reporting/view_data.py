@@ -200,21 +200,21 @@ def _wheel(job, packed, words):
         name: frame_of(job["cell"].get(name), f"cell.{name}") for name in tool_paths.CELL_FRAMES
     }
     for path in paths:
-        for moment in np.linspace(0.0, path.duration(), max(int(path.duration() / step), 1) + 1):
-            base_from_tcp, pose = path.frame_at(float(moment))
-            found = frames.work_from_frames(base_from_tcp, job["cell"]["holding"], **cell)
-            times.append(begin + float(moment))
-            places.append(found["contact"])
-            motions.append(first + int(pose))
+        moments = np.linspace(0.0, path.duration(), max(int(path.duration() / step), 1) + 1)
+        base_from_tcp, poses = zip(*(path.frame_at(float(moment)) for moment in moments))
+        found = frames.work_from_frames(np.array(base_from_tcp), job["cell"]["holding"], **cell)
+        times.append(begin + moments)
+        places.append(found["contact"])
+        motions.append(first + np.array(poses, dtype=np.int64))
         begin += path.duration()
         first += len(path)
-    places = np.array(places)
+    times, places, motions = (np.concatenate(each) for each in (times, places, motions))
     turns = frames.to_quaternions(places[:, :3, :3])
     low, high = (f(places[:, :3, 3], axis=0) for f in (np.min, np.max))
     packed.add("wheel.place", view_mesh.in_box(places[:, :3, 3], low, high), "u2")
     packed.add("wheel.turn", np.round((turns + 1.0) * 0.5 * view_mesh.STEPS), "u2")
-    packed.add("wheel.time", np.round(np.array(times) * 1000.0), "u4")
-    packed.add("wheel.motion", np.array(motions) + 1, "u4")
+    packed.add("wheel.time", np.round(times * 1000.0), "u4")
+    packed.add("wheel.motion", motions + 1, "u4")
     wheel = job["belt_machine"]["wheel"]
     return {
         "radius": wheel["radius_mm"],

@@ -63,7 +63,7 @@ def converge(job, context=None):
         part = context.part(so_far / whole, end / whole)
         start = time.perf_counter()
         try:
-            found = runs.run(scaled(job, level), part)
+            found = runs.run(scaled(job, level), part, resume=level == "given")
         except (InputError, MemoryError) as error:
             if level == "given":
                 raise
@@ -191,7 +191,7 @@ def _blame(job, given, context, notes):
     for k, name in enumerate(SETTINGS):
         part = context.part(k / len(SETTINGS), (k + 1) / len(SETTINGS))
         try:
-            run = _level(runs.run(scaled(job, "coarse", name), part), 0.0)
+            run = _level(runs.run(scaled(job, "coarse", name), part, resume=False), 0.0)
         except InputError as error:
             notes.append(
                 core.Fact(

@@ -37,19 +37,31 @@ class _Phases:
         self.restart()
 
 
-def run(job, context=None, recording=None, early=None, influence=False, shifts=False, forces=False):
+def run(
+    job,
+    context=None,
+    recording=None,
+    early=None,
+    influence=False,
+    shifts=False,
+    forces=False,
+    resume=True,
+):
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
     with a list of the first of its warnings before anything is ground; ``influence``: the result has a
     core.Influence, what every motion of all programs removed where; ``forces``: and ``force_influence``, mm that each would
     remove more per relative change of its force; ``shifts``: it has what laws would have removed
-    more that are a standard deviation off (``law.shifted_laws``).
+    more that are a standard deviation off (``law.shifted_laws``); ``resume``: it goes on from a state of an earlier run
+    of this process, and keeps its own for later ones, which takes memory and a little time.
     """
     warnings = []
     phases = _Phases()
     try:
         context = context or core.RunContext()
-        result, by_law = _run(job, context, warnings, recording, phases, early, influence, forces)
+        result, by_law = _run(
+            job, context, warnings, recording, phases, early, influence, forces, resume
+        )
         result.shifts = by_law if shifts else None
         return result
     except MemoryError:
@@ -88,7 +100,7 @@ def _out_of_memory(ended):
     )
 
 
-def _run(job, context, warnings, recording, phases, early, influence, forces):
+def _run(job, context, warnings, recording, phases, early, influence, forces, resume):
     phases.restart()
     digests = inputs.digests(job)
     phases.end("hash")
@@ -132,7 +144,11 @@ def _run(job, context, warnings, recording, phases, early, influence, forces):
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
     # The heat in the part is not among what a checkpoint holds.
     checkpoints = RunCheckpoints(
-        field, (wheel, compliance, law, options), recording is not None, len(paths), not heated
+        field,
+        (wheel, compliance, law, options),
+        recording is not None,
+        len(paths),
+        resume and not heated,
     )
     phases.end("hash")
     found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}

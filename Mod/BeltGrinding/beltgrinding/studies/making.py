@@ -320,7 +320,8 @@ class _Work:
             self.context.throw_if_cancelled()
             part = self.context.part(number / self.count, (number + 1) / self.count)
             job = self.prepared.job(each)
-            self.take(one.solve(job, each.job_hash, self.kept.fields, part))
+            resume = self.prepared.bases[each.base].resume
+            self.take(one.solve(job, each.job_hash, self.kept.fields, part, resume=resume))
 
     def on(self, where):
         """On the workers of a cluster."""

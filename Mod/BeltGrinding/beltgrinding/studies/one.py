@@ -12,7 +12,12 @@ from ..engine import InputError, core
 from ..job import inputs, load as jobs
 from ..simulation import run as runs
 from . import figures, table, vary
+from .keys import Key
 
+FOLLOWING = (
+    "programs",
+    "inspection",
+)  # parts of a job that leave the first steps of a run as they are, or all
 BASES = 16  # jobs that a worker keeps
 FOLDER = "beltgrind-inputs"  # of files that were sent to a worker
 # What another try may mend: such an error is told, and not kept as the run's result.
@@ -36,6 +41,12 @@ class Base:
         self.job, self.placement = job, placement
         self.entries = entries
         self.variables = vary.variables({"vary": entries})
+        self.resume = any(self._follows(variable.key) for variable in self.variables)
+
+    @staticmethod
+    def _follows(key):
+        """Whether two runs of the study can begin with the same steps where a variable's key, of ``vary``, differs."""
+        return isinstance(key, Key) and key.steps[0] in FOLLOWING
 
     def job_of(self, values):
         """The job of a run with these values. Raises InputError."""
@@ -53,16 +64,16 @@ class Base:
         return cls(made["job"], made["vary"], made["placement"])
 
 
-def solve(job, job_hash, fields=False, context=None, sent=""):
+def solve(job, job_hash, fields=False, context=None, sent="", resume=False):
     """The record of a run of a job: dict(job_hash, status, figures, error, seconds, passing: another try may
     mend the error, field: bytes of its height field in HDF5, or None). ``sent``: the folder that stands before the paths of
-    its files, which nobody is told. Raises Cancelled."""
+    its files, which nobody is told; ``resume``: as in ``run.run``. Raises Cancelled."""
     begun = time.perf_counter()
     record = {"job_hash": job_hash, "status": table.DONE, "figures": {}, "error": None}
     record.update(passing=False, field=None)
     try:
         _check(job)
-        result = runs.run(job, context)
+        result = runs.run(job, context, resume=resume)
         record["figures"] = figures.of_result(result)
         if fields:
             record["field"] = result.field.hdf5(json.dumps(moved(job, sent, "")))
@@ -150,7 +161,7 @@ def in_worker(task, blobs, folder):
         if needs:
             return {"needs": needs}
         job = moved(base.job_of(task["values"]), "", sent)
-        return solve(job, task["job_hash"], task["fields"], sent=sent)
+        return solve(job, task["job_hash"], task["fields"], sent=sent, resume=base.resume)
 
 
 def _base(sha, blobs):

@@ -13,6 +13,8 @@ from .compat import QtCore, translate
 
 POLL = 50  # ms
 END_POLL = 8  # ms, between looks at whether a run has ended
+TOLD = 0.25  # s from the start to the first progress that is told, and on to the next: what changes in FreeCAD's
+# window has all of it put together anew, which takes a processor as long as 50 steps of the grinding
 MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 # All works until the window has seen their end. Else the thread may be the last that holds one and free it with
 # its timer, which only the window's thread may do; and who is told of the end may let go of the object whose
@@ -110,7 +112,7 @@ class Runner(Background):
         self.start = time.monotonic()
         self.recorded, self.then = recording, then
         self.shown = then is not None or job_data.child(job, deviation.Deviation) is not None
-        self.progress_at = 0.0  # s, when it was told last
+        self.progress_at = self.start  # s, when it was told last
         super().__init__(self.work, self._finish)
         self.timer.setInterval(END_POLL)
 
@@ -145,7 +147,7 @@ class Runner(Background):
         if self.job() is None:
             self.context.cancel()
         now = time.monotonic()
-        if self.thread.is_alive() and now - self.progress_at > 0.001 * POLL:
+        if self.thread.is_alive() and now - self.progress_at > TOLD:
             self.progress_at = now
             self.progress(self.context.progress)
         super()._poll()

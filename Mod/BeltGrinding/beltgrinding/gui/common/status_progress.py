@@ -1,10 +1,23 @@
 """A run's progress in FreeCAD's status bar, seen whatever panel is in front."""
 
+import contextlib
+
 import FreeCADGui as Gui
 
 from .compat import QtGui, translate
 
 WIDTH = 120  # pixels
+
+
+@contextlib.contextmanager
+def painted_once(widget):
+    """What changes in a widget meanwhile is painted together, afterwards: a progress bar paints at once, and with it
+    FreeCAD's whole window."""
+    widget.setUpdatesEnabled(False)
+    try:
+        yield
+    finally:
+        widget.setUpdatesEnabled(True)
 
 
 class StatusProgress(QtGui.QWidget):
@@ -32,8 +45,9 @@ class StatusProgress(QtGui.QWidget):
 
     def update_progress(self, share, text):
         """``share`` done in [0, 1]."""
-        self.bar.setValue(int(1000 * share))
-        self.text.setText(text)
+        with painted_once(self):
+            self.bar.setValue(int(1000 * share))
+            self.text.setText(text)
 
     def remove(self):
         """Takes it out of the status bar."""

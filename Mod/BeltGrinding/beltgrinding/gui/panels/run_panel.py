@@ -10,7 +10,7 @@ from ...engine import Cancelled, InputError
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.messages import error_text
-from ..common.status_progress import StatusProgress
+from ..common.status_progress import StatusProgress, painted_once
 from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
 
@@ -70,13 +70,14 @@ class RunPanel:
             self.runner.cancel()
 
     def progress(self, share):
-        self.bar.setValue(int(1000 * share))
         seconds = time.monotonic() - self.runner.start
         text = self.doing().format(duration(seconds))
         left = self.left.update(seconds, share)
         if left is not None:
             text += translate("BeltGrinding", "; about {} left").format(duration(left))
-        self._say(text)
+        with painted_once(self.form):
+            self.bar.setValue(int(1000 * share))
+            self._say(text)
         self.status.update_progress(share, text)
 
     def done(self, simulation, error):
@@ -104,7 +105,9 @@ class RunPanel:
 
     def _say(self, text, error=False):
         self.state.setText(text)
-        self.state.setStyleSheet(warning_style(error))
+        style = warning_style(error)
+        if style != self.state.styleSheet():
+            self.state.setStyleSheet(style)
 
     def _arrange(self, running):
         self.bar.setVisible(running)

@@ -21,18 +21,22 @@ def main(workers, folder):
     # Deaths of workers after which a run is given up; it is then tried alone (cluster.py).
     dask.config.set({"distributed.scheduler.allowed-failures": 1})
     with LocalCluster(
-        n_workers=workers,
+        n_workers=0,
         threads_per_worker=1,
         processes=True,
         memory_limit=0,
         dashboard_address=None,
         local_directory=folder,
     ) as cluster:
-        print(cluster.scheduler_address, flush=True)
-        while not select.select([sys.stdin], [], [], LOOK_S)[0]:
+        print(
+            cluster.scheduler_address, flush=True
+        )  # before there are workers, which may take long or die
+        while True:
             cluster.scale(
                 workers
-            )  # for those whose nanny has given up, as of one that died while it started
+            )  # also for those whose nanny has given up, as of one that died as it started
+            if select.select([sys.stdin], [], [], LOOK_S)[0]:
+                return
 
 
 if __name__ == "__main__":

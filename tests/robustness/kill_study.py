@@ -162,7 +162,7 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--between", type=float, nargs=2, default=BETWEEN, metavar="SHARE")
     parser.add_argument("--whole", type=float, default=WHOLE, help="share of whole clusters (0.1)")
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1, help="of the study and the kills")
     parser.add_argument("--folder", help="keep both tables and all runs there, and go on from them")
     arguments = parser.parse_args()
     job = loading.load(arguments.job) if arguments.job else kill.plate()

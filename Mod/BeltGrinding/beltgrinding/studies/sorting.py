@@ -23,7 +23,8 @@ from .hashes import Hashes
 from .making import cores
 
 FORMAT = 1  # of what is kept of a part
-TABLE, KEPT = "parts.csv", "kept"
+TABLE = "parts.csv"
+KEPT = "kept"  # the folder of what is found of each part
 OWN = {TABLE, "parts.html", KEPT, slurm.FOLDER}  # names in the folder that no part has
 COLUMNS = (
     "part",

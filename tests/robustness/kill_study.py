@@ -107,7 +107,7 @@ def kill_studies(
         tell(f"a first run comes {pace:.1f} s after a cluster's start")
         between = [pace * share for share in between]
         out, begun = Path(folder, "killed"), time.monotonic()
-        killer, open_ = Killer(os.getpid(), MOST_KILLS, seed, between, whole), []
+        killer, open_ = Killer(os.getpid(), MOST_KILLS, seed, between, whole, tell), []
         killer.start()
         try:
             while len(open_) < ROUNDS and (not open_ or open_[-1]):
@@ -119,10 +119,7 @@ def kill_studies(
                         raise
                     left = table.Table.read(out / table.FILE)
                     open_.append(int((left[table.STATUS] == table.OPEN).sum()))
-                tell(
-                    f"round {len(open_)}: {killer.killed} workers and {killer.clusters} clusters killed so far, "
-                    f"{open_[-1]} runs did not come to an end"
-                )
+                tell(f"round {len(open_)}: {open_[-1]} runs did not come to an end")
         finally:
             killer.stop()
         same = Path(folder, "serial", table.FILE).read_bytes() == (out / table.FILE).read_bytes()

@@ -64,11 +64,13 @@ def local_clusters(pid):
 
 class Killer(threading.Thread):
     """Kills a worker of process ``pid`` at random, ``kills`` times, ``between`` so many seconds; with the probability
-    ``whole`` its whole local cluster, scheduler and all. ``killed`` and ``clusters``: how many it has.
+    ``whole`` its whole local cluster, scheduler and all. ``killed`` and ``clusters``: how many it has; ``tell(text)`` is
+    called after each.
     """
 
-    def __init__(self, pid, kills, seed=1, between=(0.3, 1.2), whole=0.0):
+    def __init__(self, pid, kills, seed=1, between=(0.3, 1.2), whole=0.0, tell=lambda text: None):
         super().__init__(daemon=True)
+        self.tell = tell
         self.pid, self.left, self.dice = pid, kills, random.Random(seed)
         self.between, self.whole = between, whole
         self.over, self.killed, self.clusters = threading.Event(), 0, 0
@@ -79,11 +81,13 @@ class Killer(threading.Thread):
                 for leader in local_clusters(self.pid):
                     os.killpg(leader, signal.SIGKILL)
                     self.clusters, self.left = self.clusters + 1, self.left - 1
+                    self.tell(f"{self.killed} workers and {self.clusters} clusters killed")
                 continue
             found = [pid for pid in worker_processes(self.pid) if alive(pid)]
             if found:
                 os.kill(self.dice.choice(found), signal.SIGKILL)
                 self.left, self.killed = self.left - 1, self.killed + 1
+                self.tell(f"{self.killed} workers and {self.clusters} clusters killed")
 
     def stop(self):
         """Returns when it kills no more."""

@@ -4781,14 +4781,6 @@ im Mittel {} abgetragen</translation>
         <translation>Beste Einstellung</translation>
     </message>
     <message>
-        <source>From … to</source>
-        <translation>Von … bis</translation>
-    </message>
-    <message>
-        <source>Limit of</source>
-        <translation>Grenze für</translation>
-    </message>
-    <message>
         <source>Wanted</source>
         <translation>Gesucht</translation>
     </message>
@@ -4839,6 +4831,42 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Hottest, at most</source>
         <translation>Höchstens</translation>
+    </message>
+    <message>
+        <source>Add limit</source>
+        <translation>Grenze hinzufügen</translation>
+    </message>
+    <message>
+        <source>Add pair</source>
+        <translation>Paar hinzufügen</translation>
+    </message>
+    <message>
+        <source>Correlation of their normal scores, between -1 and 1; for normal variables the correlation itself, for Spearman&apos;s rank correlation r it is 2 sin(π r / 6)</source>
+        <translation>Korrelation ihrer Normalwerte, zwischen -1 und 1; bei normalverteilten Größen die Korrelation selbst, bei Spearmans Rangkorrelation r ist es 2 sin(π r / 6)</translation>
+    </message>
+    <message>
+        <source>Correlations</source>
+        <translation>Korrelationen</translation>
+    </message>
+    <message>
+        <source>Greatest value; empty: none</source>
+        <translation>Größter Wert; leer: keiner</translation>
+    </message>
+    <message>
+        <source>It has no limit</source>
+        <translation>Keine Grenze</translation>
+    </message>
+    <message>
+        <source>Least value; empty: none</source>
+        <translation>Kleinster Wert; leer: keiner</translation>
+    </message>
+    <message>
+        <source>Limits: least … greatest</source>
+        <translation>Grenzen: kleinster … größter Wert</translation>
+    </message>
+    <message>
+        <source>They are independent</source>
+        <translation>Sie sind unabhängig</translation>
     </message>
 </context>
 <context>

@@ -2,11 +2,13 @@
 
 tools/bench study; `python study_bench.py [--runs N] [--json FILE]` does the same. The job is a plate of 60 x 40 mm under one
 pass; what varies are its force and where the part lies. Counted from the first tenth of the runs on: by then all workers are
-there and warm. Needs a machine on which nothing else runs.
+there and warm. Rates need a machine on which nothing else runs; processor seconds hardly: w a run in the workers and o beside them
+(scheduler, and who asked) let two workers on two cores make at most 2 w / (w + o) times as many runs as one.
 """
 
 import argparse
 import json
+import os
 import sys
 import tempfile
 import time
@@ -15,10 +17,11 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+sys.path[:0] = [str(ROOT / "Mod" / "BeltGrinding"), str(ROOT / "tests")]
 
 from beltgrinding.engine import core  # noqa: E402
 from beltgrinding.studies import making  # noqa: E402
+from support.workers import local_clusters, worker_processes  # noqa: E402
 
 GOAL = 1.8  # times one worker
 WARM = 0.1  # of the runs
@@ -47,12 +50,27 @@ def study(runs, spacing):
     return {"job": job, "vary": vary, "design": {"method": "sobol", "runs": runs}}
 
 
+def processor_s(pid):
+    """Processor seconds of a process, with those of its children that have ended."""
+    words = Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
+    return sum(map(int, words[11:15])) / os.sysconf("SC_CLK_TCK")
+
+
+def spent():
+    """(processor s of the workers, of the scheduler and this process) until now."""
+    scheduler = local_clusters(os.getpid())
+    here = time.process_time() + sum(map(processor_s, scheduler))
+    return sum(map(processor_s, worker_processes(os.getpid()))), here
+
+
 def rate(given, workers):
-    """(runs a second in warm workers, bytes of the table)."""
-    times = []
+    """(runs a second in warm workers, processor s of a run in them, beside them, bytes of the table)."""
+    runs, marks = given["design"]["runs"], []
 
     def told(progress):
-        times.append((time.perf_counter(), progress.done))
+        warm = progress.done >= max(2, WARM * runs) and not marks
+        if warm or progress.done == runs:
+            marks.append((time.perf_counter(), progress.done, *spent()))
 
     with tempfile.TemporaryDirectory() as folder:
         making.TOLD_S = 0.0
@@ -60,11 +78,8 @@ def rate(given, workers):
         if not found.table.done.all():
             raise SystemExit(f"runs failed: {set(found.table['error'].tolist())}")
         data = found.table.csv_bytes()
-    runs = len(found.table)
-    first = next(k for k, (_, done) in enumerate(times) if done >= max(2, WARM * runs))
-    last = next(k for k, (_, done) in enumerate(times) if done == runs)
-    seconds = times[last][0] - times[first][0]
-    return (times[last][1] - times[first][1]) / seconds, data
+    seconds, made, there, beside = np.subtract(marks[-1], marks[0])
+    return made / seconds, there / made, beside / made, data
 
 
 def main():
@@ -74,11 +89,14 @@ def main():
     parser.add_argument("--json")
     arguments = parser.parse_args()
     given = study(arguments.runs, arguments.spacing)
-    rates, tables = zip(*(rate(given, workers) for workers in (1, 2)))
+    rates, there, beside, tables = zip(*(rate(given, workers) for workers in (1, 2)))
     ratio = rates[1] / rates[0]
     print(f"study/1_worker  {rates[0]:.2f} runs/s")
     print(f"study/2_workers {rates[1]:.2f} runs/s")
     print(f"study/ratio     {ratio:.2f} (goal {GOAL})")
+    for workers, w, o in zip((1, 2), there, beside):
+        text = f"{1e3 * w:.1f} ms of processor a run, {1e3 * o:.1f} ms beside"
+        print(f"study/processor, {workers} worker(s): {text}; at most {2 * w / (w + o):.2f} by two")
     print(f"study/tables    {'equal' if tables[0] == tables[1] else 'DIFFERENT'}")
     if arguments.json:
         found = [
@@ -87,8 +105,10 @@ def main():
                 "real_time": 1000.0 / each,
                 "time_unit": "ms",
                 "runs_per_second": each,
+                "processor_ms": 1000.0 * w,
+                "processor_ms_beside": 1000.0 * o,
             }
-            for workers, each in zip((1, 2), rates)
+            for workers, each, w, o in zip((1, 2), rates, there, beside)
         ]
         report = {"context": {}, "benchmarks": found}
         Path(arguments.json).write_text(json.dumps(report, indent=1))

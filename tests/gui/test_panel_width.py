@@ -71,8 +71,13 @@ for program in programs:
 for program in programs:
     doc.removeObject(program.Name)
 beltgrinding.make_plan(job, Rounds=1, Check=False, ForceMax="40 N")
-varied = {"key": "belt_machine.force_dynamics.overshoot_limit", "range": [0.123456, 1.234567]}
-beltgrinding.make_study(job, compute=False, Vary=[varied], Runs=1000000)
+varied = [
+    {"key": "belt_machine.force_dynamics.overshoot_limit", "range": [0.123456, 1.234567]},
+    {"key": "belt_machine.force_dynamics.rate_limit_N_s", "range": [0.123456, 1.234567]},
+]
+pairs = [{"between": [one["key"] for one in varied], "coefficient": -0.123456789}]
+asked = {"best": {"figure": "lost_volume_mm3", "limits": {"lost_volume_mm3": [-0.123456789, 123456.789]}}}
+beltgrinding.make_study(job, compute=False, Vary=varied, Correlations=pairs, Asked=asked, Runs=1000000)
 for command in ("Plan", "Study", "Cell", "Simulate", "Contact", "Calibrate", "Zones", "CheckSettings", "Scan", "BeltPlan"):
     Gui.runCommand("BeltGrinding_" + command)
     look(command)

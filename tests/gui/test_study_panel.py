@@ -11,6 +11,11 @@ job = prepare()
 doc = job.Document
 job.Spacing = "2 mm"
 doc.recompute()
+def choose(name, value):
+    box = field(name, QtGui.QComboBox)
+    assert box.findData(value) >= 0, (name, value)
+    box.setCurrentIndex(box.findData(value))
+    settle()
 """
 
 
@@ -50,13 +55,24 @@ assert len(json.loads(study.Vary)) == 3
 
 field("foldBest", QtGui.QToolButton).click()
 settle()
-for name, chosen in (("bestFigure", "process_time_s"), ("bestLimit", "removed_volume_mm3")):
-    box = field(name, QtGui.QComboBox)
-    box.setCurrentIndex(box.findData(chosen))
-type_in("bestLow", "many")
-assert "no number" in field("state").text()
-type_in("bestLow", "120")
+press("Add limit")
+choose("bestFigure", "process_time_s")
+choose("limitFigure1", "removed_volume_mm3")
+type_in("limitLow1", "many")
+assert "no number" in field("limitNote").text() and field("limitLow1").styleSheet()
+type_in("limitLow1", "120")
 assert json.loads(study.Asked)["best"]["limits"] == {"removed_volume_mm3": [120.0, None]}
+assert not visible(QtGui.QLabel, "limitNote") and not field("limitLow1").styleSheet()
+press("Add limit")
+assert field("limitFigure2", QtGui.QComboBox).currentData() == "in_share"
+choose("limitFigure2", "removed_volume_mm3")
+assert "has a limit already" in field("limitNote").text() and "limit already" in field("state").text()
+choose("limitFigure2", "peak_pressure_MPa")
+type_in("limitLow2", "0,1")
+type_in("limitHigh2", "0.05")
+assert "0.1, lies above the greatest, 0.05" in field("limitNote").text()
+type_in("limitHigh2", "50")
+assert json.loads(study.Asked)["best"]["limits"]["peak_pressure_MPa"] == [0.1, 50.0]
 field("foldBest", QtGui.QToolButton).click()
 field("Runs", QtGui.QSpinBox).setValue(24)
 field("Workers", QtGui.QSpinBox).setValue(1)
@@ -117,7 +133,7 @@ assert doc.BeltMachine.Force.getValueAs("N").Value == 30.0 and not study.OutOfDa
 
 best = study.Proxy.answers(study)["best"]
 assert f"best: run {best['run']}" in field("studyFigures").text()
-good = made["removed_volume_mm3"] >= 120.0
+good = (made["removed_volume_mm3"] >= 120.0) & (made["peak_pressure_MPa"] >= 0.1) & (made["peak_pressure_MPa"] <= 50.0)
 assert best["value"] == made["process_time_s"][good].min() and good[best["run"] - 1]
 name_file("table.csv")
 press("Save table...")
@@ -126,6 +142,88 @@ name_file("study.html")
 press("Report...")
 wait(lambda: Path("study.html").exists(), 60)
 assert "Tolerance yield" in Path("study.html").read_text()
+""",
+        window=True,
+    )
+
+
+def test_correlations_are_filled_in_told_where_they_cannot_be_and_run(freecad):
+    freecad.run(
+        PREPARE
+        + """
+import numpy as np
+import beltgrinding
+job.Spacing = "3 mm"
+varied = [
+    {"name": name, "key": key, "how": "add", "distribution": {"kind": "normal", "mean": 0, "sd": sd}}
+    for name, key, sd in (
+        ("thick", "stock.allowance_mm", 0.02), ("off", "placement.z_mm", 0.05), ("force", "belt_machine.force_N", 2.0))
+]
+for one in varied:
+    if one["key"].startswith("placement"):
+        del one["how"]
+study = beltgrinding.make_study(job, compute=False, Vary=varied, Runs=60, Workers=1)
+menu("Study...")
+assert not visible(QtGui.QPushButton, "addCorrelated")
+field("foldCorrelated", QtGui.QToolButton).click()
+settle()
+press("Add pair")
+assert json.loads(study.Correlations) == [{"between": ["thick", "off"], "coefficient": 0.0}]
+# What is no coefficient is told beside it, and the last that was one stays.
+for text in ("much", "1", "-1.2", ""):
+    type_in("correlatedCoefficient1", text)
+    assert "thick with off" in field("correlatedNote").text(), text
+    assert field("correlatedCoefficient1").styleSheet()
+assert json.loads(study.Correlations)[0]["coefficient"] == 0.0
+type_in("correlatedCoefficient1", "0,9")
+assert not visible(QtGui.QLabel, "correlatedNote") and not field("correlatedCoefficient1").styleSheet()
+choose("correlatedSecond1", "thick")
+assert "two that are different" in field("correlatedNote").text() and field("correlatedSecond1").styleSheet()
+choose("correlatedSecond1", "off")
+# Each is possible alone, together they are not.
+press("Add pair")
+assert [field(f"correlated{n}2", QtGui.QComboBox).currentData() for n in ("First", "Second")] == ["thick", "force"]
+type_in("correlatedCoefficient2", "0.4")
+press("Add pair")
+type_in("correlatedCoefficient3", "-0.9")
+assert "not positive definite" in field("correlatedNote").text()
+press("Run")
+assert not study.Fingerprint and "not positive definite" in field("state").text()
+type_in("correlatedCoefficient3", "0.3")
+choose("correlatedSecond3", "thick")
+assert "each pair once" in field("correlatedNote").text()
+field("removeCorrelated3", QtGui.QToolButton).click()
+settle()
+wanted = [{"between": ["thick", "off"], "coefficient": 0.9}, {"between": ["thick", "force"], "coefficient": 0.4}]
+assert json.loads(study.Correlations) == wanted
+# A design that takes none says so at once.
+def set_method(value):
+    field("Method", QtGui.QComboBox).setCurrentIndex(study.getEnumerationsOfProperty("Method").index(value))
+    settle()
+    assert study.Method == value
+for method in ("grid", "sobol_indices"):
+    set_method(method)
+    assert "leave the correlations out" in field("correlatedNote").text(), method
+set_method("monte_carlo")
+assert not visible(QtGui.QLabel, "correlatedNote")
+# What does not vary any more is told, not dropped.
+field("removeVaried3", QtGui.QToolButton).click()
+settle()
+assert "'force' does not vary any more" in field("correlatedNote").text() and field("correlatedSecond2").styleSheet()
+assert len(json.loads(study.Vary)) == 2
+field("removeCorrelated2", QtGui.QToolButton).click()
+settle()
+assert json.loads(study.Correlations) == wanted[:1]
+press("Run")
+wait(lambda: study.Fingerprint, 200)
+settle()
+made = study.Proxy.table(study)
+assert study.RunsDone == 60 and np.corrcoef(made["thick"], made["off"])[0, 1] > 0.8
+press("Close")
+menu("Study...")
+assert field("correlatedCoefficient1").text() == "0.9"
+press("Close")
+assert json.loads(study.Correlations) == wanted[:1] and not study.OutOfDate
 """,
         window=True,
     )
@@ -142,14 +240,24 @@ varied = [
     {"key": "placement.z_mm", "distribution": {"kind": "normal", "mean": 0, "sd": 0.05}},
     {"key": "programs[0].feed_mm_s", "values": [20, 30, 40]},
 ]
-study = beltgrinding.make_study(job, compute=False, Vary=varied, Runs=200)
+together = [{"between": ["stock.allowance_mm", "placement.z_mm"], "coefficient": 0.6}]
+asked = {"best": {"figure": "process_time_s", "limits": {"in_share": [0.98, None], "peak_pressure_MPa": [None, 0.4]}}}
+study = beltgrinding.make_study(
+    job, compute=False, Vary=varied, Runs=200, Correlations=together, Asked=asked)
+kept = study.Correlations, study.Asked
 menu("Study...")
 assert [field(f"variedValues{k}").text() for k in range(1, 5)] == ["20  60", "0.2  0.02", "0  0.05", "20  30  40"]
 press("Close")
 assert json.loads(study.Vary) == varied, "what was not changed is as it was"
+assert (study.Correlations, study.Asked) == kept
 menu("Study...")
 assert field("Runs", QtGui.QSpinBox).value() == 200
 picture("workbench-study")
+panel = next(a for a in visible(QtGui.QScrollArea) if a.isAncestorOf(field("bestFigure")))
+panel.ensureWidgetVisible(field("bestSurface"))
+panel.ensureWidgetVisible(next(b for b in visible(QtGui.QPushButton) if b.text() == "Run"))
+settle()
+picture("workbench-study-limits")
 """,
         window=True,
     )

@@ -1,4 +1,4 @@
-"""Short runs of fuzz_jobs.py and kill.py, and proof that their oracles see what they are for."""
+"""Short runs of fuzz_jobs.py, kill.py and kill_study.py, and proof that their oracles see what they are for."""
 
 import json
 import os
@@ -20,6 +20,7 @@ sys.path.insert(0, str(HERE))
 import fault_injection  # noqa: E402
 import fuzz_jobs  # noqa: E402
 import kill  # noqa: E402
+import kill_study  # noqa: E402
 
 JOBS = cases(14, 25)
 GROUND = JOBS // 3  # at least so many of them grind
@@ -123,3 +124,30 @@ def test_killed_documents_open():
     if shutil.which("freecadcmd") is None:
         pytest.skip("freecadcmd is not installed")
     assert sum(kill.kill_documents(2, 1, 3.0).values()) == 2
+
+
+def test_killed_workers_leave_the_serial_table():
+    pytest.importorskip("distributed")
+    pytest.importorskip("openturns")
+    found = kill_study.kill_studies(kill_study.study(kill.plate(), 12), 1, (0.3, 0.9))
+    assert found.equal and found.runs == 12 and found.done >= 10, found
+    assert found.killed + found.clusters > 0, found
+
+
+def test_another_table_than_the_serial_one_is_found(monkeypatch):
+    pytest.importorskip("openturns")
+    from beltgrinding.studies import making, table
+
+    study = making.study
+
+    def other(given, folder=None, workers=None):
+        found = study(given, folder, workers=0)
+        if workers:
+            path = folder / table.FILE
+            path.write_bytes(path.read_bytes().replace(b"1", b"2", 1))
+        return found
+
+    monkeypatch.setattr(making, "study", other)
+    monkeypatch.setattr(kill_study, "first_run", lambda given: 60.0)
+    found = kill_study.kill_studies(kill_study.study(kill.plate(), 2), 1)
+    assert not found.equal and found.killed == 0

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -23,6 +23,7 @@ from beltgrinding.job import load as jobs
 from beltgrinding.simulation import run as runs
 from beltgrinding.studies import hashes, making, one, store, table
 from support.freecad import MOD
+from support.workers import alive, descendants
 from test_job import plate_job
 
 FORCES = [20.0, 30.0, 40.0, 50.0]
@@ -168,6 +169,58 @@ def test_parquet_has_the_same_where_pyarrow_is(made):
     found = parquet.read_table(io.BytesIO(made.table.parquet_bytes()))
     assert found.column_names == made.table.names
     assert found["in_share"].to_pylist() == made.table["in_share"].tolist()
+
+
+class Buffer:
+    """Of the stand-in of pyarrow: what Debian 12 has none of. It shows what is handed over, not what pyarrow makes of it."""
+
+    data = b""
+
+    def getvalue(self):
+        return self
+
+    def to_pybytes(self):
+        return self.data
+
+
+def stand_in():
+    """(pyarrow, pyarrow.parquet) that write the columns as JSON."""
+    package, parquet = ModuleType("pyarrow"), ModuleType("pyarrow.parquet")
+    package.string = lambda: "string"
+
+    def array(values, kind=None):
+        numbers = isinstance(values, np.ndarray) and values.dtype.kind in "if"
+        assert numbers != (kind == "string"), (kind, values)
+        assert numbers or all(v is None or isinstance(v, str) for v in values)
+        return values.tolist() if numbers else values
+
+    def write_table(made, buffer):
+        buffer.data = json.dumps(made).encode()
+
+    package.array, package.table, package.BufferOutputStream = array, dict, Buffer
+    package.parquet, parquet.write_table = parquet, write_table
+    return package, parquet
+
+
+def test_parquet_is_handed_all_columns_and_an_older_one_does_not_stay(made, copied, monkeypatch):
+    package, parquet = stand_in()
+    monkeypatch.setitem(sys.modules, "pyarrow", package)
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", parquet)
+    kept = store.Store(copied)
+    kept.write_table(made.table)
+    found = json.loads((copied / table.PARQUET).read_bytes())
+    assert list(found) == made.table.names
+    for name in ("run", "force", "in_share", "removed_volume_mm3", "job_hash", "status"):
+        assert found[name] == made.table[name].tolist(), name
+    odd = table.Table(
+        {"run": [1, 2], "a": [None, [1, 2.5]], "b": [True, None], "status": ["done"] * 2}
+    )
+    kept.write_table(odd)
+    found = json.loads((copied / table.PARQUET).read_bytes())
+    assert found["a"] == [None, "[1, 2.5]"] and found["b"] == ["true", None]
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    kept.write_table(odd)
+    assert not (copied / table.PARQUET).exists()
 
 
 # What is there is not made again ------------------------------------------------------------------------
@@ -411,29 +464,6 @@ def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(tmp_path, workers):
         time.sleep(0.1)
     assert not [pid for pid in children if alive(pid)]
     assert (table.Table.read(out / table.FILE)["status"] == table.OPEN).sum() >= 200 - finished
-
-
-def descendants(pid):
-    found, wanted = [], {pid}
-    parents = {}
-    for entry in os.listdir("/proc"):
-        if entry.isdigit():
-            try:
-                text = Path("/proc", entry, "stat").read_text()
-            except OSError:
-                continue
-            parents[int(entry)] = int(text.rpartition(")")[2].split()[1])
-    while wanted:
-        wanted = {child for child, parent in parents.items() if parent in wanted}
-        found += wanted
-    return found
-
-
-def alive(pid):
-    try:
-        return Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 # The command line, and arrays of Slurm jobs ------------------------------------------------------------

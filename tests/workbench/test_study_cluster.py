@@ -2,10 +2,8 @@
 
 import json
 import os
-import random
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -19,7 +17,8 @@ from beltgrinding import cli
 from beltgrinding.engine import Cancelled, InputError, core
 from beltgrinding.studies import cluster, clusters, making, one, store, table
 from support.freecad import MOD
-from test_study import alive, descendants, program_job, quick_job, study_of
+from support.workers import ByHand, Killer, local_clusters, worker_processes
+from test_study import program_job, quick_job, study_of
 
 RUNS = 24
 KILLS = 6
@@ -57,35 +56,6 @@ def serial(tmp_path_factory):
     return (folder / table.FILE).read_bytes()
 
 
-def worker_processes(pid):
-    """Those of the descendants that compute: children of Dask's spawning."""
-    found = []
-    for child in descendants(pid):
-        try:
-            words = Path("/proc", str(child), "cmdline").read_bytes().split(b"\0")
-        except OSError:
-            continue
-        if any(b"multiprocessing.spawn" in word for word in words):
-            found.append(child)
-    return found
-
-
-class Killer(threading.Thread):
-    """Kills a worker at random, now and then."""
-
-    def __init__(self, pid, kills, seed=1):
-        super().__init__(daemon=True)
-        self.pid, self.left, self.dice = pid, kills, random.Random(seed)
-        self.over, self.killed = threading.Event(), 0
-
-    def run(self):
-        while self.left and not self.over.wait(self.dice.uniform(0.3, 1.2)):
-            found = [pid for pid in worker_processes(self.pid) if alive(pid)]
-            if found:
-                os.kill(self.dice.choice(found), signal.SIGKILL)
-                self.left, self.killed = self.left - 1, self.killed + 1
-
-
 def test_workers_that_are_killed_change_no_bit_of_the_table(tmp_path, serial):
     killer = Killer(os.getpid(), KILLS)
 
@@ -94,8 +64,7 @@ def test_workers_that_are_killed_change_no_bit_of_the_table(tmp_path, serial):
             killer.start()
 
     found = making.study(many(), tmp_path, workers=2, told=told)
-    killer.over.set()
-    killer.join()
+    killer.stop()
     assert killer.killed >= 3 and not found.broken_off
     assert (tmp_path / table.FILE).read_bytes() == serial
     assert not worker_processes(os.getpid())
@@ -122,67 +91,30 @@ def test_a_local_cluster_that_dies_is_started_again(tmp_path, serial):
 
     def told(progress):
         if progress.done >= 5 and not died:
-            helper = next(
-                pid
-                for pid in descendants(os.getpid())
-                if b"beltgrinding.studies.local_cluster"
-                in Path(f"/proc/{pid}/cmdline").read_bytes()
-            )
-            os.killpg(helper, signal.SIGKILL)
-            died.append(helper)
+            died.extend(local_clusters(os.getpid()))
+            os.killpg(died[0], signal.SIGKILL)
 
     making.study(many(), tmp_path, workers=2, told=told)
     assert died and (tmp_path / table.FILE).read_bytes() == serial
 
 
+def test_a_local_cluster_that_is_killed_as_it_starts_is_started_again(tmp_path, serial):
+    killed = []
+
+    def kill():
+        while not killed:
+            killed.extend(local_clusters(os.getpid())[:1])
+            time.sleep(0.02)
+        os.killpg(killed[0], signal.SIGKILL)
+
+    killer = threading.Thread(target=kill, daemon=True)
+    killer.start()
+    making.study(many(), tmp_path, workers=2)
+    killer.join()
+    assert killed and (tmp_path / table.FILE).read_bytes() == serial
+
+
 # A cluster that is there -------------------------------------------------------------------------------
-
-
-def free_port():
-    with socket.socket() as one_:
-        one_.bind(("127.0.0.1", 0))
-        return one_.getsockname()[1]
-
-
-class ByHand:
-    """dask-scheduler and dask-worker as a person starts them, in another folder."""
-
-    def __init__(self, folder, port=None):
-        self.folder = folder
-        folder.mkdir(exist_ok=True)
-        self.port = port or free_port()
-        self.address = f"tcp://127.0.0.1:{self.port}"
-        self.processes = []
-        place = ["--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard"]
-        self.start("distributed.cli.dask_scheduler", *place)
-
-    def start(self, module, *arguments, before=()):
-        environment = {
-            **os.environ,
-            "PYTHONPATH": f"{MOD}:{Path(core.__file__).parent}",
-            "DASK_TEMPORARY_DIRECTORY": str(self.folder),
-        }
-        process = subprocess.Popen(
-            [*before, sys.executable, "-m", module, *arguments],
-            cwd=self.folder,
-            env=environment,
-            stdout=subprocess.DEVNULL,
-            stderr=open(self.folder / "log", "ab"),
-            start_new_session=True,
-        )
-        self.processes.append(process)
-        return process
-
-    def worker(self, *arguments, before=()):
-        options = ["--no-dashboard", "--local-directory", str(self.folder), *arguments]
-        return self.start("distributed.cli.dask_worker", self.address, *options, before=before)
-
-    def stop(self):
-        for process in self.processes:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-        self.processes = []
 
 
 @pytest.fixture
@@ -204,9 +136,63 @@ def test_a_scheduler_that_was_started_by_hand_in_another_folder(tmp_path, by_han
     assert all(process.poll() is None for process in by_hand.processes)  # it is the user's
 
 
-def test_files_are_sent_to_workers_that_do_not_see_them(tmp_path, by_hand):
+def need_mounts():
     if subprocess.run(["unshare", "--mount", "true"], capture_output=True).returncode != 0:
         pytest.skip("a mount namespace needs root")
+
+
+FILLED = """
+beltgrind() { "$PYTHON" "$BELTGRIND" study "$1/study.json" -o "$1/out" --workers 2 --no-report; }
+mkdir "$1/out" && mount -t tmpfs -o size=72k none "$1/out" || exit 9
+beltgrind "$1" >"$1/first" 2>&1
+echo $? >"$1/status"
+ls "$1"/out/runs/*/*.json | wc -l >"$1/finished"
+mount -o remount,size=16m "$1/out"
+beltgrind "$1" >"$1/second" 2>&1
+cp "$1/out/table.csv" "$1/table.csv"
+"""
+
+
+def test_a_disk_that_is_full_loses_no_run_of_a_cluster(tmp_path, serial):
+    need_mounts()
+    (tmp_path / "study.json").write_text(json.dumps(many()))
+    environment = {
+        **os.environ,
+        "PYTHON": sys.executable,
+        "BELTGRIND": str(MOD / "beltgrind.py"),
+        "PYTHONPATH": f"{MOD}:{Path(core.__file__).parent}",
+        "LANG": "C.UTF-8",
+    }
+    command = ["unshare", "--mount", "bash", "-c", FILLED, "full", str(tmp_path)]
+    assert subprocess.run(command, env=environment, timeout=240).returncode == 0
+    assert (tmp_path / "status").read_text() == "2\n"
+    first, second = ((tmp_path / name).read_text() for name in ("first", "second"))
+    assert "No space left on device" in first and "Traceback" not in first
+    finished = int((tmp_path / "finished").read_text())
+    assert 0 < finished < RUNS and f"{finished} were there already" in second, second
+    assert (tmp_path / "table.csv").read_bytes() == serial
+
+
+def test_a_worker_whose_disk_is_full_is_told(tmp_path, by_hand):
+    need_mounts()
+    path = program_job(tmp_path / "job")
+    place = tmp_path / "elsewhere" / "full"
+    place.mkdir()
+    made = (
+        f'mount -t tmpfs none {tmp_path / "job"} && mount -t tmpfs -o size=64k none {place} && '
+        f'{{ cat /dev/zero >{place}/full 2>/dev/null; exec "$@"; }}'
+    )
+    before = ["unshare", "--mount", "bash", "-c", made, "worker"]
+    by_hand.worker("--nthreads", "1", "--local-directory", str(place), before=before)
+    found = making.study(path, tmp_path / "out", scheduler=by_hand.address)
+    assert found.broken_off == len(found.table) == 4
+    assert all("No space left on device" in error for error in found.table["error"])
+    again = making.study(path, tmp_path / "out", workers=0)
+    assert again.reused == 0 and again.table.done.all()
+
+
+def test_files_are_sent_to_workers_that_do_not_see_them(tmp_path, by_hand):
+    need_mounts()
     path = program_job(tmp_path / "job")
     making.study(path, tmp_path / "here", workers=0)
     hidden = f'mount -t tmpfs none {tmp_path / "job"} && exec "$@"'
@@ -324,7 +310,7 @@ def test_a_worker_with_another_engine_is_refused(tmp_path):
     prepared = making.prepare(making.validate(study_of()))
     task, base = task_of(prepared, [], versions={**core.versions(), "beltgrinding": "0.0.1"})
     assert one.in_worker(task, {task["base"]: base}, tmp_path) == {"versions": core.versions()}
-    session = cluster._Session(None, None, None, ([], [], {}), None, None, None, None)
+    session = cluster._Session(None, None, None, ([], [], {}), (None, None), None, None, None)
     with pytest.raises(InputError, match="another engine"):
         session._answered(task, {"versions": {"beltgrinding": "0.0.1"}}, "tcp://there")
 

@@ -1,8 +1,10 @@
 """Sorting a batch of castings by their scans."""
 
+import os
 import sys
+from pathlib import Path
 
-from . import background, outputs, plan_batch, settings
+from . import background, outputs, plan_batch, settings, where
 from .messages import print_text
 
 
@@ -29,12 +31,7 @@ def add(commands):
         default=1.0,
         help="of the area that must be in tolerance (default 1: the verdict must be pass)",
     )
-    sort.add_argument(
-        "--workers",
-        type=int,
-        metavar="N",
-        help="processes of this machine (default: one a core); 0: none, one part after the other",
-    )
+    where.add(sort, "parts", "part")
     plan_batch.add_alignment(sort)
     sort.add_argument(
         "--language", choices=("en", "de"), default="en", help="of the report (default en)"
@@ -45,8 +42,6 @@ def add(commands):
 
 
 def _sort(arguments):
-    from pathlib import Path
-
     from ..engine import InputError
     from ..job import load as jobs
     from ..studies import sorting, sorting_report
@@ -55,36 +50,87 @@ def _sort(arguments):
         raise InputError(
             "cli.sort_workers", "--workers {count}: give 0 or more", count=arguments.workers
         )
+    chunk = where.chunk(arguments)
     job = jobs.load(arguments.job)
     wanted = settings.given(arguments.settings, arguments.set)
     files = [Path(arguments.output, name) for name in (sorting.TABLE, sorting_report.REPORT)]
     outputs.check(arguments, files, [arguments.job, *arguments.scans])
+    if arguments.slurm is not None:
+        sorting.Tasks(job, arguments.scans, arguments.output, wanted, arguments.share, {})
+        again = f"beltgrind sort {arguments.job} {' '.join(arguments.scans)} -o {arguments.output}"
+        where.array(arguments, _command(arguments), again)
+        return
+    last = []
 
     def told(progress):
+        last[:] = [progress]
         if not arguments.quiet:
             print(f"{progress.done} of {progress.parts} parts", file=sys.stderr, flush=True)
 
-    batch = background.run(
-        lambda context: sorting.sort(
-            job,
-            arguments.scans,
-            arguments.output,
-            wanted,
-            arguments.share,
-            plan_batch.options(arguments),
-            arguments.workers,
-            context,
-            told,
-        ),
-        quiet=True,
-    )
+    try:
+        batch = background.run(
+            lambda context: sorting.sort(
+                job,
+                arguments.scans,
+                arguments.output,
+                wanted,
+                arguments.share,
+                plan_batch.options(arguments),
+                arguments.workers,
+                context,
+                told,
+                arguments.scheduler,
+                arguments.again,
+                chunk,
+            ),
+            quiet=True,
+        )
+    except KeyboardInterrupt:
+        arguments.messages.print_notes(_kept(last, arguments.output))
+        raise
+    if chunk is not None:
+        return
     sorting_report.write(arguments.output, batch, job, arguments.share, arguments.language)
     if arguments.quiet:
         return
     for row in batch.parts:
         print_text(f"{row['part']}: {row['sorted']}{_why(row)}")
     found = sorting_report.counts(batch)
-    print_text(", ".join(f"{count} {sort}" for sort, count in found.items() if count))
+    text = ", ".join(f"{count} {sort}" for sort, count in found.items() if count)
+    print_text(f"{text}; {batch.reused} were there already" if batch.reused else text)
+
+
+def _command(arguments):
+    """What a job of an array is told: the same, with paths that hold everywhere."""
+    command = ["sort", os.path.abspath(arguments.job)]
+    command += [os.path.abspath(scan) for scan in arguments.scans]
+    command += ["-o", os.path.abspath(arguments.output), "--share", repr(arguments.share)]
+    command += ["--unit-mm", repr(arguments.unit_mm)]
+    for name in ("settings", "matrix", "pairs"):
+        if getattr(arguments, name) is not None:
+            command += [f"--{name}", os.path.abspath(getattr(arguments, name))]
+    if arguments.datum_faces is not None:
+        command += ["--datum-faces", arguments.datum_faces]
+    command += [f"--{name}" for name in ("principal", "aligned") if getattr(arguments, name)]
+    for one in arguments.set:
+        command += ["--set", one]
+    return command
+
+
+def _kept(last, folder):
+    """[Fact] of what is finished when the sorting is interrupted."""
+    from ..engine import Fact
+
+    return [
+        Fact(
+            "studies.parts_kept",
+            "{done} of {parts} parts are sorted and kept in {folder}; the same command goes on from there",
+            done=progress.done,
+            parts=progress.parts,
+            folder=folder,
+        )
+        for progress in last
+    ]
 
 
 def _why(row):

@@ -1,9 +1,11 @@
 """One job many times, with what varies."""
 
+import os
 import sys
 import time
+from pathlib import Path
 
-from . import background
+from . import background, where
 from .messages import print_text
 
 LOG_S = 60.0  # between two lines of progress where standard error is no terminal
@@ -20,38 +22,7 @@ def add(commands):
     )
     study.add_argument("study", help="study.json")
     study.add_argument("-o", "--output", required=True, help="folder for the table and the runs")
-    where = study.add_mutually_exclusive_group()
-    where.add_argument(
-        "--workers",
-        type=int,
-        metavar="N",
-        help="processes of this machine (default: one a core); 0: none, one run after the other",
-    )
-    where.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that is there, as tcp://host:8786"
-    )
-    where.add_argument(
-        "--slurm",
-        type=int,
-        metavar="N",
-        help="write the script of a Slurm array of N jobs, run nothing",
-    )
-    study.add_argument("--submit", action="store_true", help="with --slurm: hand it to sbatch")
-    study.add_argument(
-        "--sbatch",
-        action="append",
-        default=[],
-        metavar="OPTION",
-        help="with --slurm: a further option, as --sbatch=--time=02:00:00; several times",
-    )
-    study.add_argument(
-        "--chunk",
-        metavar="I/N",
-        help="only every Nth run from the Ith on, and no table: a job of an array",
-    )
-    study.add_argument(
-        "--again", action="store_true", help="make all runs, also those that are there already"
-    )
+    where.add(study, "runs", "run")
     study.add_argument(
         "--count",
         action="store_true",
@@ -69,15 +40,13 @@ def add(commands):
 
 def _study(arguments):
     from ..engine import InputError
-    from ..studies import making, slurm
+    from ..studies import making, store
 
     if arguments.workers is not None and arguments.workers < 0:
         raise InputError(
             "cli.study_workers", "--workers {count}: give 0 or more", count=arguments.workers
         )
-    if (arguments.submit or arguments.sbatch) and arguments.slurm is None:
-        raise InputError("cli.study_slurm", "--submit and --sbatch go with --slurm")
-    chunk = _chunk(arguments.chunk)
+    chunk = where.chunk(arguments)
     prepared = background.run(
         lambda context: making.prepare(making.load(arguments.study), context), quiet=True
     )
@@ -88,12 +57,9 @@ def _study(arguments):
         return
     if arguments.slurm is not None:
         making.lay_out(prepared, arguments.output, [arguments.study])
-        path = slurm.write(arguments.output, arguments.slurm, arguments.sbatch)
-        said = slurm.submit(path) if arguments.submit else f"submit it by: sbatch {path}"
-        if not arguments.quiet:
-            print_text(
-                f"{path}\n{said}\nthen: beltgrind study {arguments.study} -o {arguments.output}"
-            )
+        place = Path(os.path.realpath(arguments.output))
+        command = ["study", place / store.STUDY, "-o", place]
+        where.array(arguments, command, f"beltgrind study {arguments.study} -o {arguments.output}")
         return
     shown = _Shown(arguments.quiet)
 
@@ -135,19 +101,6 @@ def _answer(found, arguments):
         return
     arguments.messages.print_notes(said["note_facts"])
     print_text(f"{report.REPORT}, {report.ANSWERS} and {report.PICTURES} in {arguments.output}")
-
-
-def _chunk(text):
-    from ..engine import InputError
-
-    if text is None:
-        return None
-    number, _, count = text.partition("/")
-    if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
-        raise InputError(
-            "cli.study_chunk", "--chunk {text}: write I/N, as 3/20, with I from 1 to N", text=text
-        )
-    return int(number), int(count)
 
 
 def _count(survey, arguments):

@@ -9,7 +9,15 @@ from typing import NamedTuple
 from ..base import schemas
 from ..base.files import json_bytes, write_whole
 from ..engine import Cancelled, InputError, core
-from ..studies import answers, checking, making, store as stores, table as tables, vary
+from ..studies import (
+    answers,
+    checking,
+    design as designs,
+    making,
+    store as stores,
+    table as tables,
+    vary,
+)
 from . import job_inputs, result_files, study_keys
 from .job_data import children, inspection
 from .properties import Key, Output, add_keys, add_outputs, to_job
@@ -281,7 +289,15 @@ def open_run(obj, number):
 
 
 def check_varied(entries):
-    """Raises InputError for what is no ``vary`` of a study."""
+    """Raises InputError for what is no ``vary`` of a study. Returns [Variable]."""
     rule = making.schema()["properties"]["vary"]
     checked = schemas.checked(list(entries), rule, "vary") if entries else []
-    vary.variables({"vary": checked})
+    return vary.variables({"vary": checked})
+
+
+def check_correlated(pairs, entries, method):
+    """Raises InputError for ``pairs`` that are no ``correlations`` of a study with this ``vary`` and method."""
+    rule = making.schema()["properties"]["correlations"]
+    checked = schemas.checked(list(pairs), rule, "correlations") if pairs else []
+    study = {"correlations": checked, "design": {"method": method}}
+    designs.correlations(study, check_varied(entries))

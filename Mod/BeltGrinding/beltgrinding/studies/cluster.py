@@ -19,7 +19,7 @@ CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
 MORE = 2  # tasks waiting beside each one that is run
 MOST_TRIES = 20  # of sending what a worker needs
-ALONE_S = 20.0  # without a worker, after which a local cluster is started again
+ALONE_S = 60.0  # without a worker, after which a local cluster is started again
 RESTARTS = 5  # of a local cluster, one after the other without a run in between
 BLAMED = 2  # times that workers were lost with a run that was alone, after which it is given up
 ODD = 3  # errors of a worker that are none of ours, such as of one that is just ending, after which a run's is told
@@ -32,15 +32,15 @@ class Lost(Exception):
     """The scheduler has gone, or another one has taken its place."""
 
 
-def run(where, tasks, blob, taken, context, told=None):
+def run(where, tasks, blob, taken, context, told=None, done_by=None):
     """Runs ``tasks`` (dicts as ``one.in_worker`` takes them) and calls ``taken(record)`` for each as it comes.
 
     ``where``: ``clusters.Local`` or ``There``; ``blob(sha256)``: the bytes of what a worker asks for; ``told(workers)``: how
-    many processes work, when that changes. Raises InputError, Cancelled; what was taken stays taken.
+    many processes work, when that changes; ``done_by``: what workers do in place of ``work``, of tasks with a ``job_hash``. Raises InputError, Cancelled; what was taken stays taken.
     """
     distributed = clusters.distributed()
     with _quiet():
-        _run(distributed, where, tasks, blob, taken, context, told)
+        _run(distributed, where, tasks, (blob, done_by or work), taken, context, told)
 
 
 @contextlib.contextmanager
@@ -57,7 +57,7 @@ def _quiet():
             logger.setLevel(level)
 
 
-def _run(distributed, where, tasks, blob, taken, context, told):
+def _run(distributed, where, tasks, means, taken, context, told):
     waiting, suspects, blamed = collections.deque(tasks), collections.deque(), collections.Counter()
     restarts = 0
 
@@ -74,13 +74,15 @@ def _run(distributed, where, tasks, blob, taken, context, told):
                 if restarts > RESTARTS:
                     raise _gone(where, len(waiting) + len(suspects))
             where.start(context)
+            if where.own and where.address is None:  # killed as it started
+                continue
             client = _connected(where, len(waiting) + len(suspects), context)
             session = _Session(
                 distributed,
                 client,
                 where,
                 (waiting, suspects, blamed),
-                blob,
+                means,
                 counted,
                 context,
                 told,
@@ -113,11 +115,13 @@ def _connected(where, open_runs, context):
 
 
 def _gone(where, open_runs, reason=None):
+    if where.own:
+        return where.not_started()
     return InputError(
         "studies.no_scheduler",
         "no scheduler answers at {address}{reason}; {open} runs are open, those that have ended are kept: start the same "
         "study again when it is there",
-        address=where.address or "localhost",
+        address=where.address,
         reason=f" ({' '.join(str(reason).split())[:160]})" if reason else "",
         open=open_runs,
     )
@@ -126,14 +130,15 @@ def _gone(where, open_runs, reason=None):
 class _Session:
     """One client's connection."""
 
-    def __init__(self, distributed, client, where, tasks, blob, taken, context, told):
+    def __init__(self, distributed, client, where, tasks, means, taken, context, told):
         """``tasks``: two deques, of those that wait, and of those that Dask has given up because the workers that had them
         died; and how often, by job, one of these was lost with all workers while it was alone. One of these may only have been beside another that killed them: it is tried once more, alone.
+        ``means``: what gives the bytes that a worker asks for, and what a worker does.
         """
         self.distributed, self.client, self.where = distributed, client, where
         self.waiting, self.suspects, self.blamed = tasks
         self.alone = None  # the key of a suspect's future
-        self.blob, self.taken = blob, taken
+        (self.blob, self.done_by), self.taken = means, taken
         self.context, self.told = context, told
         self.flying = {}  # future's key: (task, future)
         self.ended = queue.SimpleQueue()
@@ -248,7 +253,7 @@ class _Session:
         self.number += 1
         try:
             future = self.client.submit(
-                work,
+                self.done_by,
                 task,
                 blobs,
                 key=f"beltgrind-{task['job_hash']}-{self.number}",
@@ -288,6 +293,13 @@ class _Session:
                 worker=worker,
                 there=_versions(answer["versions"]),
                 here=_versions(core.versions()),
+            )
+        if "unseen" in answer:
+            raise InputError(
+                "studies.worker_sees_not",
+                "the worker {worker} does not see {file} as it is here; its disk must show the same files under the same paths",
+                worker=worker,
+                file=answer["unseen"],
             )
         if "needs" not in answer:
             self.taken(answer)

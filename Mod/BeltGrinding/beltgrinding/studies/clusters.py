@@ -17,6 +17,7 @@ from ..engine import InputError, core
 START_S = 60.0  # for a local cluster to start
 ANSWER_S = 10.0  # for a scheduler to answer
 END_S = 5.0  # for a local cluster to end by itself
+KILLED_S = 0.5  # for one that says nothing more to be gone
 TAIL = 300  # characters of what a cluster said that failed
 # One simulation a core: libraries must not share it out further.
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -80,9 +81,11 @@ class Local:
     def __init__(self, workers):
         self.workers = workers
         self.address = self._process = self._folder = None
+        self.said = ""  # the end of what the last one told on its standard error
 
     def start(self, context):
-        """Starts it, where it does not run. Raises InputError, Cancelled."""
+        """Starts it, where it does not run; one that is killed meanwhile has no ``address`` then. Raises InputError where it
+        cannot be started, Cancelled."""
         if self._process is not None:
             return
         distributed()
@@ -115,19 +118,31 @@ class Local:
             reader.join(0.1)
         self.address = said[0].decode().strip() if said else ""
         if not self.address:
-            told = self._log()
+            killed = self._killed()
             self.close()
-            raise InputError(
-                "studies.cluster_not_started",
-                "the workers could not be started: {reason}",
-                reason=told or core.Fact("studies.no_answer", "no answer"),
-            )
+            if not killed:
+                raise self.not_started()
+
+    def not_started(self):
+        """An InputError with what the last one told."""
+        return InputError(
+            "studies.cluster_not_started",
+            "the workers could not be started: {reason}",
+            reason=self.said or core.Fact("studies.no_answer", "no answer"),
+        )
 
     def alive(self):
         """Whether it runs; one that has ended is started again by ``start``."""
         if self._process is not None and self._process.poll() is not None:
             self.close()
         return self._process is not None
+
+    def _killed(self):
+        """Whether a signal ended it."""
+        try:
+            return self._process.wait(KILLED_S) < 0
+        except subprocess.TimeoutExpired:
+            return False
 
     def _log(self):
         try:
@@ -139,6 +154,8 @@ class Local:
     def close(self):
         """Ends it with all its workers."""
         process, folder = self._process, self._folder
+        if folder is not None:
+            self.said = self._log()
         self._process = self._folder = self.address = None
         if process is not None:
             process.stdin.close()

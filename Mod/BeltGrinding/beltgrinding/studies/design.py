@@ -57,12 +57,6 @@ def design(study, found):
     wanted = study["design"]
     matrix = correlations(study, found)
     if wanted["method"] == GRID:
-        if matrix is not None:
-            raise InputError(
-                "studies.grid_correlated",
-                "{key}: a grid has every value with every other; leave the correlations out, or choose another method",
-                key="correlations",
-            )
         return _grid(found)
     quantiles = [quantile(one, f"vary[{k}]") for k, one in enumerate(found)]
     with _generator:
@@ -114,12 +108,6 @@ def _cube(wanted, dimension, matrix):
             return strata
         ranks = np.argsort(np.argsort(np.array(copula.getSample(runs)), axis=0), axis=0)
         return np.take_along_axis(np.sort(strata, axis=0), ranks, axis=0)
-    if matrix is not None:
-        raise InputError(
-            "studies.indices_correlated",
-            "{key}: Sobol indices are those of independent variables; leave the correlations out",
-            key="correlations",
-        )
     return _blocks(ot, dimension, runs, wanted["second_order"])
 
 
@@ -153,7 +141,8 @@ def _gaussian(ot, matrix):
 
 
 def correlations(study, found):
-    """(variables, variables), the copula's; None where all are independent. Raises InputError."""
+    """(variables, variables), the copula's; None where all are independent. Raises InputError for those that cannot be, and
+    for a design that has none."""
     if not study["correlations"]:
         return None
     names = [one.name for one in found]
@@ -186,7 +175,24 @@ def correlations(study, found):
             "{key}: no variables can be correlated like that: the matrix is not positive definite",
             key="correlations",
         )
+    _check_method(study["design"]["method"])
     return matrix
+
+
+def _check_method(method):
+    """Raises InputError for a design that has no correlations."""
+    if method == GRID:
+        raise InputError(
+            "studies.grid_correlated",
+            "{key}: a grid has every value with every other; leave the correlations out, or choose another method",
+            key="correlations",
+        )
+    if method == INDICES:
+        raise InputError(
+            "studies.indices_correlated",
+            "{key}: Sobol indices are those of independent variables; leave the correlations out",
+            key="correlations",
+        )
 
 
 def quantile(one, where):

@@ -135,7 +135,7 @@ def moved(job, before, after):
 
 # In a worker -----------------------------------------------------------------------------------------
 
-_busy = threading.Lock()  # one run at a time in a process, however many threads its worker has
+busy = threading.Lock()  # one run at a time in a process, however many threads its worker has
 _bases = collections.OrderedDict()  # Base by the SHA-256 of its blob
 _digests = {}  # SHA-256 of files by (path, bytes, time of change)
 
@@ -150,12 +150,12 @@ def in_worker(task, blobs, folder):
     if task["versions"] != core.versions():
         return {"versions": core.versions()}
     core.set_threads(1)
-    with _busy:
+    with busy:
         needs, sent = [], ""
         base = _base(task["base"], blobs)
         if base is None:
             needs.append(task["base"])
-        if any(sha is not None and _digest(path) != sha for path, sha in task["files"]):
+        if any(sha is not None and digest(path) != sha for path, sha in task["files"]):
             sent = str(Path(folder, FOLDER, _tree(task["files"])))
             needs += _laid_down(task["files"], blobs, sent)
         if needs:
@@ -172,7 +172,7 @@ def _base(sha, blobs):
     return _bases.get(sha)
 
 
-def _digest(path):
+def digest(path):
     """The SHA-256 of a file here; None where it is not to be had."""
     try:
         state = Path(path).stat()
@@ -194,7 +194,7 @@ def _laid_down(files, blobs, sent):
     missing = []
     for path, sha in files:
         place = Path(sent + path)
-        if sha is None or _digest(str(place)) == sha:
+        if sha is None or digest(str(place)) == sha:
             continue
         if sha not in blobs:
             missing.append(sha)

@@ -1,8 +1,8 @@
-"""A study as an array of Slurm jobs: the script for sbatch, and its submission.
+"""A study, or a batch of castings, as an array of Slurm jobs: the script for sbatch, and its submission.
 
 Each job of the array makes every Nth run and keeps it in the study's folder, which all nodes must see, as they must the files
 that the study reads. The next ``beltgrind study`` in that folder collects what is there, makes what is missing, and writes
-the table.
+the table; ``beltgrind sort`` the same.
 """
 
 import os
@@ -13,16 +13,17 @@ from pathlib import Path
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
-from . import clusters, store
+from . import clusters
 
-FOLDER, SCRIPT = "slurm", "study.sbatch"
+FOLDER = "slurm"
 MOST = 100_000  # jobs of an array
 SUBMIT_S = 60.0  # for sbatch to answer
 
 
-def write(folder, jobs, options=()):
-    """Writes the script of an array of so many ``jobs`` for the study that lies in ``folder``, with further ``options`` of
-    sbatch, such as --time=02:00:00. Returns its path. Raises InputError."""
+def write(folder, jobs, command, options=()):
+    """Writes the script of an array of so many ``jobs`` into ``folder``, with further ``options`` of sbatch, such as
+    --time=02:00:00. ``command``: the words after ``beltgrind``, which take --chunk; the first, study or sort, names the
+    script. Returns its path. Raises InputError."""
     if not 1 <= jobs <= MOST:
         raise InputError(
             "studies.slurm_jobs",
@@ -38,32 +39,32 @@ def write(folder, jobs, options=()):
                 option=option,
             )
     place = Path(os.path.realpath(folder)) / FOLDER
-    path = place / SCRIPT
+    path = place / f"{command[0]}.sbatch"
     try:
         place.mkdir(parents=True, exist_ok=True)
-        write_whole(path, _text(place.parent, jobs, options).encode("utf-8", "surrogateescape"))
+        write_whole(path, _text(place, jobs, command, options).encode("utf-8", "surrogateescape"))
         os.chmod(path, 0o755)
     except OSError as error:
         raise cannot_be_written(path, error) from None
     return path
 
 
-def _text(folder, jobs, options):
+def _text(place, jobs, command, options):
     package = Path(__file__).resolve().parents[2]
     places = [str(package), str(Path(core.__file__).resolve().parent)]
-    command = [clusters.python(), "-m", "beltgrinding", "study", str(folder / store.STUDY)]
-    command += ["-o", str(folder), "--workers", "0", "--quiet", "--chunk"]
+    words = [clusters.python(), "-m", "beltgrinding", *map(str, command)]
+    words += ["--workers", "0", "--quiet", "--chunk"]
     lines = [
         "#!/bin/bash",
-        "#SBATCH --job-name=beltgrind-study",
+        f"#SBATCH --job-name=beltgrind-{command[0]}",
         f"#SBATCH --array=1-{jobs}",
         "#SBATCH --ntasks=1",
         "#SBATCH --cpus-per-task=1",
-        f"#SBATCH --output={shlex.quote(str(folder / FOLDER))}/%A_%a.log",
+        f"#SBATCH --output={shlex.quote(str(place))}/%A_%a.log",
         *(f"#SBATCH {option}" for option in options),
         f"export PYTHONPATH={shlex.quote(os.pathsep.join(places))}${{PYTHONPATH:+:$PYTHONPATH}}",
         *(f"export {name}=1" for name in clusters.ONE_THREAD),
-        f'exec {shlex.join(command)} "$SLURM_ARRAY_TASK_ID/{jobs}"',
+        f'exec {shlex.join(words)} "$SLURM_ARRAY_TASK_ID/{jobs}"',
     ]
     return "\n".join(lines) + "\n"
 

@@ -1,6 +1,11 @@
 """Sorts a batch of castings by their scans: which pass as the job's program grinds them, which with a plan of their own, and
-which are scrap. Each part is one task, on processes of this machine or here."""
+which are scrap. Each part is one task, on processes of this machine, a Dask cluster, an array of Slurm jobs, or here.
 
+What is found of a part is kept as a study keeps its runs, and is not found again. Plans are written by whoever makes them: workers
+elsewhere need the scans, the job's files and the folder under the same paths.
+"""
+
+import hashlib
 import os
 import time
 from pathlib import Path
@@ -9,21 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
-from ..base.messages import fact_data, sentence
-from ..engine import Cancelled, InputError, core
-from ..inspection import verdict as verdicts
-from ..job import inputs, workpiece
-from ..planning import apply, pictures, reasons, rounds as plans
-from ..scan import stock as scan_stock
-from ..simulation import run as runs
-from . import clusters
+from ..engine import InputError, core
+from ..job import inputs
+from ..planning import apply, rounds as plans
+from . import casting, cluster, clusters, one, slurm, store, table
+from .casting import PASSES, PLANNED, SCRAP, SORTS, UNKNOWN, reason  # noqa: F401
+from .hashes import Hashes
 from .making import cores
-from .table import Table
 
-PASSES, PLANNED, SCRAP, UNKNOWN = "passes", "passes with plan", "scrap", "unknown"
-SORTS = (PASSES, PLANNED, SCRAP, UNKNOWN)
+FORMAT = 1  # of what is kept of a part
 TABLE = "parts.csv"
-LOOK_S = 0.1
+KEPT = "kept"  # the folder of what is found of each part
+OWN = {TABLE, "parts.html", KEPT, slurm.FOLDER}  # names in the folder that no part has
 COLUMNS = (
     "part",
     "scan",
@@ -42,8 +44,9 @@ COLUMNS = (
 class Batch(NamedTuple):
     """What was sorted."""
 
-    parts: list  # dicts with ``COLUMNS`` and ``shares``, in the order that was given
-    table: Table
+    parts: list  # dicts with ``COLUMNS`` (``plan``: its folder), ``shares`` and ``reason_facts``, in the order that was given
+    table: table.Table  # ``plan``: the folder's name
+    reused: int  # parts that were there already
 
 
 class Progress(NamedTuple):
@@ -51,8 +54,10 @@ class Progress(NamedTuple):
 
     parts: int
     done: int
+    reused: int  # of them, there already
     seconds: float
     left_s: float  # None: not known yet
+    workers: int  # processes that sort
 
 
 def sort(
@@ -65,13 +70,18 @@ def sort(
     workers=None,
     context=None,
     told=None,
+    scheduler=None,
+    again=False,
+    chunk=None,
 ):
     """Sorts parts by their scans, meshes of the raw parts. Returns a ``Batch``.
 
-    ``job``: validated; ``scans``: paths; ``folder``: for parts.csv and, of each part that needs one, its plan in a folder of its
-    name; ``settings``: of the plans (Resources/schema/plan.schema.json); ``share``: of the area that must be in tolerance, 1:
-    the verdict must be pass; ``options``: as ``scan.stock.as_stock`` takes them; ``workers``: processes, by default one a
-    core, 0: none. Raises InputError, Cancelled. A part that fails by itself is told in its row.
+    ``job``: validated; ``scans``: paths; ``folder``: for parts.csv, for what is kept of each part, and of each that needs one its
+    plan in a folder of its name; ``settings``: of the plans (Resources/schema/plan.schema.json); ``share``: of the area that must
+    be in tolerance, 1: the verdict must be pass; ``options``: as ``scan.stock.as_stock`` takes them; ``workers``: processes, by
+    default one a core, 0: none; ``scheduler``: the address of a Dask scheduler whose workers sort; ``again``: also what is
+    there already; ``chunk``: (I, N): only every Nth part, from the Ith, and no table. Raises InputError, Cancelled; what is found
+    by then stays in ``folder``. A part that fails by itself is told in its row.
     """
     context = context or core.RunContext()
     settings = plans.validate(settings or {})
@@ -79,42 +89,136 @@ def sort(
         raise InputError(
             "studies.sort_share", "share {share:g}: must lie above 0, up to 1", share=share
         )
-    named = _named(scans)
-    if folder is not None:
-        _check(job, named, Path(folder))
-    tasks = [
-        {
-            "part": name,
-            "scan": str(path),
-            "folder": None if folder is None else str(Path(folder, name)),
-            "job": job,
-            "settings": settings,
-            "share": share,
-            "options": options or {},
-        }
-        for name, path in named
-    ]
-    rows, begun = {}, time.monotonic()
+    batch = Tasks(job, scans, folder, settings, share, options or {})
+    batch = batch if chunk is None else batch.chunk(*chunk)
+    work = _Work(batch, again, context, told)
+    if work.open and scheduler is None and (workers == 0 or len(batch.tasks) < 2):
+        work.here()
+    elif work.open:
+        count = min(workers or cores(), len(work.open))
+        work.on(clusters.There(scheduler) if scheduler else clusters.Local(count))
+    found = work.batch()
+    if folder is not None and chunk is None:
+        _write(Path(folder, TABLE), found.table.csv_bytes())
+    return found
 
-    def taken(row):
-        rows[row["part"]] = row
-        context.report(len(rows) / len(tasks))
-        if told is not None:
-            seconds = time.monotonic() - begun
-            left = seconds / len(rows) * (len(tasks) - len(rows))
-            told(Progress(len(tasks), len(rows), seconds, left))
 
-    if workers == 0 or len(tasks) < 2:
-        for place, task in enumerate(tasks):
-            part = context.part(place / len(tasks), (place + 1) / len(tasks))
-            taken(one_part(task, part))
-    else:
-        _side_by_side(tasks, workers, taken, context)
-    parts = [rows[name] for name, _ in named]
-    made = Table({column: [row[column] for row in parts] for column in COLUMNS})
-    if folder is not None:
-        _write(Path(folder, TABLE), made.csv_bytes())
-    return Batch(parts, made)
+class Tasks:
+    """The parts of a batch as tasks, each known by the hash of what its row depends on. Raises InputError."""
+
+    def __init__(self, job, scans, folder, settings, share, options):
+        named = _named(scans)
+        self.folder = None if folder is None else Path(os.path.abspath(folder))
+        if self.folder is not None:
+            _check(job, named, self.folder)
+        hashes = Hashes([job])
+        files = [[str(path), sha] for _, path, sha in hashes.files(job)]
+        common = [FORMAT, hashes.job(job), settings, share, _plain(options)]
+        self.tasks = []
+        for name, path in named:
+            scan = os.path.abspath(path)
+            sha = inputs.file_digest("", scan)["sha256"]
+            known = inputs.canonical([*common, name, Path(path).name, sha])
+            self.tasks.append(
+                {
+                    "job_hash": hashlib.sha256(known).hexdigest(),
+                    "part": name,
+                    "given": str(path),
+                    "scan": scan,
+                    "files": [*files, [scan, sha]],
+                    "folder": None if self.folder is None else str(self.folder / name),
+                    "job": job,
+                    "settings": settings,
+                    "share": share,
+                    "options": options,
+                    "versions": core.versions(),
+                }
+            )
+
+    def chunk(self, first, step):
+        """Every ``step``-th from the ``first``, counted from 1."""
+        self.tasks = self.tasks[first - 1 :: step]
+        return self
+
+
+def _plain(value):
+    """Options as plain data."""
+    if isinstance(value, dict):
+        return {name: _plain(one_) for name, one_ in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(one_) for one_ in value] if isinstance(value, (list, tuple)) else value
+
+
+class _Work:
+    """What is to be sorted."""
+
+    def __init__(self, batch, again, context, told):
+        self.tasks, self.context, self.told = batch.tasks, context, told
+        self.kept = None if batch.folder is None else store.Store(batch.folder / KEPT)
+        self.rows, self.open = {}, {}  # by hash
+        for task in self.tasks:
+            row = None if again or self.kept is None else self._there(task)
+            if row is None:
+                self.open[task["job_hash"]] = task
+            else:
+                self.rows[task["job_hash"]] = row
+        self.reused, self.workers, self.begun = len(self.rows), 0, time.monotonic()
+
+    def _there(self, task):
+        """The figures of a part that are kept; None where there are none, or its plan is gone."""
+        record = self.kept.read(task["job_hash"])
+        row = record and record["figures"]
+        if not row or not set(casting.FIGURES) <= set(row):
+            return None
+        planned = row["sorted"] == PLANNED
+        return None if planned and not Path(task["folder"], apply.PLAN).exists() else row
+
+    def here(self):
+        """One after the other, in this process."""
+        self.workers, count = 1, len(self.tasks)
+        for number, task in enumerate(list(self.open.values()), self.reused):
+            self.context.throw_if_cancelled()
+            part = self.context.part(number / count, (number + 1) / count)
+            self.take(_record(task, casting.one_part(task, part)))
+
+    def on(self, where):
+        """On the workers of a cluster."""
+
+        def workers(count):
+            self.workers = count
+
+        tasks = list(self.open.values())
+        cluster.run(where, tasks, None, self.take, self.context, workers, work)
+
+    def take(self, record):
+        """A part is sorted."""
+        task = self.open.pop(record["job_hash"], None)
+        if task is None:  # a second answer
+            return
+        if self.kept is not None and not record["passing"]:
+            self.kept.write(record)
+        row = record["figures"]
+        if record["status"] == table.FAILED:  # its workers died
+            row = {**dict.fromkeys(casting.FIGURES), "sorted": UNKNOWN, "trusted": True}
+            row.update(reason=record["error"], reason_facts=[], shares={})
+        self.rows[record["job_hash"]] = row
+        self.context.report(len(self.rows) / len(self.tasks))
+        if self.told is not None:
+            seconds, made = time.monotonic() - self.begun, len(self.rows) - self.reused
+            count = len(self.tasks), len(self.rows), self.reused
+            self.told(Progress(*count, seconds, seconds / made * len(self.open), self.workers))
+
+    def batch(self):
+        """The ``Batch`` of all, in their order."""
+        parts = []
+        for task in self.tasks:
+            row = self.rows[task["job_hash"]]
+            plan = task["folder"] if row["sorted"] == PLANNED else None
+            parts.append({**row, "part": task["part"], "scan": task["given"], "plan": plan})
+        columns = {column: [row[column] for row in parts] for column in COLUMNS}
+        columns["plan"] = [row["plan"] and row["part"] for row in parts]
+        return Batch(parts, table.Table(columns), self.reused)
 
 
 def _named(scans):
@@ -132,7 +236,7 @@ def _named(scans):
             "studies.no_scans",
             "there is nothing to sort: give scans (.stl, .ply, .obj) or a folder",
         )
-    found, taken = [], set()
+    found, taken = [], set(OWN)
     for path in paths:
         name, number = path.stem, 1
         while name.lower() in taken:
@@ -157,128 +261,38 @@ def _check(job, named, folder):
         apply.check(job, folder / name, read)
 
 
-def one_part(task, context=None):
-    """The row of a part: ``COLUMNS`` and ``shares``, of the area, of the reasons why it stays out of tolerance. In any
-    process. Raises Cancelled."""
-    context = context or core.RunContext()
-    row = dict.fromkeys(COLUMNS)
-    row.update(part=task["part"], scan=task["scan"], sorted=UNKNOWN, reason="", shares={})
-    row.update(trusted=True, reason_facts=[])
-    try:
-        _sort(task, row, context)
-    except InputError as error:
-        row["reason_facts"] = [fact_data(error)]
-        row["reason"] = str(error)
-    return row
+def _record(task, row):
+    """What is kept of a part. One that could not be judged is tried again the next time."""
+    failed = row.pop("failed")
+    return {
+        "job_hash": task["job_hash"],
+        "status": table.DONE,
+        "figures": row,
+        "error": None,
+        "passing": failed,
+        "field": None,
+        "seconds": 0.0,
+    }
 
 
-def _sort(task, row, context):
-    job, laid = scan_stock.as_stock(
-        task["job"], task["scan"], **task["options"], context=context.part(0.0, 0.1)
-    )
-    if laid is not None:
-        row.update(aligned_rms_mm=float(laid["rms_mm"]), trusted=bool(laid["trusted"]))
-    lacking = _lacking(job, context.part(0.1, 0.12))
-    if lacking > 1.0 - task["share"]:
-        fact = core.Fact(
-            "studies.sort_lacks",
-            "the raw part lies below the lower limit on {percent:.1f} % of the area already, and grinding adds nothing",
-            percent=100.0 * lacking,
-        )
-        row.update(sorted=SCRAP, reason=str(fact), reason_facts=[fact_data(fact)])
-        return
-    result = runs.run(job, context.part(0.12, 0.2))
-    verdict = result.verdict or verdicts.of_result(result)
-    row["in_share"] = verdict["in_share"]
-    row["process_time_s"] = result.summary["process_time_s"]
-    word = _word(verdict, task["share"])
-    if word == "pass":
-        row["sorted"] = PASSES
-        return
-    if word == "unknown":
-        fact = core.Fact(
-            "studies.sort_missed",
-            "the scan leaves {area:.3g} mm2 of the ground faces without stock: nothing is known there",
-            area=verdict["missed_area_mm2"],
-        )
-        row.update(reason=str(fact), reason_facts=[fact_data(fact)])
-        return
-    plan = plans.plan(job, task["settings"], context.part(0.2, 1.0))
-    after = verdicts.of_result(plan.after)
-    row["planned_in_share"] = after["in_share"]
-    row["planned_time_s"] = plan.after.summary["process_time_s"]
-    if _word(after, task["share"]) == "pass" and plan.better:
-        row["sorted"] = PLANNED
-        if task["folder"] is not None:
-            apply.write(plan, task["folder"], [task["scan"], *inputs.files(task["job"])], False)
-            row["plan"] = task["folder"]
-        return
-    row["sorted"] = SCRAP
-    shares = {word: share for word, share in plan.why["shares"].items() if share > reasons.LEAST}
-    row["shares"] = shares
-    if shares:
-        worst = max(shares, key=shares.get)
-        row["reason"] = f"{100.0 * shares[worst]:.1f} %: {pictures.WORDS[worst]}"
+def work(task, blobs):
+    """What a worker does: (a record, or what ``cluster`` knows as an answer, the worker's address)."""
+    from distributed import get_worker
 
-
-def _lacking(job, context):
-    """Share of the area on which the stock of a job lies below the lower limit of the tolerance."""
-    field = workpiece.make_field(job, workpiece.read_design(job["design"], context), [], context)
-    workpiece.apply_stock(field, job["stock"], [], context)
-    seen = (np.asarray(field.flags) & core.MISSED) == 0
-    below = seen & (np.asarray(field.height, dtype=float) < verdicts.limits(job, field)[0])
-    areas = np.asarray(field.areas, dtype=float)
-    return float(areas[below].sum() / max(areas.sum(), 1e-300))
-
-
-def _word(verdict, share):
-    """ "pass", "fail" or "unknown". Where the scan has no stock nothing is known, of either sign."""
-    if share >= 1.0:
-        return verdict["overall"]
-    known = verdict["in_share"] * verdict["inspected_area_mm2"] / verdict["area_mm2"]
-    if known >= share:
-        return "pass"
-    return (
-        "unknown" if known + verdict["missed_area_mm2"] / verdict["area_mm2"] >= share else "fail"
-    )
-
-
-def _side_by_side(tasks, workers, taken, context):
-    """Each task on a Dask worker of this machine."""
-    distributed = clusters.distributed()
-    local = clusters.Local(min(workers or cores(), len(tasks)))
-    try:
-        local.start(context)
-        with distributed.Client(local.address, set_as_default=False) as client:
-            open_ = [client.submit(in_worker, task, pure=False) for task in tasks]
-            while open_:
-                context.throw_if_cancelled()
-                ended = [future for future in open_ if future.done()]
-                for future in ended:
-                    open_.remove(future)
-                    taken(_answer(future))
-                if not ended:
-                    time.sleep(LOOK_S)
-    except Cancelled:
-        local.close()
-        raise
-    finally:
-        local.close()
-
-
-def _answer(future):
-    if future.status != "finished":
-        raise InputError(
-            "studies.sort_died",
-            "a process that sorted a part ended without an answer, perhaps for want of memory; take fewer by --workers",
-        )
-    return future.result()
+    return in_worker(task), get_worker().address
 
 
 def in_worker(task):
-    """``one_part`` in a worker's process, with a thread of its own."""
+    """The record of a part, by one thread; {"unseen": path} where a file is not there as it was when the task was made,
+    {"versions"} where the engine is another one."""
+    if task["versions"] != core.versions():
+        return {"versions": core.versions()}
+    for path, sha in task["files"]:
+        if sha is not None and one.digest(path) != sha:
+            return {"unseen": path}
     core.set_threads(1)
-    return one_part(task)
+    with one.busy:
+        return _record(task, casting.one_part(task))
 
 
 def _write(path, data):
@@ -287,11 +301,3 @@ def _write(path, data):
         write_whole(path, data)
     except OSError as error:
         raise cannot_be_written(path, error) from None
-
-
-def reason(row, words):
-    """Why a part is what it is, in the words of a ``reporting.language.Language``."""
-    if row["reason_facts"]:
-        return "; ".join(sentence(one, words.code) for one in row["reason_facts"])
-    told = sorted(row["shares"].items(), key=lambda pair: -pair[1])
-    return "; ".join(f"{words.percent(share)}: {words(pictures.WORDS[w])}" for w, share in told)

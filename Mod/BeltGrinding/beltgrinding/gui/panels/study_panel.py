@@ -3,7 +3,7 @@
 import json
 
 from ...engine import InputError
-from ...objects import study as studies, study_keys
+from ...objects import job_data, study as studies, study_keys
 from ...objects.proxy import type_of
 from ...studies import names
 from ..common.compat import QtCore, QtGui, translate
@@ -11,6 +11,7 @@ from ..common.messages import error_text
 from ..common.report_language import words
 from ..common.study_runner import StudyRunner
 from ..widgets.best_form import BestForm
+from ..widgets.correlation_rows import CorrelationRows
 from ..widgets.fold import Fold, slim
 from ..widgets.form import Form
 from ..widgets.steady import steady
@@ -31,6 +32,7 @@ class StudyPanel(RunPanel):
         self.obj, self.document, self.open_table = obj, obj.Document, open_table
         body = QtGui.QVBoxLayout(self.form)
         body.addWidget(self._varied())
+        body.addWidget(self._correlated())
         body.addWidget(self._design())
         body.addWidget(self._best())
         row = QtGui.QHBoxLayout()
@@ -81,6 +83,25 @@ class StudyPanel(RunPanel):
         self.varied_box = box
         return box
 
+    def _correlated(self):
+        settings = self.obj.Proxy.settings(self.obj)
+        self.entries = settings["vary"]  # of the last that could be
+        names = [entry.get("name", entry["key"]) for entry in settings["vary"]]
+        self.correlated = CorrelationRows(settings.get("correlations") or [], names)
+        self.correlated.changed = self._changed
+        self.correlated.check = self._check_correlated
+        self.correlated_fold = Fold(
+            "foldCorrelated",
+            translate("BeltGrinding", "Correlations"),
+            self.correlated,
+            self.correlated.summary,
+            folded=not self.correlated.rows,
+        )
+        return self.correlated_fold
+
+    def _check_correlated(self, pairs):
+        studies.check_correlated(pairs, self.entries, self.obj.Method)
+
     def _design(self):
         box = Form(self.obj, translate("BeltGrinding", "Runs"))
         box.add(
@@ -106,13 +127,17 @@ class StudyPanel(RunPanel):
     def _best(self):
         told = words()
         numbers = [name for name in names.NAMES if name != "overall"]
+        for zone in job_data.zones(self.job):
+            numbers += [
+                f"zones.{zone['name']}.{last}" for last in names.OF_ZONE if last != "verdict"
+            ]
         figures = {name: names.figure(name, told) for name in numbers}
         asked = self.obj.Proxy.settings(self.obj)["answers"]
         self.best = BestForm(asked.get("best"), figures)
         self.best.changed = self._changed
         folded = not asked.get("best")
         title = translate("BeltGrinding", "Best setting")
-        self.best_fold = Fold("foldBest", title, self.best, folded=folded)
+        self.best_fold = Fold("foldBest", title, self.best, self.best.summary, folded)
         return self.best_fold
 
     def add(self):
@@ -226,21 +251,40 @@ class StudyPanel(RunPanel):
             self.show(None)
 
     def _take(self):
-        """The table's rows into the object. Raises InputError."""
+        """What the panel holds into the object, all of it that is right. Raises InputError for the first that is not."""
+        wrong = []
+        for take in (self._take_varied, self._take_correlated, self._take_best):
+            try:
+                take()
+            except InputError as error:
+                wrong.append(error)
+        if wrong:
+            raise wrong[0]
+
+    def _take_varied(self):
         entries = self.varied.entries()
-        studies.check_varied(entries)
-        text = json.dumps(entries) if entries else ""
-        if self.obj.Vary != text:
-            self.obj.Vary = text
+        varied = studies.check_varied(entries)
+        self._put("Vary", entries)
+        self.entries = entries
+        self.correlated.set_names([one.name for one in varied])
+
+    def _take_correlated(self):
+        self._put("Correlations", self.correlated.values())
+
+    def _take_best(self):
         asked = {
             k: v for k, v in self.obj.Proxy.settings(self.obj)["answers"].items() if k != "best"
         }
         best = self.best.wanted()
         if best is not None:
             asked["best"] = best
-        text = json.dumps(asked) if asked else ""
-        if self.obj.Asked != text:
-            self.obj.Asked = text
+        self._put("Asked", asked)
+
+    def _put(self, name, value):
+        """Sets a property of JSON, if that is another value."""
+        held, text = getattr(self.obj, name), json.dumps(value) if value else ""
+        if (json.dumps(json.loads(held)) if held else "") != text:
+            setattr(self.obj, name, text)
 
     def _open(self):
         self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
@@ -252,7 +296,7 @@ class StudyPanel(RunPanel):
         super()._arrange(running)
         self.begin.setVisible(not running)
         self.table.setVisible(not running and bool(self.obj.Fingerprint))
-        for widget in (self.varied_box, self.design, self.best_fold):
+        for widget in (self.varied_box, self.correlated_fold, self.design, self.best_fold):
             widget.setEnabled(not running)
 
     def reject(self):

@@ -95,7 +95,7 @@ class _Row(QtGui.QFrame):
         self.away.clicked.connect(lambda: self.gone())
         self.how = self._choices(HOWS, entry.get("how", "set"), 44)
         kind, text = _told(entry)
-        self.kind = self._choices(kinds(), kind, 96)
+        self.kind = self._choices(kinds(), kind, 88)
         self.values = QtGui.QLineEdit(text)
         self.values.setMinimumWidth(60)
         self.values.textChanged.connect(lambda _: self.changed())

@@ -16,7 +16,8 @@ constexpr double kTilted = 1e-5;
 // pose; else edges are looked at once more.
 constexpr double kPressable = 0.03;
 constexpr int kMaxPlacements = 12;
-constexpr double kAtStop = 1e-9;  // mm
+constexpr double kUnmapped = 0.02;  // share of the force that a belt may bear beyond the cells
+constexpr double kAtStop = 1e-9;    // mm
 // Share of the margin by which the wheel may move while it grinds at a place: samples further away
 // than that are not on its map.
 constexpr double kDrift = 0.5;
@@ -126,6 +127,10 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
             solution_ = contact_->solve(problem, start.size() > 0 ? &start : nullptr);
             // What it started from was of no use.
             if (!solution_.converged && start.size() > 0) solution_ = contact_->solve(problem);
+            // What the belt bears beyond the cells is not ground: that is no solution.
+            const double missed = std::abs(solution_.force - problem.force);
+            if (problem.force_control && missed > kUnmapped * problem.force)
+                solution_.converged = false;
             return;
         }
         const Eigen::ArrayXd tilt = tilt_by_approach(tool_.wheel, grid, map_.gap());
@@ -204,13 +209,17 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
         localise(blocks, tool_.margin);
         map_gap(blocks, tool_.margin, kPressable);
         if (!map_.empty()) solve_force(blocks, force);
-        if (map_.empty() || solution_.force <= 0.0) {
+        // A belt that cannot bear the force, however deep, goes as far as it may.
+        const bool yields =
+            tool_.flat && !map_.empty() && std::isfinite(map_.lowest()) && solution_.force <= 0.0;
+        if (!yields && (map_.empty() || solution_.force <= 0.0)) {
             // The surface fell away from where it was at the last pose.
             if (searched || !find_touch(blocks)) return nothing();
             searched = true;
             continue;
         }
-        double wanted = placed_ + solution_.approach;
+        double wanted =
+            yields ? std::numeric_limits<double>::infinity() : placed_ + solution_.approach;
         State state = State::kPressed;
         const double deepest = placed_ + map_.lowest() + largest_indentation_;
         if (wanted > deepest) {

@@ -168,6 +168,32 @@ TEST(BeltSimulation, TheTravelsEndIsTold) {
     EXPECT_TRUE(has(ground(field, along(25, 30), o), "force_not_reached"));
 }
 
+TEST(BeltSimulation, ABeltThatCannotBearTheForceGoesToTheTravelsEndAndIsTold) {
+    HeightField field = rod();
+    SimulationOptions o = free_belt();
+    o.process.machine.belt.tension = 0.05;
+    o.process.force = 200.0;
+    o.process.force_travel = 4.0;
+    const SimulationResult result = ground(field, along(25, 30), o);
+    EXPECT_TRUE(has(result, "force_not_reached"));
+    for (const StepRecord& step : result.steps) {
+        EXPECT_GT(step.force, 0.0);
+        EXPECT_NEAR(step.approach, 4.0, 1e-6);
+    }
+}
+
+TEST(BeltSimulation, WhatABeltBearsBeyondTheCellsIsNotPassedOver) {
+    // Between rollers that are 5 mm apart no cell lies clear of both.
+    HeightField field = testing::plate(40.0, 40.0, 0.6, 0.2);
+    SimulationOptions o = platen();
+    o.process.machine.run.length = 5.0;
+    o.process.machine.platen.length = 4.0;
+    const ToolPath path({pressing_down(20, 18, 0.2, 40.0), pressing_down(20, 22, 0.2, 40.0)}, {});
+    const SimulationResult result = ground(field, path, o);
+    EXPECT_LT(result.steps.front().force, 0.5 * o.process.force);
+    EXPECT_TRUE(has(result, "not_converged"));
+}
+
 TEST(BeltSimulation, ValuesThatAreNoneAreRefused) {
     HeightField field = rod();
     const auto refused = [&](const SimulationOptions& o) {

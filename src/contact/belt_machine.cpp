@@ -65,6 +65,21 @@ void Platen::validate() const {
         "platen: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
 }
 
+void BeltMachine::validate() const {
+    if (!free_face()) return;
+    belt.validate();
+    run.validate();
+    if (kind != Kind::kPlaten) return;
+    platen.validate();
+    if (platen.length + 2.0 * std::abs(run.position) > run.length) {
+        throw InputError(
+            "platen.beyond_rollers",
+            "platen: {platen:f} mm long, {position:f} mm from the middle, it does not "
+            "lie between the rollers, which are {length:f} mm apart",
+            {{"platen", platen.length}, {"position", run.position}, {"length", run.length}});
+    }
+}
+
 std::unique_ptr<ContactModel> make_belt_contact(const BeltMachine& machine) {
     switch (machine.kind) {
         case BeltMachine::Kind::kFreeBelt:

@@ -23,6 +23,13 @@ constexpr double kLessStress = 0.5;        // of a stress under which the sides 
 
 }  // namespace
 
+std::size_t BeltState::bytes() const {
+    constexpr std::size_t kOfPath = 8;  // numbers a column
+    const auto numbers =
+        static_cast<std::size_t>(deflection.size() + function.size() + load.size());
+    return (numbers + kOfPath * path.x.size()) * sizeof(double);
+}
+
 BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid,
                        Sheet sheet)
     : belt_(belt),
@@ -112,6 +119,12 @@ void BeltSolver::assemble(const Request& request, const BeltState& state,
     }
 }
 
+double BeltSolver::commanded(const Request& request, double lift) {
+    const ContactProblem& problem = *request.problem;
+    if (problem.force_control) return problem.force;
+    return (problem.approach - request.depth - lift) / problem.robot_compliance;
+}
+
 double BeltSolver::lift_for(const Request& request, const BeltState& state) const {
     const BeltColumns& columns = state.path.columns;
     const int n = columns.count(), m = spline_.count();
@@ -128,7 +141,9 @@ double BeltSolver::lift_for(const Request& request, const BeltState& state) cons
             rise += w * (cosine - deflection_at(columns, by_lift, k, i));
         }
     }
-    return rise > 0.0 ? (request.problem->force - force) / rise : 0.0;
+    const ContactProblem& problem = *request.problem;
+    if (!problem.force_control) rise += 1.0 / problem.robot_compliance;
+    return rise > 0.0 ? (commanded(request, 0.0) - force) / rise : 0.0;
 }
 
 double BeltSolver::work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
@@ -181,7 +196,7 @@ double BeltSolver::slope(const Request& request, const BeltPath& path, const Cel
                          const Cells& to, double share) const {
     const double lift = std::lerp(from.raised, to.raised, share);
     const double rises = to.raised - from.raised;
-    double sum = request.problem->force_control ? -rises * request.problem->force : 0.0;
+    double sum = yields(*request.problem) ? -rises * commanded(request, lift) : 0.0;
     for (int i = 0; i < path.columns.count(); ++i) {
         const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -245,9 +260,8 @@ double BeltSolver::follow_length(const Request& request, BeltState& state,
     // Under a given force, a larger pull lets the belt in less, which makes it shorter.
     const double slope = std::max(state.path.left_angle, state.path.right_angle);
     const bool stretches = run_.rollers == BeltRun::Rollers::kFixed;
-    const double gain = request.problem->force_control && stretches
-                            ? belt_.membrane() * slope * slope / state.pull
-                            : 0.0;
+    const double gain =
+        yields(*request.problem) && stretches ? belt_.membrane() * slope * slope / state.pull : 0.0;
     const double change = (pull - state.pull) / (1.0 + gain);
     state.pull += change;
     state.lean += kFollow * (lean - state.lean);
@@ -311,7 +325,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
             continue;
         }
         matrix_.solve(right_);
-        Cells now = solved(request, state, problem.force_control ? lift_for(request, state) : 0.0);
+        Cells now = solved(request, state, yields(problem) ? lift_for(request, state) : 0.0);
         const Eigen::MatrixXd whole =
             Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
             now.raised * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
@@ -336,10 +350,11 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         const double follow = kFollow / (1.0 + state.iterations / kPatience);
         if (request.backing == nullptr || sums.same)
             state.function += follow * (stress.function(state.deflection) - state.function);
-        const double off = problem.force_control ? std::abs(sums.along_z - problem.force) : 0.0;
+        const double force = yields(problem) ? std::abs(commanded(request, state.lift)) : 0.0;
+        const double off = yields(problem) ? std::abs(sums.along_z - force) : 0.0;
         state.converged = state.iterations > (follows ? 1 : kWarmUp) && sums.same &&
                           sums.change <= problem.tolerance * sums.total &&
-                          off <= problem.tolerance * problem.force && bears <= problem.tolerance &&
+                          off <= problem.tolerance * force && bears <= problem.tolerance &&
                           std::abs(stretch) <= problem.tolerance * state.pull;
         if (state.converged) break;
     }

@@ -41,6 +41,9 @@ struct BeltState {
     double lean = 0.0;           ///< N/mm more at the edge at +y
     int iterations = 0;
     bool converged = false;
+
+    /// Of memory, about.
+    std::size_t bytes() const;
 };
 
 /// Solves the contact of a belt about a path: Newton's method on where it touches (the face's
@@ -54,6 +57,10 @@ class BeltSolver {
     BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid, Sheet sheet);
 
     const std::vector<BeltRow>& rows() const { return rows_; }
+    /// The depth is not given, but what a force or a robot that gives way makes of it.
+    static bool yields(const ContactProblem& problem) {
+        return problem.force_control || problem.robot_compliance > 0.0;
+    }
     /// N/mm along a belt that is longer than the path by `elongated` mm.
     double pull_of(const BeltPath& path, double elongated) const;
     /// mm that the belt's face deflects by at the middles of a row and a column of the path.
@@ -63,6 +70,7 @@ class BeltSolver {
     struct Request {
         const ContactProblem* problem = nullptr;  ///< control, tolerance, iterations
         const BeltGap* gap = nullptr;             ///< as seen from the path
+        double depth = 0.0;  ///< mm that the work has been raised by in that gap
         /// Where pressure is expected, row by row of each column; empty: nothing is known.
         std::vector<std::uint8_t> touching = {};
         const BeltState* before = nullptr;  ///< to start from, if its columns are the same
@@ -82,6 +90,8 @@ class BeltSolver {
         bool same = true;
     };
     void assemble(const Request& request, const BeltState& state, const BeltForces& forces);
+    /// N that the work is pressed with where it has been lifted by so much.
+    static double commanded(const Request& request, double lift);
     /// mm that the work must rise for the force.
     double lift_for(const Request& request, const BeltState& state) const;
     /// What the last solution deflects by, and the forces of the springs that were on.
@@ -109,7 +119,8 @@ class BeltSolver {
                shear_ * path.turn[static_cast<std::size_t>(i)];
     }
     double spring(const Request& request, const BeltColumns& columns, int i, std::size_t k) const {
-        return face_ * request.gap->cover(static_cast<Eigen::Index>(k), i) * rows_[k].width *
+        const double face = face_ / (1.0 + face_ * request.problem->recession);
+        return face * request.gap->cover(static_cast<Eigen::Index>(k), i) * rows_[k].width *
                columns.width[static_cast<std::size_t>(i)];
     }
 

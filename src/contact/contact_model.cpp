@@ -65,6 +65,11 @@ void ContactProblem::validate(const ContactGrid& grid) const {
         throw InputError("contact.robot_compliance",
                          "contact: the robot's compliance must be zero or positive, in mm/N");
     }
+    if (!(recession >= 0.0) || !std::isfinite(recession)) {
+        throw InputError("contact.recession",
+                         "contact: what the surface recedes by under pressure must be zero or "
+                         "positive, in mm/MPa");
+    }
     if (!force_control && !std::isfinite(approach)) {
         throw InputError("contact.approach",
                          "contact: the commanded approach must be finite, in millimetres");

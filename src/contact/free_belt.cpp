@@ -37,6 +37,13 @@ class PreparedFreeBelt final : public PreparedContact {
         coarse_ = std::make_unique<PreparedFreeBelt>(half, description, belt, run);
     }
 
+    std::shared_ptr<const ContactMemory> memory() const override {
+        return std::make_shared<const Memory>(last_);
+    }
+    void remember(const std::shared_ptr<const ContactMemory>& memory) override {
+        if (const auto* last = dynamic_cast<const Memory*>(memory.get())) last_ = last->last;
+    }
+
   private:
     ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd* start) override;
     /// mm at which a string over the ridge presses with the force.
@@ -62,6 +69,14 @@ class PreparedFreeBelt final : public PreparedContact {
         BeltState state;
         double depth = 0.0;
     } last_;
+    struct Memory final : ContactMemory {
+        explicit Memory(const Last& given) : last(given) {}
+        std::size_t bytes() const override {
+            return static_cast<std::size_t>(last.pressure.size()) * sizeof(double) +
+                   last.state.bytes();
+        }
+        Last last;
+    };
 };
 
 int PreparedFreeBelt::coarse_cell(int cell) const {
@@ -93,7 +108,7 @@ Eigen::ArrayXd PreparedFreeBelt::rough(const ContactProblem& problem, double& de
             .select(half.gap / half.coverage.max(1e-300), std::numeric_limits<double>::infinity());
     half.coverage /= count.max(1.0);
     const ContactSolution solution = coarse_->solve(half);
-    if (solution.force > 0.0 && problem.force_control) depth = solution.approach;
+    if (solution.force > 0.0 && BeltSolver::yields(problem)) depth = solution.approach;
     Eigen::ArrayXd start(grid().cells());
     for (int c = 0; c < grid().cells(); ++c) start[c] = solution.pressure[coarse_cell(c)];
     return start;
@@ -153,7 +168,10 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     const bool warm = start != nullptr && last_.pressure.size() == start->size() &&
                       (*start == last_.pressure).all();
     double depth = problem.approach, pull = warm ? last_.state.pull : belt_.tension;
-    if (problem.force_control) depth = warm ? last_.depth : first_depth(problem, ridge);
+    if (problem.force_control)
+        depth = warm ? last_.depth : first_depth(problem, ridge);
+    else if (warm && BeltSolver::yields(problem))
+        depth = last_.depth;
     Eigen::ArrayXd guess;
     if (start != nullptr && (*start > 0.0).any())
         guess = *start;
@@ -165,11 +183,17 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     int iterations = 0;
     for (int k = 0;; ++k) {
         BeltPath path = belt_path(run_, path_request(ridge, depth, pull));
-        if (path.columns.count() == 0) return nothing;
+        if (path.columns.count() == 0) {
+            if (problem.force_control || depth >= problem.approach) return nothing;
+            depth = problem.approach;  // where a robot that gave way stands without the work
+            path = belt_path(run_, path_request(ridge, depth, pull));
+            if (path.columns.count() == 0) return nothing;
+        }
         const BeltGap gap = surface.seen_from(path, depth);
         BeltSolver::Request request;
         request.problem = &problem;
         request.gap = &gap;
+        request.depth = depth;
         if (guess.size() > 0) request.touching = pressed(path, guess);
         if (before.function.size() > 0) request.before = &before;
         state = solver_.solve(std::move(path), std::move(request));

@@ -41,6 +41,7 @@ double GapMap::beside_at(const BesidePatch& patch, const Eigen::ArrayXd& values)
 }
 
 double GapMap::volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside) const {
+    if (run_) return (rate * coverage_.share * stretch_).sum() * grid_.cell_area();
     const double within = (rate * coverage_.share).sum() * grid_.cell_area();
     if (reach_.size() == 0 || beside.size() != reach_.size()) return within;
     return within + (beside * reach_).sum() * grid_.ds;

@@ -15,6 +15,7 @@ constexpr double kLeastFacing = 0.05;
 constexpr int kGridQuantum = 8;    // grid lengths are multiples, so that warm starts mostly fit
 constexpr double kStraight = 0.3;  // tangent up to which a series gives the angle to 1e-9
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
+constexpr double kFlatLayer = 2.0;  // the same under a belt, which wraps slopes of up to 60 degrees
 
 /// atan2(x, along) for `along` > 0, of the angles under a wheel mostly by its series.
 double angle_of(double x, double along) {
@@ -61,7 +62,42 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     }
 }
 
+void GapMap::lie_flat(double from, double to) {
+    run_ = Run{from, to};
+    layer_ = whole_layer_ = kFlatLayer * std::max(grid_.ds, grid_.dy);
+}
+
+void GapMap::end_flat() {
+    if (!run_) return;
+    const int nx = grid_.nx;
+    for (int i = 0; i < nx; ++i) {
+        if (grid_.s(i) > run_->from && grid_.s(i) < run_->to) continue;
+        for (int cell = i; cell < grid_.cells(); cell += nx) {
+            gap_[cell] = kNone;
+            coverage_.share[cell] = 0.0;
+        }
+    }
+    // The slope to the neighbours that there are.
+    const auto slope = [&](int cell, int step, bool has_before, bool has_after) {
+        const bool before = has_before && std::isfinite(gap_[cell - step]);
+        const bool after = has_after && std::isfinite(gap_[cell + step]);
+        const double rise =
+            (after ? gap_[cell + step] : gap_[cell]) - (before ? gap_[cell - step] : gap_[cell]);
+        return before && after ? 0.5 * rise : rise;
+    };
+    stretch_.setOnes(grid_.cells());
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+        if (!std::isfinite(gap_[cell])) continue;
+        const int i = cell % nx, j = cell / nx;
+        const double along = slope(cell, 1, i > 0, i + 1 < nx) / grid_.ds;
+        const double across = slope(cell, nx, j > 0, j + 1 < grid_.ny) / grid_.dy;
+        const double most = 1.0 / static_cast<double>(kSteepest);
+        stretch_[cell] = std::min(std::sqrt(1.0 + along * along + across * across), most);
+    }
+}
+
 void GapMap::fit_grid(double half_length) {
+    if (run_) half_length = std::min(half_length, std::max(-run_->from, run_->to));
     const int half = static_cast<int>(std::ceil(half_length / grid_.ds)) + 1;
     grid_.nx = 2 * ((half + kGridQuantum - 1) / kGridQuantum * kGridQuantum) + 1;
     clear_grid();
@@ -226,7 +262,10 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
 void GapMap::map(const SampleBlocks& blocks, double pressable) {
     for (Footprint& f : footprints_)
         f.on_grid = f.nearest = std::abs(f.s) <= 0.5 * (grid_.nx - 1) * grid_.ds;
-    if (map_smooth(blocks, pressable)) return;
+    if (map_smooth(blocks, pressable)) {
+        end_flat();
+        return;
+    }
     gap_.setZero();
     weight_.setZero();
     nearest_.assign(static_cast<std::size_t>(grid_.cells()), kNone);
@@ -249,6 +288,7 @@ void GapMap::map(const SampleBlocks& blocks, double pressable) {
     coverage_.merge_slivers(grid_);
     share_cells();
     carry_to_middles();
+    end_flat();
 }
 
 bool GapMap::holds_for(const Eigen::ArrayXd& pressure) const {

@@ -101,6 +101,7 @@ double GapMap::step_between(const HeightField& field, std::span<NearStep> sample
 
 bool GapMap::find_low_steps(const SampleBlocks& blocks) {
     layer_ = whole_layer_;
+    if (run_) return false;  // a belt bridges them; its slopes are steep
     const auto cells = static_cast<std::size_t>(grid_.cells());
     const auto nx = static_cast<std::size_t>(grid_.nx);
     const std::size_t above = grid_.ny > 1 ? nx : 0;

@@ -112,6 +112,13 @@ class PreparedPlaten final : public PreparedContact {
             layers_ = layers->compliance({grid.nx, rows, grid.ds, belt.width / rows});
     }
 
+    std::shared_ptr<const ContactMemory> memory() const override {
+        return std::make_shared<const Memory>(last_);
+    }
+    void remember(const std::shared_ptr<const ContactMemory>& memory) override {
+        if (const auto* last = dynamic_cast<const Memory*>(memory.get())) last_ = last->last;
+    }
+
   private:
     ContactSolution do_solve(const ContactProblem& problem, const Eigen::ArrayXd* start) override {
         ContactSolution solution;
@@ -141,6 +148,7 @@ class PreparedPlaten final : public PreparedContact {
         BeltSolver::Request request;
         request.problem = &longer;
         request.gap = &gap;
+        request.depth = depth;
         request.backing = &backing;
         if (warm) request.before = &before;
         if (start != nullptr && (*start > 0.0).any()) request.touching = pressed(path, *start);
@@ -190,6 +198,15 @@ class PreparedPlaten final : public PreparedContact {
         Eigen::ArrayXd layers;
         double depth = 0.0;
     } last_;
+    struct Memory final : ContactMemory {
+        explicit Memory(const Last& given) : last(given) {}
+        std::size_t bytes() const override {
+            return static_cast<std::size_t>(last.pressure.size() + last.layers.size()) *
+                       sizeof(double) +
+                   last.state.bytes();
+        }
+        Last last;
+    };
 };
 
 }  // namespace

@@ -89,10 +89,58 @@ void take_heat(const py::dict& given, HeatRequest& heat) {
     refuse_rest(d, "heat");
 }
 
+BeltMachine machine_from(const py::dict& given) {
+    BeltMachine machine;
+    py::dict d = copy_of(given);
+    const auto kind = take<std::string>(d, "kind", "contact_wheel");
+    if (kind == "free_belt") {
+        machine.kind = BeltMachine::Kind::kFreeBelt;
+    } else if (kind == "platen") {
+        machine.kind = BeltMachine::Kind::kPlaten;
+    } else if (kind != "contact_wheel") {
+        throw InputError("call.belt_machine",
+                         "machine: there is no kind '{name}'; use contact_wheel, free_belt or "
+                         "platen",
+                         {{"name", kind}});
+    }
+    AbrasiveBelt& belt = machine.belt;
+    belt.width = take(d, "width", belt.width);
+    belt.thickness = take(d, "thickness", belt.thickness);
+    belt.youngs_modulus = take(d, "youngs_modulus", belt.youngs_modulus);
+    belt.poissons_ratio = take(d, "poissons_ratio", belt.poissons_ratio);
+    belt.tension = take(d, "tension", belt.tension);
+    belt.surface_stiffness = take(d, "surface_stiffness", belt.surface_stiffness);
+    machine.run.length = take(d, "length", machine.run.length);
+    machine.run.position = take(d, "position", machine.run.position);
+    if (take(d, "tensioned", false)) machine.run.rollers = BeltRun::Rollers::kTensioned;
+    machine.platen.length = take(d, "platen_length", machine.platen.length);
+    machine.platen.layer_surface_stiffness =
+        take(d, "layer_surface_stiffness", machine.platen.layer_surface_stiffness);
+    for (const auto& item : take(d, "layers", py::list())) {
+        py::dict l = copy_of(item.cast<py::dict>());
+        ContactModelParameters::Layer layer;
+        layer.thickness = take(l, "thickness", layer.thickness);
+        layer.youngs_modulus = take(l, "youngs_modulus", layer.youngs_modulus);
+        layer.poissons_ratio = take(l, "poissons_ratio", layer.poissons_ratio);
+        refuse_rest(l, "layers");
+        machine.platen.layers.push_back(layer);
+    }
+    refuse_rest(d, "machine");
+    return machine;
+}
+
+/// Of the belt, where that is pressed itself; else of the wheel.
+std::unique_ptr<ContactModel> contact_from(const py::dict& compliance,
+                                           const ProcessSettings& process) {
+    if (process.machine.free_face()) return make_belt_contact(process.machine);
+    return compliance_from(compliance, process.wheel, process.force);
+}
+
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
     o.process.wheel = wheel_from(wheel_given);
     py::dict d = copy_of(given);
+    o.process.machine = machine_from(take(d, "machine", py::dict()));
     o.process.force_control = take(d, "force_control", o.process.force_control);
     o.process.force = take(d, "force", o.process.force);
     o.process.force_travel = take(d, "force_travel", o.process.force_travel);
@@ -351,7 +399,7 @@ void bind_simulation(py::module_& m) {
             SimulationOptions o = options_from(wheel, options);
             o.outputs.recording = recording;
             o.outputs.checkpoints = checkpoints;
-            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
+            const auto elastic = contact_from(compliance, o.process);
             const auto removal = law_from(law);
             SimulationResult result;
             {
@@ -373,7 +421,13 @@ void bind_simulation(py::module_& m) {
         py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
         py::arg("options") = py::dict(), py::arg("context") = nullptr,
         py::arg("recording") = nullptr, py::arg("checkpoints") = nullptr,
-        "Grinds field along path; see simulation/simulation.h for units. A recording goes on with "
+        "Grinds field along path; see simulation/simulation.h for units. With the option machine, "
+        "a "
+        "dict of kind (free_belt, platen) and of what beltgrinding/belt_machine.h has (width, "
+        "thickness, youngs_modulus, poissons_ratio, tension, surface_stiffness; length, position, "
+        "tensioned; platen_length, layers, layer_surface_stiffness: mm, N/mm, MPa, MPa/mm), that "
+        "belt is pressed in place of the wheel, and compliance is not looked at. A recording goes "
+        "on with "
         "the path. With the options influence and force_influence: an Influence; else None. "
         "checkpoints: those of an earlier call with this field and these settings, to go on from "
         "as far as the paths are the same; they are this call's from then on. resumed: how many of "
@@ -383,7 +437,7 @@ void bind_simulation(py::module_& m) {
         [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,
            const py::dict& compliance, const py::dict& options) {
             const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
+            const auto elastic = contact_from(compliance, o.process);
             PoseContact contact;
             {
                 const py::gil_scoped_release release;
@@ -403,7 +457,7 @@ void bind_simulation(py::module_& m) {
            const py::dict& wheel, const py::dict& compliance, const py::dict& options,
            const RunContext* context) {
             const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = compliance_from(compliance, o.process.wheel, o.process.force);
+            const auto elastic = contact_from(compliance, o.process);
             std::vector<std::optional<PoseContact>> found;
             {
                 const py::gil_scoped_release release;

@@ -36,7 +36,8 @@ std::size_t Checkpoint::bytes() const {
            grinding.force_influence.bytes() + recording.bytes() + bytes_of(monitor.events) +
            static_cast<std::size_t>(contact.pressure.size() + contact.axial.size()) *
                sizeof(double) +
-           bytes_of(pressing.hits) + pressing.near.bytes();
+           bytes_of(pressing.hits) + pressing.near.bytes() +
+           (pressing.memory ? pressing.memory->bytes() : 0);
 }
 
 Checkpoint joined(const Checkpoint& before, const Checkpoint& next) {

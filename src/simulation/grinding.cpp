@@ -13,7 +13,8 @@ constexpr double kRecession = 0.1;
 constexpr int kMaxParts = 200;  // of a step
 // Relative: well above what a contact is solved to, and small enough for a derivative.
 constexpr double kMoreForce = 0.05;
-constexpr double kJoule = 1e-3;  // of a N mm
+constexpr double kJoule = 1e-3;          // of a N mm
+constexpr double kUsualPressure = 0.05;  // MPa, of a belt that has not touched yet
 
 }  // namespace
 
@@ -49,6 +50,19 @@ void Grinding::set_rate(const RemovalLaw& law, Eigen::ArrayXd& rate, Eigen::Arra
     if (pressure.longest() > 0.0) law.rate(pressure.beside, state_, beside);
 }
 
+void Grinding::expect(const PathStep& step, double duration) {
+    if (!pressing_.flat()) return;
+    const ContactSolution& contact = pressing_.solution();
+    const double area = contact.area > 0.0 ? contact.area : 1.0;
+    Eigen::ArrayXd pressure(1), rate;
+    pressure[0] = contact.force > 0.0 ? contact.force / area : kUsualPressure;
+    law_.rate(pressure,
+              {process_.belt_speed, process_.belt_wear * process_.wear.remaining(belt_), step.feed,
+               pressure[0] * area, area},
+              rate);
+    pressing_.recede(rate[0] * duration / pressure[0]);
+}
+
 double Grinding::removal(const PathStep& step) {
     if (pressing_.rigid()) return 0.0;
     const double fastest = set_rate(step);
@@ -69,6 +83,7 @@ double Grinding::grind(const PathStep& step, double share) {
         volume += remove(part);
         left -= part;
         if (left <= 1e-12 * step.duration) break;
+        expect(step, left);
         if (!press_again(step)) break;
         deepest_ = std::max(deepest_, pressing_.approach());
     }
@@ -88,6 +103,7 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel)
         double part = std::clamp(wheel.longest(left, step.force), std::min(least, left), left);
         if (pressed()) part = holds(part, std::min(least, part));
         wheel.begin(part, step.force);
+        expect(step, part);
         for (int stage = 0; stage < ForceActuator::kStages; ++stage) {
             const double time = part * wheel.press_stage(blocks_);
             if (!pressed()) continue;
@@ -137,7 +153,7 @@ double Grinding::remove(double part) {
     const ContactSolution& contact = pressing_.solution();
     if (heat_ != nullptr) {
         const Stopwatch watch(times_.heat);
-        heat_->press(map, pressing_.displaced_pressure(), contact.force, part);
+        heat_->press(map, pressing_.displaced_pressure(), pressing_.pressing_force(), part);
     }
     const Stopwatch watch(times_.removal);
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.
@@ -160,7 +176,7 @@ double Grinding::remove(double part) {
     }
     if (force_influence_) note_force(part);
     impulse_ += contact.force * part;
-    belt_.work += kJoule * contact.force * process_.belt_speed * part;
+    belt_.work += kJoule * pressing_.pressing_force() * process_.belt_speed * part;
     belt_.volume += removed;
     belt_.time += part;
     integrated_rate_ += map.volume_rate(rate_, beside_) * part;

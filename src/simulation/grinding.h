@@ -20,6 +20,9 @@ class Grinding {
     Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
              const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat = nullptr);
 
+    /// Tells a belt, before it is pressed, how much of the surface the law takes under its pressure
+    /// in `duration` s: about as much as at the last pose.
+    void expect(const PathStep& step, double duration);
     /// mm that the law takes during one step at the wheel's deepest place as it is pressed now, if
     /// the wheel follows the surface; one that stands cannot grind deeper than it stands: 0.
     double removal(const PathStep& step);

@@ -10,24 +10,17 @@
 namespace beltgrinding {
 namespace {
 
-// mm beyond the wheel's surface in which the gap is mapped: more than the approach may change
-// between two placements of the wheel, and enough for whole cells around the contact.
-constexpr double kMargin = 0.2;
-// mm: below this change of approach the gap need not be mapped anew: what the approach does to it
-// away from the wheel's middle is added to first order.
-constexpr double kPlacement = 0.05;
 // mm: where that was added for another approach, the pressed cells' gaps are wrong by no more.
 constexpr double kTilted = 1e-5;
 // mm: cells with larger gaps bear no pressure, as a rule, where the wheel stands as at the last
 // pose; else edges are looked at once more.
 constexpr double kPressable = 0.03;
 constexpr int kMaxPlacements = 12;
-constexpr double kAtStop = 1e-9;  // mm
-// mm by which the wheel may move while it grinds at a place: samples further away than the margin
-// are not on its map.
-constexpr double kDrift = 0.5 * kMargin;
-// Share of the radius ahead of the wheel's centre: what lies behind cannot be in the contact.
-constexpr double kAhead = 0.5;
+constexpr double kUnmapped = 0.02;  // share of the force that a belt may bear beyond the cells
+constexpr double kAtStop = 1e-9;    // mm
+// Share of the margin by which the wheel may move while it grinds at a place: samples further away
+// than that are not on its map.
+constexpr double kDrift = 0.5;
 
 }  // namespace
 
@@ -36,25 +29,35 @@ Pressing::Pressing(const ProcessSettings& process, double spacing, double tolera
     : process_(process),
       tolerance_(tolerance),
       model_(model),
-      map_(process.wheel, spacing, model.beside()),
-      growth_(process.force_control ? 0.0 : process.wheel_growth),
+      tool_(tool_envelope(process)),
+      map_(tool_.wheel, spacing, model.beside()),
+      growth_(process.force_control || tool_.flat ? 0.0 : process.wheel_growth),
       held_at_(growth_),
       give_(process.robot_stiffness > 0.0 ? 1.0 / process.robot_stiffness : 0.0),
-      largest_indentation_(std::min(model.thickness(), (1.0 - kAhead) * process.wheel.radius)) {}
+      largest_indentation_(std::min(model.thickness(), tool_.deepest)) {
+    if (tool_.flat) map_.lie_flat(tool_.from, tool_.to);
+}
 
 Pressing::Carried Pressing::carried() const {
     std::optional<ContactGrid> grid;
-    if (contact_) grid = contact_->grid();
-    return {solution_,  displaced_,  grid,       map_.carried(), near_,
-            hits_,      programmed_, placed_,    held_at_,       give_,
-            localised_, gap_,        stands_at_, warm_,          state_};
+    std::shared_ptr<const ContactMemory> memory;
+    if (contact_) {
+        grid = contact_->grid();
+        memory = contact_->memory();
+    }
+    return {solution_,   displaced_, grid,     map_.carried(), near_,      hits_,
+            programmed_, placed_,    held_at_, give_,          localised_, gap_,
+            stands_at_,  warm_,      state_,   memory};
 }
 
 void Pressing::carry(const Carried& carried) {
     solution_ = carried.solution;
     displaced_ = carried.displaced;
     contact_.reset();
-    if (carried.grid) contact_ = model_.prepare(*carried.grid);
+    if (carried.grid) {
+        contact_ = model_.prepare(*carried.grid);
+        contact_->remember(carried.memory);
+    }
     map_.carry(carried.map);
     near_ = carried.near;
     hits_ = carried.hits;
@@ -77,18 +80,18 @@ void Pressing::localise(const SampleBlocks& blocks, double margin) {
     const Stopwatch watch(times_.localise);
     const Frame frame = placed_frame();
     WheelReach reach;
-    reach.centre = frame * Vec3(0.0, 0.0, -process_.wheel.radius);
+    reach.centre = frame * Vec3(0.0, 0.0, -tool_.wheel.radius);
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
-    reach.radius = process_.wheel.radius + margin;
-    reach.half_width = 0.5 * (process_.wheel.width + blocks.field().spacing) + model_.beside();
-    reach.min_along = kAhead * process_.wheel.radius;
+    reach.radius = tool_.wheel.radius + margin;
+    reach.half_width = 0.5 * (tool_.wheel.width + blocks.field().spacing) + model_.beside();
+    reach.min_along = tool_.ahead;
     near_.find(blocks, reach, hits_);
 }
 
 void Pressing::map_gap(const SampleBlocks& blocks, double reach, double pressable) {
     const Stopwatch watch(times_.gap);
-    map_.update(blocks, hits_, placed_frame(), reach, kAhead * process_.wheel.radius, pressable);
+    map_.update(blocks, hits_, placed_frame(), reach, tool_.ahead, pressable);
 }
 
 void Pressing::solve_force(const SampleBlocks& blocks, double force) {
@@ -114,17 +117,30 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
         contact_.reset();  // its memory is taken again
         contact_ = model_.prepare(grid);
     }
-    problem.drop = profile_drop(process_.wheel, grid);
+    problem.drop = profile_drop(tool_.wheel, grid);
     problem.tolerance = tolerance_;
+    problem.recession = recession_;
     const auto solve_once = [&] {
         problem.coverage = map_.coverage();
-        const Eigen::ArrayXd tilt = tilt_by_approach(process_.wheel, grid, map_.gap());
-        double approach = warm_ ? std::clamp(stands_at_ - placed_, -kPlacement, kPlacement) : 0.0;
+        if (tool_.flat) {  // whose gap is the same wherever it stands
+            gap_ = problem.gap = map_.gap();
+            solution_ = contact_->solve(problem, start.size() > 0 ? &start : nullptr);
+            // What it started from was of no use.
+            if (!solution_.converged && start.size() > 0) solution_ = contact_->solve(problem);
+            // What the belt bears beyond the cells is not ground: that is no solution.
+            const double missed = std::abs(solution_.force - problem.force);
+            if (problem.force_control && missed > kUnmapped * problem.force)
+                solution_.converged = false;
+            return;
+        }
+        const Eigen::ArrayXd tilt = tilt_by_approach(tool_.wheel, grid, map_.gap());
+        const double most_tilt = tool_.placement;
+        double approach = warm_ ? std::clamp(stands_at_ - placed_, -most_tilt, most_tilt) : 0.0;
         for (bool again = true;;) {
             gap_ = map_.gap() + approach * tilt;
             problem.gap = gap_;
             solution_ = contact_->solve(problem, start.size() > 0 ? &start : nullptr);
-            if (!again || !(std::abs(solution_.approach) <= kPlacement)) break;
+            if (!again || !(std::abs(solution_.approach) <= tool_.placement)) break;
             if (solution_.pressure.size() != tilt.size()) break;  // a rigid tool
             const double most = (solution_.pressure > 0.0).select(tilt.abs(), 0.0).maxCoeff();
             if (std::abs(solution_.approach - approach) * most <= kTilted) break;
@@ -147,8 +163,8 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
 bool Pressing::find_touch(const SampleBlocks& blocks) {
     const double travel = process_.force_travel;
     placed_ = 0.0;
-    localise(blocks, travel + kMargin);
-    map_gap(blocks, travel + kMargin, std::numeric_limits<double>::infinity());
+    localise(blocks, travel + tool_.margin);
+    map_gap(blocks, travel + tool_.margin, std::numeric_limits<double>::infinity());
     if (map_.empty() || !(map_.lowest() <= travel)) return false;
     placed_ = std::clamp(map_.lowest(), -travel, travel);
     return true;
@@ -157,12 +173,12 @@ bool Pressing::find_touch(const SampleBlocks& blocks) {
 Pressing::State Pressing::press_position(const SampleBlocks& blocks) {
     placed_ = 0.0;
     for (int i = 0; i < kMaxPlacements; ++i) {
-        localise(blocks, kMargin);
-        map_gap(blocks, kMargin, kPressable);
+        localise(blocks, tool_.margin);
+        map_gap(blocks, tool_.margin, kPressable);
         solve_held(blocks);
         if (solution_.area <= 0.0) return State::kNoContact;
         // A rigid robot stands at its pose; another gives way, and the gap is mapped anew there.
-        if (std::abs(solution_.approach) <= kPlacement) break;
+        if (std::abs(solution_.approach) <= tool_.placement) break;
         placed_ += solution_.approach;
     }
     return State::kPressed;
@@ -190,16 +206,20 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
         searched = true;
     }
     for (int i = 0;; ++i) {
-        localise(blocks, kMargin);
-        map_gap(blocks, kMargin, kPressable);
+        localise(blocks, tool_.margin);
+        map_gap(blocks, tool_.margin, kPressable);
         if (!map_.empty()) solve_force(blocks, force);
-        if (map_.empty() || solution_.force <= 0.0) {
+        // A belt that cannot bear the force, however deep, goes as far as it may.
+        const bool yields =
+            tool_.flat && !map_.empty() && std::isfinite(map_.lowest()) && solution_.force <= 0.0;
+        if (!yields && (map_.empty() || solution_.force <= 0.0)) {
             // The surface fell away from where it was at the last pose.
             if (searched || !find_touch(blocks)) return nothing();
             searched = true;
             continue;
         }
-        double wanted = placed_ + solution_.approach;
+        double wanted =
+            yields ? std::numeric_limits<double>::infinity() : placed_ + solution_.approach;
         State state = State::kPressed;
         const double deepest = placed_ + map_.lowest() + largest_indentation_;
         if (wanted > deepest) {
@@ -213,13 +233,13 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
         // The last placement may be off by its remaining approach.
         const bool last = i + 1 >= kMaxPlacements;
         if (state == State::kPressed) {
-            if (last || std::abs(solution_.approach) <= kPlacement) return state;
-        } else if (const double near = state == State::kBeyondTravel ? kAtStop : kPlacement;
+            if (last || std::abs(solution_.approach) <= tool_.placement) return state;
+        } else if (const double near = state == State::kBeyondTravel ? kAtStop : tool_.placement;
                    last || std::abs(wanted - placed_) < near) {
             if (last) {
                 placed_ = wanted;
-                localise(blocks, kMargin);
-                map_gap(blocks, kMargin, kPressable);
+                localise(blocks, tool_.margin);
+                map_gap(blocks, tool_.margin, kPressable);
             }
             if (!map_.empty()) {
                 held_at_ = placed_;
@@ -237,7 +257,8 @@ std::optional<Pressing::Pressed> Pressing::with_force(double force) {
     const Stopwatch watch(times_.contact);
     ContactProblem problem;
     problem.gap = gap_;
-    problem.drop = profile_drop(process_.wheel, map_.grid());
+    problem.drop = profile_drop(tool_.wheel, map_.grid());
+    problem.recession = recession_;
     problem.coverage = map_.coverage();
     problem.force_control = true;
     problem.force = force;
@@ -253,11 +274,11 @@ Pressing::State Pressing::hold(const SampleBlocks& blocks, double place, double 
     state_ = State::kNoContact;
     for (int i = 0; i < kMaxPlacements; ++i) {
         // Heights only fall, so that what was found before has all that is in reach now.
-        if (!localised_ || std::abs(placed_ - *localised_) > kDrift) {
-            localise(blocks, kMargin + kDrift);
+        if (!localised_ || std::abs(placed_ - *localised_) > kDrift * tool_.margin) {
+            localise(blocks, (1.0 + kDrift) * tool_.margin);
             localised_ = placed_;
         }
-        map_gap(blocks, kMargin, kPressable);
+        map_gap(blocks, tool_.margin, kPressable);
         if (map_.empty()) {
             const bool there = placed_ == place;
             placed_ = place;
@@ -267,7 +288,7 @@ Pressing::State Pressing::hold(const SampleBlocks& blocks, double place, double 
             return state_;
         }
         solve_held(blocks);
-        if (std::abs(solution_.approach) <= kPlacement) break;
+        if (std::abs(solution_.approach) <= tool_.placement) break;
         placed_ += solution_.approach;
     }
     if (solution_.force > 0.0) state_ = State::kPressed;
@@ -276,7 +297,7 @@ Pressing::State Pressing::hold(const SampleBlocks& blocks, double place, double 
 
 Pressing::State Pressing::press_again(const SampleBlocks& blocks, double force) {
     if (state_ == State::kOverCompressed) return State::kMoved;  // it follows what recedes
-    map_gap(blocks, kMargin, kPressable);
+    map_gap(blocks, tool_.margin, kPressable);
     const bool at_stop = state_ == State::kBeyondTravel;
     if (process_.force_control && !at_stop) {
         solve_force(blocks, force);
@@ -288,7 +309,7 @@ Pressing::State Pressing::press_again(const SampleBlocks& blocks, double force) 
         const bool held = placed_ > 0.0 ? solution_.force <= force : solution_.force >= force;
         return held ? state_ : State::kMoved;
     }
-    if (std::abs(solution_.approach) > kDrift) return State::kMoved;
+    if (std::abs(solution_.approach) > kDrift * tool_.margin) return State::kMoved;
     if (!process_.force_control) return State::kPressed;
     const bool beyond = std::abs(placed_ + solution_.approach) > process_.force_travel ||
                         indentation() > largest_indentation_;

@@ -10,6 +10,7 @@
 #include "beltgrinding/simulation.h"
 #include "contact/gap_map.h"
 #include "heightfield/sample_blocks.h"
+#include "tool_envelope.h"
 
 namespace beltgrinding {
 
@@ -28,6 +29,12 @@ class Pressing {
     /// that it must be pressed anew.
     enum class State { kNoContact, kPressed, kBeyondTravel, kOverCompressed, kMoved };
 
+    /// mm/MPa by which the surface will recede while it is pressed, as of `ContactProblem`: from
+    /// here on. 0 for a wheel, which need not know.
+    void recede(double recession) { recession_ = recession; }
+    /// The tool is a belt that runs free or over a platen.
+    bool flat() const { return tool_.flat; }
+    const ToolEnvelope& tool() const { return tool_; }
     /// Presses at the programmed pose.
     State press(const SampleBlocks& blocks, const Frame& work_from_contact, double force);
     /// Solves again at the same place after the surface was lowered (no new localisation).
@@ -60,6 +67,12 @@ class Pressing {
     /// A rigid tool: `solution` has an area and no pressure.
     bool rigid() const { return model_.rigid(); }
     const ContactSolution& solution() const { return solution_; }
+    /// N, the integral of the pressure over the surface: the force, but where a belt is wrapped
+    /// round the work, whose sides press on one another.
+    double pressing_force() const {
+        return tool_.flat ? map_.volume_rate(displaced_.pressure, displaced_.beside)
+                          : solution_.force;
+    }
     /// Its pressure, where it acts.
     const DisplacedPressure& displaced_pressure() const { return displaced_; }
     /// mm by which the wheel reaches into the surface where that is highest.
@@ -100,6 +113,7 @@ class Pressing {
         double stands_at = 0.0;
         bool warm = false;
         State state = State::kNoContact;
+        std::shared_ptr<const ContactMemory> memory;  // of the model
     };
     Carried carried() const;
     /// Goes on from what another one carried, of the same process, model and field.
@@ -121,6 +135,8 @@ class Pressing {
     const ProcessSettings& process_;
     double tolerance_;
     const ContactModel& model_;
+    ToolEnvelope tool_;
+    double recession_ = 0.0;  // mm/MPa
     GapMap map_;
     std::unique_ptr<PreparedContact> contact_;  // on the grid of the last solution
     ContactSolution solution_;

@@ -46,6 +46,7 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     for (double& share : by_column) share /= total;
     centre /= total;
     note_edges(index, pressing, by_column);
+    if (pressing.flat()) return;
     const double tilt = std::abs(centre) / process_.wheel.radius;
     if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
     if (Event* event = note("tilted_contact", index, kDegrees * tilt)) {
@@ -88,7 +89,17 @@ void ProcessMonitor::note_edges(std::size_t index, const Pressing& pressing,
     if (event == nullptr) return;
     event->limit = 100.0 * even;
     const Arguments arguments = {{"share", share}, {"even", event->limit}};
-    if (more == 1) {
+    if (pressing.flat() && more == 1) {
+        event->facts = {{"event.belt_edge_at_plus_y",
+                         "the belt presses with its edge at +y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    } else if (pressing.flat()) {
+        event->facts = {{"event.belt_edge_at_minus_y",
+                         "the belt presses with its edge at -y: the outer tenth of its width "
+                         "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
+                         arguments}};
+    } else if (more == 1) {
         event->facts = {{"event.edge_at_plus_y",
                          "the wheel presses with its edge at +y: the outer tenth of its width "
                          "carries {share:.0f} % of the force there, {even:.0f} % if it were even",
@@ -139,7 +150,10 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     const GapMap::MeanSlope other = map.slope_near(blocks_, to.x(), to.y(), reach);
     const double closing = std::atan(one.slope[axis]) - std::atan(other.slope[axis]);
     const double span = (to - from).norm(), chord = other.place[axis] - one.place[axis];
-    const double radius = across ? process_.wheel.crown_radius : process_.wheel.radius;
+    const ContactWheel& wheel = pressing.tool().wheel;
+    // A belt is straight both ways.
+    const double round = pressing.flat() ? 0.0 : wheel.radius;
+    const double radius = across ? wheel.crown_radius : round;
     const double turn = radius > 0.0 ? 0.5 * chord / radius : 0.0;
     // Also false where a slope is not known.
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
@@ -152,7 +166,17 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     if (event == nullptr) return;
     if (radius > 0.0) event->limit = radius;
     const Arguments arguments = {{"radius", hollow}, {"span", span}};
-    if (across) {
+    if (pressing.flat() && across) {
+        event->facts = {{"event.belt_hollow_across",
+                         "across the belt, the surface is hollow with a radius of about "
+                         "{radius:.3g} mm: the belt spans {span:.3g} mm without touching",
+                         arguments}};
+    } else if (pressing.flat()) {
+        event->facts = {{"event.belt_hollow_along",
+                         "along its travel, the belt spans {span:.3g} mm without touching, where "
+                         "the surface is hollow with a radius of about {radius:.3g} mm",
+                         arguments}};
+    } else if (across) {
         event->facts = {{"event.hollow_across",
                          "across the wheel, the surface is hollow with a radius of about "
                          "{radius:.3g} mm: the wheel spans {span:.3g} mm without touching",
@@ -165,11 +189,11 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     }
     put(*event, pressing, middle.x(), middle.y());  // for the face
     // No sample is in reach there: it is the rim's point over the hollow.
-    const double angle = middle.x() / process_.wheel.radius;
-    const double r = process_.wheel.radius - process_.wheel.drop(middle.y());
+    const double angle = middle.x() / wheel.radius;
+    const double r = wheel.radius - wheel.drop(middle.y());
     event->point = steps_[index].work_from_contact *
                    Vec3(r * std::sin(angle), middle.y(),
-                        pressing.approach() - process_.wheel.radius + r * std::cos(angle));
+                        pressing.approach() - wheel.radius + r * std::cos(angle));
 }
 
 }  // namespace beltgrinding

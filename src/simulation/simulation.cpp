@@ -131,7 +131,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     if (options.outputs.trace) trace.emplace(blocks);
     std::optional<InfluenceKeeper> influence;
     if (options.outputs.influence) influence.emplace(blocks.heights());
-    const double cell = contact_cell(field, process.wheel, resolution);
+    const double cell = contact_cell(field, tool_envelope(process).wheel, resolution);
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
     {
@@ -171,6 +171,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         }
         if (keeper) keeper->look(running);
         const PathStep& step = steps.step();
+        grinding.expect(step, step.duration);
         const auto state = wheel ? wheel->look(blocks, step)
                                  : pressing.press(blocks, step.work_from_contact, step.force);
         const bool moving = wheel && wheel->moves();
@@ -323,7 +324,7 @@ std::vector<std::optional<PoseContact>> contacts_at(const HeightField& field, co
         PoseContact contact;
         contact.commanded = at.force >= 0.0 ? at.force : process.force;
         // One of its own each: a contact must not depend on the one before.
-        Pressing pressing(process, contact_cell(field, process.wheel, resolution),
+        Pressing pressing(process, contact_cell(field, tool_envelope(process).wheel, resolution),
                           resolution.contact_tolerance, model);
         const auto state = pressing.press(blocks, path.frames().work_from_contact(at.base_from_tcp),
                                           contact.commanded);

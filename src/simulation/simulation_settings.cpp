@@ -17,7 +17,11 @@ bool is_limit(double value) {
 }  // namespace
 
 void ProcessSettings::validate() const {
-    wheel.validate();
+    if (machine.free_face()) {
+        machine.validate();
+    } else {
+        wheel.validate();
+    }
     check_positive(belt_speed, "simulation.belt_speed",
                    "the belt speed must be positive and finite");
     if (force_control) {
@@ -30,7 +34,7 @@ void ProcessSettings::validate() const {
                          "lag, moving mass, damping and limit of speed of the force control must "
                          "be zero or positive, and finite");
     }
-    if (!is_limit(wheel_growth) || wheel_growth >= wheel.radius) {
+    if (!machine.free_face() && (!is_limit(wheel_growth) || wheel_growth >= wheel.radius)) {
         throw InputError("simulation.wheel_growth",
                          "the wheel's growth must be zero or positive, and less than its radius");
     }

@@ -167,6 +167,25 @@ SLOW = "robot"  # where bodies are followed: only for keys that begin so
 FOLLOWED = ("robot.", "cell.bodies", "cell.c", "cell.w")
 
 # Values of keys that no rule makes; functions of the folder of files. What changes with them: ALONG.
+BELT = {  # a machine for which the keys of a free belt and a platen count
+    "kind": "platen",
+    "force_N": 20,
+    "force_travel_mm": 8,
+    "free_run": {"width_mm": 8, "length_mm": 90},
+    "platen": {
+        "length_mm": 50,
+        "layers": [{"thickness_mm": 4, "youngs_modulus_MPa": 3, "poissons_ratio": 0.4}],
+    },
+}
+MACHINE = jobs.schema()["properties"]["belt_machine"]["properties"]
+BELT_KEYS = [
+    *(f"free_run.{name}" for name in MACHINE["free_run"]["properties"]),
+    *(f"platen.{name}" for name in MACHINE["platen"]["properties"] if name != "layers"),
+    *(
+        f"platen.layers.0.{name}"
+        for name in MACHINE["platen"]["properties"]["layers"]["items"]["properties"]
+    ),
+]
 VALUES = {
     "design.file": lambda folder: str(folder / "other.brep"),
     "design.brep": lambda _: OwnBrep(box(20.0, 13.0)[0]),
@@ -175,6 +194,7 @@ VALUES = {
     "stock.file": lambda folder: str(folder / "thick.ply"),
     "stock.brep": lambda _: OwnBrep(thick()[0]),
     "stock.kind": lambda _: "mesh",
+    "belt_machine.platen.length_mm": lambda _: 12.0,
     "belt_machine.compliance.surrogate_file": lambda folder: str(folder / "none.npz"),
     "belt_machine.wheel.crown_radius_mm": lambda _: 60.0,
     "programs.0.poses.0.qw": lambda _: 0.99874922,
@@ -218,6 +238,7 @@ ALONG = {  # keys that must come or go with a key
     **{
         f"heat.{name}": {"heat": HEAT} for name in jobs.schema()["properties"]["heat"]["properties"]
     },
+    **{f"belt_machine.{key}": {"belt_machine": copy.deepcopy(BELT)} for key in BELT_KEYS},
     "robot.preset": {"robot.model": {}},
     "programs.0.file": {"programs.0.poses": None},
     "programs.0.values": {"programs.0.poses": None, "programs.0.file": "pass.csv"},

@@ -210,6 +210,50 @@ TEST(FreeBelt, AStartAndThreadsDoNotMatter) {
     for (const ContactSolution& one : all) EXPECT_TRUE((one.pressure == cold.pressure).all());
 }
 
+TEST(FreeBelt, ASurfaceThatRecedesIsPressedAsBySofterGrains) {
+    const double recession = 0.002;  // mm/MPa
+    BeltMachine machine = free_belt(Rollers::kTensioned);
+    ContactProblem problem = problem_of(kGrid, sphere);
+    problem.force = 15.0;
+    problem.recession = recession;
+    const ContactSolution receding = press(machine, kGrid, problem);
+    machine.belt.surface_stiffness = 1.0 / (1.0 / machine.belt.surface_stiffness + recession);
+    problem.recession = 0.0;
+    const ContactSolution soft = press(machine, kGrid, problem);
+    EXPECT_TRUE(receding.converged);
+    EXPECT_NEAR(receding.approach, soft.approach, 1e-6);
+    EXPECT_LT((receding.pressure - soft.pressure).abs().sum(), 1e-6 * soft.pressure.sum());
+}
+
+TEST(FreeBelt, ARobotThatGivesWayStandsBackByItsForce) {
+    for (const Rollers rollers : {Rollers::kFixed, Rollers::kTensioned}) {
+        ContactProblem problem = at_depth(kGrid, 6.0, sphere);
+        problem.robot_compliance = 0.2;  // mm/N
+        const ContactSolution held = press(free_belt(rollers), kGrid, problem);
+        EXPECT_TRUE(held.converged);
+        EXPECT_GT(held.force, 1.0);
+        EXPECT_NEAR(held.approach, 6.0 - 0.2 * held.force, 1e-3 * 6.0);
+        const ContactSolution rigid =
+            press(free_belt(rollers), kGrid, at_depth(kGrid, held.approach, sphere));
+        EXPECT_NEAR(held.force, rigid.force, 1e-3 * rigid.force);
+    }
+}
+
+TEST(FreeBelt, GoesOnFromWhatAnotherOneRemembers) {
+    const auto model = make_belt_contact(free_belt(Rollers::kFixed));
+    ContactProblem problem = problem_of(kGrid, sphere);
+    problem.force = 12.0;
+    const auto first = model->prepare(kGrid), second = model->prepare(kGrid);
+    const ContactSolution begun = first->solve(problem);
+    second->remember(first->memory());
+    EXPECT_GT(first->memory()->bytes(), sizeof(double) * kGrid.cells());
+    problem.gap += 0.1;
+    const ContactSolution a = first->solve(problem, &begun.pressure);
+    const ContactSolution b = second->solve(problem, &begun.pressure);
+    EXPECT_EQ(a.approach, b.approach);
+    EXPECT_TRUE((a.pressure == b.pressure).all());
+}
+
 TEST(FreeBelt, WithoutWorkOrForceThereIsNoContact) {
     const auto contact = make_belt_contact(free_belt(Rollers::kFixed))->prepare(kGrid);
     ContactProblem problem = problem_of(kGrid, [](double, double) { return kBeside; });

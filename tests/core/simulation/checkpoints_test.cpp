@@ -49,6 +49,7 @@ struct Setting {
     /// A rim takes seconds to be solved: one for all runs of a setting.
     const ContactModel& model() const {
         const ProcessSettings& process = options.process;
+        if (!made && process.machine.free_face()) made = make_belt_contact(process.machine);
         if (!made) made = make_contact_model(wheel, process.wheel, process.force);
         return *made;
     }
@@ -262,6 +263,23 @@ TEST(Checkpoints, WheelsThatAreElasticAsAWhole) {
     s.wheel.rim_thickness = 10.0;
     s.options.process.wheel.profile = {{-4.0, 0.15}, {0.0, 0.0}, {4.0, 0.1}};
     expect_the_same_from_checkpoints(s);
+}
+
+TEST(Checkpoints, BeltsThatRunFreeOrOverAPlaten) {
+    Setting s = setting();
+    s.options.process.force = 6.0;
+    s.options.process.machine.belt.width = 8.0;
+    s.options.process.machine.run.length = 90.0;
+    s.options.process.machine.platen.length = 50.0;
+    s.options.process.machine.platen.layers = {{4.0, 2.0, 0.4}};
+    s.options.resolution.contact_spacing = 2.0;
+    s.options.resolution.max_travel = 6.0;
+    s.options.resolution.max_angle = 0.3;
+    for (const auto kind : {BeltMachine::Kind::kFreeBelt, BeltMachine::Kind::kPlaten}) {
+        s.made.reset();
+        s.options.process.machine.kind = kind;
+        expect_the_same_from_checkpoints(s);
+    }
 }
 
 TEST(Checkpoints, BeltsThatWear) {

@@ -63,13 +63,19 @@ def word(code, text, language):
 
 
 def body(name, language):
-    """The name of a body of the cell: those of wheel, part, stock and arm are ours, the others the user's."""
+    """The name of a body of the cell: those of machine, part, stock and arm are ours, the others the user's."""
     if name == "wheel":
         return word("body.wheel", "wheel", language)
     if name == "part":
         return word("body.part", "part", language)
     if name == "stock":
         return word("body.stock", "stock", language)
+    if name == "roller_before":
+        return word("body.roller_before", "roller before the contact", language)
+    if name == "roller_behind":
+        return word("body.roller_behind", "roller behind the contact", language)
+    if name == "platen":
+        return word("body.platen", "platen", language)
     if name == "robot foot":
         return word("body.robot_foot", "robot foot", language)
     if name.startswith("robot link "):

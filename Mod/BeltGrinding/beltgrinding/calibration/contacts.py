@@ -10,6 +10,7 @@ import numpy as np
 
 from ..contact import single_contact
 from ..engine import InputError, core
+from ..job import machine as machines
 
 SHARES = 32  # equal parts of the contact's area, by falling pressure
 SPACING, LEAST_SPACING = 0.5, 0.06  # mm, of the grid
@@ -26,6 +27,13 @@ ASSUMED = "wheel_rim"  # elasticity, unless a machine says another
 def of_machine(machine):
     """What a job's validated belt_machine says of the contact of its grinds: keys of a contact's file.
     Raises InputError where it has no pressure."""
+    if machines.kind(machine) != machines.WHEEL:
+        raise InputError(
+            "calibration.no_wheel",
+            "calibration: contacts are solved of contact wheels only, and the job's belt machine is a {kind}; give "
+            "the contact's area in the table, or a job with a contact wheel",
+            kind=machines.kind(machine),
+        )
     wheel, compliance = machine["wheel"], machine["compliance"]
     if compliance["model"] == "geometric":
         raise InputError(

@@ -1,7 +1,8 @@
 """Bodies of the cell, and whether they run into each other on the way.
 
 A job's ``cell.bodies`` says which there are (job.schema.json); the part and the wheel are always among
-them. The part is its whole shape with its stock; the wheel is what lies behind the rim.
+them. The part is its whole shape with its stock; the wheel is what lies behind the rim. A free belt has
+two rollers in place of the wheel, a platen its plate as well.
 """
 
 import math
@@ -10,8 +11,8 @@ import numpy as np
 
 from ..base import frames, kept
 from ..engine import InputError, core
-from ..job import workpiece
-from ..job.bodies import PART, STOCK, WHEEL
+from ..job import machine as machines, workpiece
+from ..job.bodies import PART, PLATE, ROLLERS, STOCK, WHEEL
 from ..job.poses import program_name
 from ..presets import robot as robots, robot_shape
 from . import tool_path
@@ -98,9 +99,13 @@ def bodies(job, shape, warnings, context=None):
         mesh = read_body(stock, "stock", warnings, context)
         grown = max(0.0, stock["offset_mm"])
         found.append({"name": STOCK, "frame": "part", "mesh": mesh, "margin": grown})
-    disc = wheel_body(job["belt_machine"]["wheel"], job["cell"]["wheel_inset_mm"])
-    if disc is not None:
-        found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
+    machine = job["belt_machine"]
+    if machines.kind(machine) == machines.WHEEL:
+        disc = wheel_body(machine["wheel"], job["cell"]["wheel_inset_mm"])
+        if disc is not None:
+            found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
+    for name, mesh in machine_bodies(machine):
+        found.append({"name": name, "frame": "wheel", "mesh": mesh})
     for body in job["cell"]["bodies"]:
         mesh = read_body(body, body["name"], warnings, context)
         found.append({"name": body["name"], "frame": body["frame"], "mesh": mesh})
@@ -190,6 +195,40 @@ def wheel_body(wheel, inset):
     triangles = np.where(triangles % count == 0, 0, triangles)
     triangles = np.where(triangles % count == count - 1, count - 1, triangles)
     return core.TriangleMesh(points.reshape(-1, 3).astype(np.float32), triangles.astype(np.uint32))
+
+
+def machine_bodies(machine):
+    """[(name, core.TriangleMesh in the contact frame)] of a job's free belt or platen: its rollers, with the belt round
+    their outer sides, and the plate behind the layers. Of a contact wheel none. The belt itself gives way.
+    """
+    if machines.kind(machine) == machines.WHEEL:
+        return []
+    run = machine["free_run"]
+    radius, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
+    found = []
+    if radius > 0.0:
+        roller = {"radius_mm": radius, "width_mm": run["width_mm"]}
+        mesh = wheel_body({**roller, "crown_radius_mm": 0.0, "profile_mm": []}, 0.0)
+        for name, side in zip(ROLLERS, (-1.0, 1.0)):
+            middle = side * 0.5 * run["length_mm"] - run["position_mm"]
+            # The belt's inner face lies on them.
+            place = [middle, 0.0, -run["thickness_mm"]]
+            points = mesh.vertices + np.array(place, dtype=np.float32)
+            found.append((name, core.TriangleMesh(points, mesh.triangles)))
+    if machines.kind(machine) == machines.PLATEN:
+        platen = machine["platen"]
+        behind = run["thickness_mm"] + sum(layer["thickness_mm"] for layer in platen["layers"])
+        low = [-0.5 * platen["length_mm"], -half, -behind - platen["plate_thickness_mm"]]
+        high = [0.5 * platen["length_mm"], half, -behind]
+        found.append((PLATE, _box(low, high)))
+    return found
+
+
+def _box(low, high):
+    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    triangles = [[a, b, c] for a, b, c, _ in quads] + [[a, c, d] for a, _, c, d in quads]
+    return core.TriangleMesh(corners.astype(np.float32), np.array(triangles, dtype=np.uint32))
 
 
 def _chord_angle(radius):

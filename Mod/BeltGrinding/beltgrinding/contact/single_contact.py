@@ -9,7 +9,7 @@ from ..base import schemas
 from ..base.files import cannot_be_written, either, in_file, write_whole
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
-from ..job import engine_input
+from ..job import engine_input, machine as machines
 from ..job.workpiece import apply_stock, make_field, read_design
 from ..presets import rubber
 
@@ -209,6 +209,8 @@ def rim_of(wheel_radius_mm, elasticity):
 def rim(contact):
     """The rim of a validated contact, or of a validated job."""
     if "belt_machine" in contact:
+        what = core.Fact("contact.finite_elements", "contacts are solved by finite elements")
+        machines.need_wheel(contact, what)
         machine = contact["belt_machine"]
         return rim_of(machine["wheel"]["radius_mm"], machine["compliance"])
     wheel = contact["wheel"]

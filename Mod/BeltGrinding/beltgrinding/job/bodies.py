@@ -5,12 +5,13 @@ from ..engine import InputError
 from ..presets.robot_shape import LINKS
 
 PART, STOCK, WHEEL = "part", "stock", "wheel"
+ROLLERS, PLATE = ("roller_before", "roller_behind"), "platen"  # of a belt without a wheel
 RESERVED = (PART, STOCK, WHEEL, *LINKS)  # names of the bodies that every cell has
 
 
-def validate(bodies):
-    """Raises InputError for what the schema cannot say of a job's bodies."""
-    names = list(RESERVED)
+def validate(bodies, more=()):
+    """Raises InputError for what the schema cannot say of a job's bodies. ``more``: names that are taken besides."""
+    names = [*RESERVED, *more]
     for i, body in enumerate(bodies):
         if ("file" in body) == ("brep" in body):
             raise InputError(

@@ -3,7 +3,7 @@
 import math
 
 from ..engine import InputError
-from . import law as laws
+from . import law as laws, machine as machines
 
 TONNES_PER_KG = 1e-3  # t: N s2/mm
 TONNES_PER_MM3 = 1e-12  # of kg/m3
@@ -67,6 +67,8 @@ def wheel_growth(machine):
     force control and for a rigid tool.
     """
     compliance = machine["compliance"]
+    if machines.kind(machine) != machines.WHEEL:
+        return 0.0
     if machine["control"] == "force" or compliance["model"] == "geometric":
         return 0.0
     layers = compliance["layers"] or [
@@ -107,10 +109,14 @@ def force_dynamics(machine):
 
 
 def engine_arguments(job):
-    """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad."""
+    """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad. Of a free belt or a platen the
+    compliance is empty, and the options have a ``machine``."""
     machine = job["belt_machine"]
     wheel = {name[:-3]: value for name, value in machine["wheel"].items()}
-    if job["law"]["model"] == "geometric":
+    wheel_presses = machines.kind(machine) == machines.WHEEL
+    if not wheel_presses:
+        compliance = {}
+    elif job["law"]["model"] == "geometric":
         compliance = {"model": "geometric"}
     else:
         compliance = compliance_arguments(machine["compliance"], wheel)
@@ -121,7 +127,7 @@ def engine_arguments(job):
         "force_travel": float(machine["force_travel_mm"]),
         "robot_stiffness": float(machine["robot_stiffness_N_per_mm"]),
         "force_dynamics": force_dynamics(machine),
-        "wheel_growth": 0.0 if job["law"]["model"] == "geometric" else wheel_growth(machine),
+        "wheel_growth": wheel_growth(machine) if compliance.get("model") != "geometric" else 0.0,
         "belt_speed": 1000.0 * machine["belt_speed_m_s"],
         "belt_wear": float(machine["belt_wear"]),
         "wear": laws.engine_wear(job["law"]),
@@ -136,4 +142,6 @@ def engine_arguments(job):
         "max_travel": float(job["simulation"]["max_travel_mm"]),
         "max_angle": math.radians(job["simulation"]["max_angle_deg"]),
     }
+    if not wheel_presses:
+        options["machine"] = machines.engine_machine(machine)
     return wheel, compliance, law, options

@@ -9,7 +9,7 @@ from ..base import schemas
 from ..base.files import absolute, in_file
 from ..engine import InputError
 from ..presets import robot as robots
-from . import bodies as job_bodies
+from . import bodies as job_bodies, machine
 from .tolerances import check_zones
 
 
@@ -51,6 +51,8 @@ def validate(job, folder="."):
                 "{key}: the least value is more than the greatest",
                 key=f"heat.{name}",
             )
+    machine.filled(job["belt_machine"], schema()["properties"]["belt_machine"])
+    machine.check(job)
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])
@@ -71,7 +73,9 @@ def validate(job, folder="."):
             "{key}: a solid stock needs exactly one of 'file' or 'brep'",
             key="stock",
         )
-    job_bodies.validate(job["cell"]["bodies"])
+    wheel = machine.kind(job["belt_machine"]) == machine.WHEEL
+    more = () if wheel else (*job_bodies.ROLLERS, job_bodies.PLATE)
+    job_bodies.validate(job["cell"]["bodies"], more)
     robots.validate(job["robot"])
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:

@@ -292,10 +292,10 @@ def _widths(field):
 
 def _contact(job, curvature):
     """(length along the belt's travel, breadth along the wheel's axis) in mm of the contact on a cylinder of
-    ``curvature``, the lesser of those along and across its axis; None for a rigid tool or where it cannot
-    be found."""
+    ``curvature``, the lesser of those along and across its axis; None for a rigid tool, for a belt without a wheel, or where
+    it cannot be found."""
     wheel, compliance, _, options = engine_input.engine_arguments(job)
-    if compliance["model"] == "geometric":
+    if "machine" in options or compliance["model"] == "geometric":
         return None
     given = wheel, compliance, options["force"], options["contact_spacing"], curvature
     return kept.get("contact", lambda: given, lambda: _extents(*given), lambda _: SMALL)

@@ -10,9 +10,9 @@ import Part
 
 from ..base import schemas
 from ..base.files import cannot_be_written, write_whole
-from ..engine import InputError
+from ..engine import InputError, core
 from ..examples import blade, knife, tap, vane
-from ..job import load as jobs, workpiece
+from ..job import load as jobs, machine as machines, workpiece
 from ..job.poses import listed_poses
 from ..programs import given
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
@@ -64,6 +64,7 @@ def _relative(path, folder):
 def open_job(doc, path):
     """Makes the objects of a job.json in a document; returns the job."""
     data = jobs.load(path)
+    machines.need_wheel(data, core.Fact("objects.documents", "documents of FreeCAD work"))
     made = []
     try:
         return _open_job(doc, data, Path(path), made)

@@ -11,7 +11,7 @@ import numpy as np
 from ..base import schemas
 from ..base.files import in_file
 from ..engine import InputError, core
-from ..job import engine_input, load as jobs, spacing as sampling
+from ..job import engine_input, load as jobs, machine as machines, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
 from . import around, direction, filling, footprint, passes, path_check, reachable, region
@@ -68,6 +68,7 @@ def raster(job, settings, context=None):
     InputError, Cancelled.
     """
     settings = validate(settings)
+    machines.need_wheel(job, core.Fact("raster.passes", "passes are laid"))
     context = context or core.RunContext()
     shape = read_design(job["design"], context)
     chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ..job import machine as machines
 from ..job.poses import program_name
 
 MOST_FACES = 12  # named one by one
@@ -109,8 +110,11 @@ def process(job, summary, words):
         shape += ", " + words("turned to a profile")
     elif wheel["crown_radius_mm"]:
         shape += ", " + words("crown radius {mm} mm", mm=words.figures(wheel["crown_radius_mm"]))
-    rows.append((words("Contact wheel"), shape))
-    rows.append((words("Elasticity"), _elasticity(machine["compliance"], words)))
+    if machines.kind(machine) == machines.WHEEL:
+        rows.append((words("Contact wheel"), shape))
+        rows.append((words("Elasticity"), _elasticity(machine["compliance"], words)))
+    else:
+        rows += _belt(machine, words)
     if machine["control"] == "force":
         control = words(
             "force control, {force} N unless the program says otherwise",
@@ -169,6 +173,34 @@ def _dynamics(dynamics, words):
         mass=words.figures(dynamics["moving_mass_kg"]),
         lag=lag,
     )
+
+
+def _belt(machine, words):
+    """Rows of a free belt or a platen."""
+    run, kind = machine["free_run"], machines.kind(machine)
+    text = words(
+        "{width} mm wide, {thickness} mm thick, E {modulus} MPa",
+        width=words.figures(run["width_mm"]),
+        thickness=words.figures(run["thickness_mm"]),
+        modulus=words.figures(run["youngs_modulus_MPa"]),
+    )
+    rollers = {
+        "fixed": words("fixed rollers"),
+        "tensioned": words("rollers that keep the pull"),
+    }
+    text += "; " + words(
+        "{tension} N/mm over {length} mm, {rollers}",
+        tension=words.figures(run["tension_N_per_mm"]),
+        length=words.figures(run["length_mm"]),
+        rollers=rollers[run["rollers"]],
+    )
+    rows = [(words("Free belt") if kind == machines.FREE_BELT else words("Belt"), text)]
+    if kind == machines.PLATEN:
+        platen = machine["platen"]
+        text = words("{length} mm long", length=words.figures(platen["length_mm"]))
+        text += ", " + words("{count} layers", count=len(platen["layers"]))
+        rows.append((words("Platen"), text))
+    return rows
 
 
 def _elasticity(compliance, words):

@@ -202,7 +202,11 @@ def _section(words):
 def _wheel(about, words):
     if about["wheel"] is None:
         return element(
-            "p", words("The programs cannot be read any more; no wheel is shown."), class_="notes"
+            "p",
+            words(
+                "No wheel is shown: the programs cannot be read any more, or the machine has none."
+            ),
+            class_="notes",
         )
     final = words("Heights and colours are those at the end.")
     if about["traced"]:

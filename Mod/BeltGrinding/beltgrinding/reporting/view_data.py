@@ -14,6 +14,7 @@ from ..cell import tool_path as tool_paths
 from ..cell.collision import wheel_profile
 from ..engine import InputError, core
 from ..inspection import picture, verdict as verdicts
+from ..job import machine as machines
 from ..job.poses import program_name
 from ..job.workpiece import frame_of
 from . import view_mesh, view_modes
@@ -186,7 +187,10 @@ def _motions(result, chosen, packed, words):
 
 
 def _wheel(job, packed, words):
-    """The wheel and its way over the work; None where the programs cannot be read any more."""
+    """The wheel and its way over the work; None where the programs cannot be read any more, or of a machine without
+    a wheel."""
+    if machines.kind(job["belt_machine"]) != machines.WHEEL:
+        return None
     try:
         paths = [tool_paths.tool_path(job, i, []) for i in range(len(job["programs"]))]
     except InputError:

@@ -65,6 +65,11 @@ struct BeltMachine {
     AbrasiveBelt belt;                ///< free belt, platen
     BeltRun run;                      ///< free belt, platen: its rollers
     Platen platen;                    ///< platen
+
+    /// The belt is not wrapped round a wheel where it is pressed: a free belt, a platen.
+    bool free_face() const { return kind == Kind::kFreeBelt || kind == Kind::kPlaten; }
+    /// Throws InputError naming the value that is none; of wheels, nothing is looked at.
+    void validate() const;
 };
 
 /// The contact model of a free belt or a platen. The gap of its problems is that to the flat belt

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <string>
@@ -46,6 +47,10 @@ struct ContactProblem {
     double approach = 0.0;      ///< mm, commanded (position control)
     /// mm/N by which the robot gives way under the contact's force (position control); 0: rigid
     double robot_compliance = 0.0;
+    /// mm/MPa by which the surface recedes while it is pressed, of belts: an abrasive takes what is
+    /// pressed most first. The pressure is that at the end of the time it is over, which a stiff
+    /// belt needs: its pressure on a cell changes wholly with some 1e-4 mm.
+    double recession = 0.0;
     double tolerance = 1e-4;   ///< relative error of the pressure field, L1
     int max_iterations = 500;  ///< then it has not converged
 
@@ -67,6 +72,19 @@ struct ContactSolution {
     Eigen::ArrayXXd axial;
 };
 
+/// What a prepared contact knows of its last solution beyond that.
+class ContactMemory {
+  public:
+    virtual ~ContactMemory() = default;
+    ContactMemory(const ContactMemory&) = delete;
+    ContactMemory& operator=(const ContactMemory&) = delete;
+    /// Of memory, about.
+    virtual std::size_t bytes() const = 0;
+
+  protected:
+    ContactMemory() = default;
+};
+
 /// A contact model on one grid, with the work space to solve there: one thread at a time. It needs
 /// the model that prepared it no longer.
 class PreparedContact {
@@ -82,6 +100,11 @@ class PreparedContact {
     /// `start`, if not null, is a pressure (MPa per cell) to start from. Throws InputError for a
     /// problem that is none, or not of this grid.
     ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd* start = nullptr);
+    /// For another one, of the same model and grid, to go on from to the last bit. Null: the
+    /// pressure is all.
+    virtual std::shared_ptr<const ContactMemory> memory() const { return nullptr; }
+    /// Goes on from what another one remembered.
+    virtual void remember(const std::shared_ptr<const ContactMemory>&) {}
 
   protected:
     /// Throws InputError for a grid that is none.

@@ -33,6 +33,10 @@ class GapMap {
     /// mm beyond the wheel's side faces up to which samples are kept for what bulges out there.
     GapMap(const ContactWheel& wheel, double spacing, double beside = 0.0);
 
+    /// The wheel, a very large one, stands for a belt, which is flat until it is pressed: its gap
+    /// is the depth below a plane, far steeper slopes are of one layer, and there is nothing beyond
+    /// its free run from `from` to `to`, mm along the travel.
+    void lie_flat(double from, double to);
     /// Looks once at the borders of a field and the form of its samples' patches, which `update`
     /// does otherwise.
     void prepare(const HeightField& field) { find_borders(field); }
@@ -65,7 +69,8 @@ class GapMap {
 
     /// What bears pressure beyond the side faces from now on, until the next update.
     void reach_beside(const DisplacedPressure& pressure);
-    /// mm3/s of `rate`, mm/s per cell, and of `beside`, mm/s as `DisplacedPressure::beside`.
+    /// mm3/s of `rate`, mm/s per cell along the surface's normal, and of `beside`, mm/s as
+    /// `DisplacedPressure::beside`.
     double volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside) const;
 
     /// Lowers heights by the removal of `rate` (mm/s per cell), and of `beside` (mm/s, as
@@ -249,6 +254,8 @@ class GapMap {
     Patch patch_of(const Footprint& f, const HeightField& field) const;
     /// Of a regular lane, what the envelope needs to know.
     static Footprint footprint_of(const SampleBlocks& blocks, const PlacedBlock& placed, int lane);
+    /// Of a belt: what lies beyond its free run is no surface; `stretch_` of the others.
+    void end_flat();
     /// Finds the four cells.
     void put_on_grid(Footprint& f) const;
     /// Of the regular lane of a placed block, mm: where it lies.
@@ -287,6 +294,11 @@ class GapMap {
 
     ContactWheel wheel_;
     double steepest_flank_ = 0.0;  // of the wheel's profile, mm per mm of width
+    struct Run {
+        double from, to;  // mm
+    };
+    std::optional<Run> run_;  // of a belt
+    Eigen::ArrayXd stretch_;  // of a belt: mm2 of surface by mm2 of its cells' plane; else empty
     Frame contact_from_work_ = Frame::Identity();
     ContactGrid grid_;
     double whole_layer_ = 0.0;  // mm: steps as high are told without looking for them

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "beltgrinding/belt_machine.h"
 #include "beltgrinding/belt_wear.h"
 #include "beltgrinding/contact_model.h"
 #include "beltgrinding/contact_wheel.h"
@@ -56,7 +57,11 @@ struct ForceDynamics {
 
 /// How the wheel is pressed and the belt runs: what decides what is ground.
 struct ProcessSettings {
-    ContactWheel wheel;            ///< its shape
+    ContactWheel wheel;  ///< its shape
+    /// A free belt or a platen is pressed in place of the wheel, whose shape is then of no account:
+    /// the contact frame's origin lies on the face of the belt that touches nothing. The contact
+    /// model must be the machine's (`make_belt_contact`).
+    BeltMachine machine;
     bool force_control = true;     ///< else the wheel keeps to the programmed poses
     double force = 50.0;           ///< N, where the path has none
     double force_travel = 5.0;     ///< mm, how far force control moves the wheel along z, both ways

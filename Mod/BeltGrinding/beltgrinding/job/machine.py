@@ -1,0 +1,92 @@
+"""What kind of belt machine a job has: a contact wheel, a free belt, a platen."""
+
+from ..base import schemas
+from ..engine import InputError
+
+WHEEL, FREE_BELT, PLATEN = "contact_wheel", "free_belt", "platen"
+
+
+def kind(machine):
+    """Of a job's ``belt_machine``; without the key, as in files of earlier versions, a contact wheel."""
+    return machine.get("kind", WHEEL)
+
+
+def filled(machine, rules):
+    """Puts the defaults of the parts that its kind needs into a validated ``belt_machine``; ``rules``: its schema."""
+    needed = {WHEEL: (), FREE_BELT: ("free_run",), PLATEN: ("free_run", "platen")}[kind(machine)]
+    for name in needed:
+        machine[name] = schemas.filled(machine.get(name, {}), rules["properties"][name])
+
+
+def check(job):
+    """Raises InputError for what the schema cannot say of a validated job's belt machine."""
+    machine = job["belt_machine"]
+    if kind(machine) == WHEEL:
+        return
+    if job["law"]["model"] == "geometric":
+        raise InputError(
+            "job.belt_is_not_rigid",
+            "{key}: a {kind} is not rigid; choose another law than geometric",
+            key="belt_machine.kind",
+            kind=kind(machine),
+        )
+    run = machine["free_run"]
+    if not abs(run["position_mm"]) < 0.5 * run["length_mm"]:
+        raise InputError(
+            "job.belt_position",
+            "{key}: the contact must lie between the rollers, less than {most:.4g} mm from the middle",
+            key="belt_machine.free_run.position_mm",
+            most=0.5 * run["length_mm"],
+        )
+    if kind(machine) == PLATEN:
+        most = run["length_mm"] - 2.0 * abs(run["position_mm"])
+        if machine["platen"]["length_mm"] > most:
+            raise InputError(
+                "job.platen_length",
+                "{key}: the platen must lie between the rollers, so that it is {most:.4g} mm long at most",
+                key="belt_machine.platen.length_mm",
+                most=most,
+            )
+
+
+def need_wheel(job, what):
+    """Raises InputError unless the job has a contact wheel. ``what``: a core.Fact, what knows no other kind."""
+    found = kind(job["belt_machine"])
+    if found != WHEEL:
+        raise InputError(
+            "job.needs_wheel",
+            "{what} with a contact wheel only; {key} is {kind}: grind it by `beltgrind run`, or set contact_wheel",
+            what=what,
+            key="belt_machine.kind",
+            kind=found,
+        )
+
+
+def engine_machine(machine):
+    """The dict that core.simulate takes as the option ``machine``: mm, N, MPa. Of a free belt or a platen."""
+    run = machine["free_run"]
+    result = {
+        "kind": kind(machine),
+        "length": float(run["length_mm"]),
+        "position": float(run["position_mm"]),
+        "tensioned": run["rollers"] == "tensioned",
+        "width": float(run["width_mm"]),
+        "thickness": float(run["thickness_mm"]),
+        "youngs_modulus": float(run["youngs_modulus_MPa"]),
+        "poissons_ratio": float(run["poissons_ratio"]),
+        "tension": float(run["tension_N_per_mm"]),
+        "surface_stiffness": float(run["surface_stiffness_MPa_per_mm"]),
+    }
+    if kind(machine) == PLATEN:
+        platen = machine["platen"]
+        result["platen_length"] = float(platen["length_mm"])
+        result["layer_surface_stiffness"] = float(platen["surface_stiffness_MPa_per_mm"])
+        result["layers"] = [
+            {
+                "thickness": float(layer["thickness_mm"]),
+                "youngs_modulus": float(layer["youngs_modulus_MPa"]),
+                "poissons_ratio": float(layer["poissons_ratio"]),
+            }
+            for layer in platen["layers"]
+        ]
+    return result

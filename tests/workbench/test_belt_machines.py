@@ -1,0 +1,142 @@
+"""Jobs whose belt is pressed without a wheel: a free belt, a platen; and what refuses them."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import beltgrinding  # noqa: E402
+from beltgrinding import cli, raster  # noqa: E402
+from beltgrinding.calibration import contacts  # noqa: E402
+from beltgrinding.contact import single_contact  # noqa: E402
+from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
+from beltgrinding.simulation.result import Result  # noqa: E402
+from test_job import plate_job  # noqa: E402
+
+LAYER = {"thickness_mm": 5, "youngs_modulus_MPa": 2, "poissons_ratio": 0.4}
+
+
+def belt_job(kind="free_belt", **machine):
+    """The plate of 60 x 40 mm, ground across by a belt that is 15 mm wide."""
+    job = plate_job()
+    job["belt_machine"] = {
+        "kind": kind,
+        "force_N": 20,
+        "force_travel_mm": 30,
+        "free_run": {"width_mm": 15, "tension_N_per_mm": 6},
+        **machine,
+    }
+    if kind == "platen":
+        job["belt_machine"].setdefault("platen", {"layers": [LAYER]})
+    return job
+
+
+@pytest.fixture(scope="module", params=["free_belt", "platen"])
+def ground(request):
+    return beltgrinding.run(belt_job(request.param))
+
+
+def test_the_force_is_held_and_only_what_lies_under_the_belt_is_ground(ground):
+    steps = ground.steps
+    assert np.allclose(steps["force"], 20.0, rtol=2e-3)
+    field = ground.field
+    removed = field.stock_height - field.height
+    beside = np.abs(field.points[:, 1] - 20.0) > 0.5 * 15 + 0.61
+    assert removed[beside].max() < 1e-7 and removed.max() > 1e-4
+    assert "not_converged" not in ground.summary["events"]
+    assert ground.job["belt_machine"]["kind"] in ground.summary["models"]["compliance"].replace(
+        " ", "_"
+    )
+
+
+def test_defaults_of_what_the_kind_needs_are_filled_in_and_no_others(ground):
+    machine = ground.job["belt_machine"]
+    assert machine["free_run"]["length_mm"] == 200.0
+    assert ("platen" in machine) == (machine["kind"] == "platen")
+    wheel = jobs.validate(plate_job())["belt_machine"]
+    assert not {"kind", "free_run", "platen"} & set(wheel)
+
+
+def test_a_job_that_names_the_contact_wheel_is_ground_as_one_that_does_not():
+    plain, named = plate_job(), plate_job()
+    named["belt_machine"]["kind"] = "contact_wheel"
+    plain, named = beltgrinding.run(plain), beltgrinding.run(named)
+    assert np.array_equal(plain.field.height, named.field.height)
+    assert plain.events == named.events
+
+
+def test_rollers_and_plate_are_among_the_bodies_that_may_collide(ground):
+    bodies = {name for pair in ground.summary["clearances"] for name in pair["bodies"]}
+    assert {"roller_before", "roller_behind"} <= bodies and "wheel" not in bodies
+    assert ("platen" in bodies) == (ground.job["belt_machine"]["kind"] == "platen")
+
+
+def test_a_part_that_reaches_into_a_roller_collides_with_it():
+    job = belt_job()
+    job["belt_machine"]["free_run"].update(length_mm=50, roller_radius_mm=10)
+    for pose in job["programs"][0]["poses"]:
+        pose["z_mm"] = -3.0  # deeper than the belt's own inner face lies, which the rollers touch
+    kinds = beltgrinding.run(job).summary["events"]
+    assert "collision" in kinds
+
+
+def test_a_result_is_written_and_reported_with_its_machine(ground, tmp_path):
+    ground.write(tmp_path)
+    again = Result.read(tmp_path)
+    assert np.array_equal(again.field.height, ground.field.height)
+    assert again.job["belt_machine"] == ground.job["belt_machine"]
+    text = beltgrinding.report(tmp_path).read_text(encoding="utf-8")
+    assert "6 N/mm over 200 mm" in text and "Contact wheel" not in text
+
+
+def test_the_command_line_runs_it_and_presses_at_a_pose(tmp_path, capsys):
+    file = tmp_path / "job.json"
+    file.write_text(json.dumps(belt_job()), encoding="utf-8")
+    assert cli.main(["run", str(file), "-q", "-o", str(tmp_path / "out")]) == 0
+    assert cli.main(["contact", str(file), "--pose", "2"]) == 0
+    assert "free belt" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda m: m.update(kind="small_wheel"), None),
+        (lambda m: m["free_run"].update(width_mm=0), None),
+        (lambda m: m["free_run"].update(position_mm=100), "job.belt_position"),
+        (lambda m: m["platen"].update(length_mm=201), "job.platen_length"),
+        (lambda m: m["platen"].update(layers=[{"thickness_mm": 1}]), None),
+    ],
+)
+def test_values_that_are_none_are_refused_by_their_key(change, code):
+    job = belt_job("platen")
+    change(job["belt_machine"])
+    with pytest.raises(InputError, match="belt_machine") as error:
+        jobs.validate(job)
+    assert code is None or error.value.code == code
+
+
+def test_a_belt_is_not_rigid():
+    job = belt_job()
+    job["law"] = {"model": "geometric"}
+    with pytest.raises(InputError) as error:
+        jobs.validate(job)
+    assert error.value.code == "job.belt_is_not_rigid"
+
+
+def test_what_knows_wheels_only_says_so():
+    job = jobs.validate(belt_job())
+    with pytest.raises(InputError, match="free_belt") as error:
+        raster.raster(job, {"faces": job["design"]["faces"]})
+    assert error.value.code == "job.needs_wheel"
+    with pytest.raises(InputError) as error:
+        single_contact.rim(job)
+    assert error.value.code == "job.needs_wheel"
+    with pytest.raises(InputError) as error:
+        contacts.of_machine(job["belt_machine"])
+    assert error.value.code == "calibration.no_wheel"

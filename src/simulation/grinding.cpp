@@ -18,7 +18,8 @@ constexpr double kJoule = 1e-3;  // of a N mm
 }  // namespace
 
 Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-                   const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat)
+                   const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat,
+                   FinishKeeper* finish)
     : blocks_(blocks),
       pressing_(pressing),
       law_(law),
@@ -26,6 +27,7 @@ Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& l
       outputs_(options.outputs),
       trace_(trace),
       heat_(heat),
+      finish_(finish),
       belt_(options.process.belt),
       shifts_(
           Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(blocks.field().size()),
@@ -138,6 +140,10 @@ double Grinding::remove(double part) {
     if (heat_ != nullptr) {
         const Stopwatch watch(times_.heat);
         heat_->press(map, pressing_.displaced_pressure(), contact.force, part);
+    }
+    if (finish_ != nullptr) {
+        const Stopwatch watch(times_.finish);
+        finish_->press(map, pressing_.displaced_pressure(), part, state_.belt_wear);
     }
     const Stopwatch watch(times_.removal);
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.

@@ -117,6 +117,7 @@ void FinishKeeper::press(const GapMap& map, const DisplacedPressure& pressure, d
     const auto number = static_cast<std::uint32_t>(steps_.size());
     const auto seconds = static_cast<float>(duration);
     bool pressed = false;
+    steps_.push_back(step);  // a sample that also lies beyond a side face is met twice
     map.for_pressed(pressure, [&](std::size_t position, double value) {
         Pass& pass = passes_[position];
         if (pass.time > 0.0f &&
@@ -127,7 +128,7 @@ void FinishKeeper::press(const GapMap& map, const DisplacedPressure& pressure, d
         pass.step = number;
         pressed = true;
     });
-    if (pressed) steps_.push_back(step);
+    if (!pressed) steps_.pop_back();
 }
 
 void FinishKeeper::end(std::size_t position, Pass& pass) {

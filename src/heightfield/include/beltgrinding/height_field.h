@@ -62,7 +62,13 @@ struct FinishTrace {
     static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no pass
     static constexpr float kMostUnknown = 0.05F;         ///< of `unknown`, up to which Ra is known
     /// What the last pass had that no measurement had; what is told first of several.
-    enum Outside : std::uint8_t { kInside, kPressure, kBeltSpeed, kFeed, kBeltWear };
+    enum Outside : std::uint8_t {
+        kInside,     ///< nothing
+        kPressure,   ///< its mean pressure
+        kBeltSpeed,  ///< the belt's speed
+        kFeed,       ///< the feed
+        kBeltWear    ///< what remains of the belt's cut
+    };
 
     std::vector<float> settled;   ///< um: shares of the passes' own Ra, added up; see `roughness`
     std::vector<float> unknown;   ///< share of Ra that is from what is not known, [0, 1]

@@ -1564,8 +1564,32 @@
         <translation>dasselbe, wenn Reibung und Wärmeanteil am größten sind</translation>
     </message>
     <message>
-        <source>what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; temperature: the greatest, of a job with Heat</source>
-        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes; measured, difference: eines Scans; temperature: die höchste, einer Aufgabe mit Heat</translation>
+        <source>what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; temperature: the greatest, of a job with Heat; roughness: Ra, of a job with Finish</source>
+        <translation>was die Farben zeigen; uncertainty: eines kalibrierten Gesetzes; measured, difference: eines Scans; temperature: die höchste, einer Aufgabe mit Heat; roughness: Ra, einer Aufgabe mit Finish</translation>
+    </message>
+    <message>
+        <source>What the finish (roughness, direction of the scratches) is computed with; without it there is none.</source>
+        <translation>Womit die Oberflächengüte (Rauheit, Richtung der Schleifspuren) berechnet wird; ohne das gibt es keine.</translation>
+    </message>
+    <message>
+        <source>Ra of the roughest sample that was ground, µm; 0: not known</source>
+        <translation>Ra des rauesten geschliffenen Stützpunkts, µm; 0: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>Ra, µm, weighted by the ground area; 0: not known</source>
+        <translation>Ra, µm, nach der geschliffenen Fläche gewichtet; 0: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>share of the ground area with a known Ra, percent</source>
+        <translation>Anteil der geschliffenen Fläche mit bekanntem Ra, Prozent</translation>
+    </message>
+    <message>
+        <source>share of the ground area where crossed scratches stay, percent; -1: not known</source>
+        <translation>Anteil der geschliffenen Fläche, auf dem gekreuzte Schleifspuren bleiben, Prozent; -1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>draw the direction of the scratches, of a job with Finish; red: crossed</source>
+        <translation>die Richtung der Schleifspuren zeichnen, einer Aufgabe mit Finish; rot: gekreuzt</translation>
     </message>
 </context>
 <context>
@@ -4867,6 +4891,30 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>They are independent</source>
         <translation>Sie sind unabhängig</translation>
+    </message>
+    <message>
+        <source>Roughness</source>
+        <translation>Rauheit</translation>
+    </message>
+    <message>
+        <source>Ra, mean</source>
+        <translation>Ra, Mittel</translation>
+    </message>
+    <message>
+        <source>Ra, greatest</source>
+        <translation>Ra, größtes</translation>
+    </message>
+    <message>
+        <source>Ra known</source>
+        <translation>Ra bekannt</translation>
+    </message>
+    <message>
+        <source>Crossed scratches</source>
+        <translation>Gekreuzte Spuren</translation>
+    </message>
+    <message>
+        <source>roughness Ra, µm</source>
+        <translation>Rauheit Ra, µm</translation>
     </message>
 </context>
 <context>

@@ -1,5 +1,7 @@
 #include "beltgrinding/height_field.h"
 
+#include <limits>
+
 namespace beltgrinding {
 
 void RemovalTrace::reset(std::size_t n) {
@@ -13,6 +15,17 @@ void RemovalTrace::reset(std::size_t n) {
 std::size_t RemovalTrace::bytes() const {
     return (first.capacity() + last.capacity() + dominant.capacity()) * sizeof(std::uint32_t) +
            (dominant_depth.capacity() + peak_pressure.capacity()) * sizeof(float);
+}
+
+float FinishTrace::roughness(std::size_t i) const {
+    if (!(unknown[i] <= kMostUnknown)) return std::numeric_limits<float>::quiet_NaN();
+    return settled[i] / (1.0F - unknown[i]);
+}
+
+std::size_t FinishTrace::bytes() const {
+    return (settled.capacity() + unknown.capacity() + crossing.capacity()) * sizeof(float) +
+           lay.capacity() * sizeof(Vec3f) +
+           (passes.capacity() + motion.capacity()) * sizeof(std::uint32_t) + outside.capacity();
 }
 
 void HeightField::resize(std::size_t n) {
@@ -32,7 +45,7 @@ std::size_t HeightField::bytes() const {
            stock_height.capacity() * sizeof(float) + height.capacity() * sizeof(double) +
            face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
            (height_sd.capacity() + measured.capacity() + heat.rise.capacity()) * sizeof(float) +
-           heat.motion.capacity() * sizeof(std::uint32_t) + trace.bytes() +
+           heat.motion.capacity() * sizeof(std::uint32_t) + trace.bytes() + finish.bytes() +
            triangles.capacity() * sizeof(Triangle);
 }
 

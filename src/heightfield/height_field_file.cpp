@@ -36,6 +36,19 @@ void each_trace_array(Trace& t, Visit&& visit) {
     visit("trace_peak_pressure_MPa", t.peak_pressure, H5T_NATIVE_FLOAT);
 }
 
+/// As `each_array`, of the finish.
+template <class Finish, class Visit>
+void each_finish_array(Finish& f, Visit&& visit) {
+    visit("finish_settled_um", f.settled, H5T_NATIVE_FLOAT, hsize_t{1});
+    visit("finish_unknown_share", f.unknown, H5T_NATIVE_FLOAT, hsize_t{1});
+    visit("finish_lay", f.lay, H5T_NATIVE_FLOAT, hsize_t{3});
+    visit("finish_crossing_rad", f.crossing, H5T_NATIVE_FLOAT, hsize_t{1});
+    visit("finish_passes", f.passes, H5T_NATIVE_UINT32, hsize_t{1});
+    visit("finish_motion", f.motion, H5T_NATIVE_UINT32, hsize_t{1});
+    visit("finish_outside", f.outside, H5T_NATIVE_UINT8, hsize_t{1});
+}
+
+constexpr const char* kFinish = "finish_settled_um";  // where the finish was computed
 constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
 constexpr const char* kHeatMotion = "heat_motion";    // with it
 constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
@@ -70,6 +83,12 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
         write_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
         write_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
     }
+    if (!field.finish.empty()) {
+        each_finish_array(field.finish,
+                          [&](const char* name, const auto& data, hid_t type, hsize_t row) {
+                              write_array(file, name, data, type, row);
+                          });
+    }
     write_text(file, "attributes", attributes);
 }
 
@@ -98,6 +117,25 @@ void check(const HeatTrace& t, std::size_t n) {
         const bool never = t.motion[i] == HeatTrace::kNever;
         if (!std::isfinite(t.rise[i]) || t.rise[i] < 0.0F || (never && t.rise[i] > 0.0F)) {
             require(false, "heightfield.heat", "the temperature of sample {sample} makes no sense",
+                    {{"sample", i}});
+        }
+    }
+}
+
+void check(const FinishTrace& f, std::size_t n) {
+    if (f.empty()) return;
+    require(f.settled.size() == n && f.unknown.size() == n && f.lay.size() == n &&
+                f.crossing.size() == n && f.passes.size() == n && f.motion.size() == n &&
+                f.outside.size() == n,
+            "heightfield.lengths", "its arrays differ in length");
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool never = f.passes[i] == 0;
+        if (!std::isfinite(f.settled[i]) || f.settled[i] < 0.0F ||
+            !(f.unknown[i] >= 0.0F && f.unknown[i] <= 1.0F) || !f.lay[i].allFinite() ||
+            f.crossing[i] < 0.0F || std::isinf(f.crossing[i]) ||
+            never != (f.motion[i] == FinishTrace::kNever) ||
+            f.outside[i] > FinishTrace::kBeltWear) {
+            require(false, "heightfield.finish", "the finish of sample {sample} makes no sense",
                     {{"sample", i}});
         }
     }
@@ -193,8 +231,15 @@ HeightField read_hdf5_image(std::string_view image, const std::string& name,
             read_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
             read_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
         }
+        if (H5Lexists(file, kFinish, H5P_DEFAULT) > 0) {
+            each_finish_array(field.finish,
+                              [&](const char* array, auto& data, hid_t type, hsize_t row) {
+                                  read_array(file, array, data, type, row);
+                              });
+        }
         check(field);
         check(field.trace, field.size());
+        check(field.finish, field.size());
         check(field.heat, field.size());
         if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return field;

@@ -5,9 +5,9 @@ namespace beltgrinding::python {
 namespace {
 
 constexpr std::array<const char*, kGrindParameters> kNames{
-    "ln_coefficient",     "pressure_exponent", "speed_exponent", "feed_exponent",
-    "time_exponent",      "area_exponent",     "ln_wear_scale",  "wear_rest",
-    "pressure_threshold", "ln_saturation",     "wear_exponent"};
+    "ln_coefficient", "pressure_exponent", "speed_exponent", "feed_exponent",      "time_exponent",
+    "area_exponent",  "ln_wear_scale",     "wear_rest",      "pressure_threshold", "ln_saturation",
+    "wear_exponent",  "grit_exponent",     "cut_exponent"};
 
 MeasuredGrinds grinds_from(const py::dict& given) {
     py::dict d = copy_of(given);
@@ -21,6 +21,8 @@ MeasuredGrinds grinds_from(const py::dict& given) {
     g.spread = take(d, "spread", Eigen::ArrayXd());
     g.measured = take(d, "measured", Eigen::ArrayXd());
     g.relative = take(d, "relative", Eigen::ArrayXXd());
+    g.grit = take(d, "grit", Eigen::ArrayXd());
+    g.cut = take(d, "cut", Eigen::ArrayXd());
     g.areas = take(d, "areas", Eigen::ArrayXd());
     refuse_rest(d, "grinds");
     g.validate();
@@ -35,6 +37,7 @@ GrindReferences references_from(const py::dict& given) {
     r.feed = take(d, "feed", r.feed);
     r.time = take(d, "time", r.time);
     r.area = take(d, "area", r.area);
+    r.grit = take(d, "grit", r.grit);
     refuse_rest(d, "references");
     return r;
 }
@@ -63,7 +66,8 @@ void bind_calibration(py::module_& m) {
         "grinds: dict of arrays (n,) force N, area mm2, speed mm/s, feed mm/s (0: stationary), "
         "time s, wear, spread mm2 (1: volumes; nan: depth over the area), measured, relative (n, "
         "m) "
-        "pressure over the mean on equal shares of the contact.");
+        "pressure over the mean on equal shares of the contact, grit and cut (share of a fresh "
+        "belt's that remains), each of which may be missing.");
     m.def(
         "calibrate",
         [](const py::dict& grinds, const py::dict& references, const GrindVector& start,

@@ -85,6 +85,29 @@ void bind_height_field(py::module_& m) {
             "How hot each sample became: a dict of (n,) arrays rise (K, greatest above the start's "
             "temperature) and motion (as in trace, at that moment; NEVER: no heat came there); "
             "None where it was not computed.")
+        .def_property_readonly(
+            "finish",
+            [](const py::object& self) -> py::object {
+                const FinishTrace& finish = self.cast<const HeightField&>().finish;
+                if (finish.empty()) return py::none();
+                std::vector<float> roughness(finish.settled.size());
+                for (std::size_t i = 0; i < roughness.size(); ++i)
+                    roughness[i] = finish.roughness(i);
+                py::dict d;
+                d["roughness"] = own(std::move(roughness));
+                d["lay"] = view<float>(finish.lay, 3, self);
+                d["crossing"] = view<float>(finish.crossing, 1, self);
+                d["passes"] = view<std::uint32_t>(finish.passes, 1, self);
+                d["motion"] = view<std::uint32_t>(finish.motion, 1, self);
+                d["outside"] = view<std::uint8_t>(finish.outside, 1, self);
+                return d;
+            },
+            "What finish the passes left: a dict of (n,) arrays roughness (Ra, um; NaN: not "
+            "known), crossing (rad between the scratches of the last two passes; NaN: fewer), "
+            "passes (how many), motion (of the last pass, as in trace; NEVER: none), outside (what "
+            "of the last pass was not measured: 0 nothing, 1 pressure, 2 belt speed, 3 feed, 4 "
+            "wear), and lay (n, 3), along which the last pass scratched (unit, work frame; 0: no "
+            "pass); None where it was not computed.")
         .def("copy", [](const HeightField& field) { return HeightField(field); })
         .def(
             "set_height",

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -136,6 +137,34 @@ std::unique_ptr<ContactModel> contact_from(const py::dict& compliance,
     return compliance_from(compliance, process.wheel, process.force);
 }
 
+Range range_from(const std::array<double, 2>& ends) {
+    return {ends[0], ends[1]};
+}
+
+void take_finish(const py::dict& given, FinishRequest& finish) {
+    if (given.empty()) return;
+    py::dict d = copy_of(given);
+    const auto take_range = [&d](const char* key, Range& range) {
+        range = range_from(take(d, key, std::array<double, 2>{range.low, range.high}));
+    };
+    finish.wanted = true;
+    finish.before = take(d, "before", finish.before);
+    finish.rest = take(d, "rest", finish.rest);
+    finish.roughness = take(d, "roughness", finish.roughness);
+    finish.pressure_exponent = take(d, "pressure_exponent", finish.pressure_exponent);
+    finish.speed_exponent = take(d, "speed_exponent", finish.speed_exponent);
+    finish.feed_exponent = take(d, "feed_exponent", finish.feed_exponent);
+    finish.cut_exponent = take(d, "cut_exponent", finish.cut_exponent);
+    finish.reference_pressure = take(d, "reference_pressure", finish.reference_pressure);
+    finish.reference_speed = take(d, "reference_speed", finish.reference_speed);
+    finish.reference_feed = take(d, "reference_feed", finish.reference_feed);
+    take_range("pressure", finish.pressure);
+    take_range("speed", finish.speed);
+    take_range("feed", finish.feed);
+    take_range("cut", finish.cut);
+    refuse_rest(d, "finish");
+}
+
 SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
     SimulationOptions o;
     o.process.wheel = wheel_from(wheel_given);
@@ -169,6 +198,7 @@ SimulationOptions options_from(const py::dict& wheel_given, const py::dict& give
     o.outputs.force_influence = take(d, "force_influence", o.outputs.force_influence);
     o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
     take_heat(take(d, "heat", py::dict()), o.heat);
+    take_finish(take(d, "finish", py::dict()), o.finish);
     o.must_touch = take(d, "must_touch", o.must_touch);
     refuse_rest(d, "options");
     return o;
@@ -223,6 +253,7 @@ py::dict to_dict(const SimulationResult& result) {
     wall["trace"] = result.wall.trace;
     wall["events"] = result.wall.events;
     if (result.wall.heat > 0.0) wall["heat"] = result.wall.heat;
+    if (result.wall.finish > 0.0) wall["finish"] = result.wall.finish;
     py::dict d;
     d["events"] = events;
     d["steps"] = steps;

@@ -22,6 +22,15 @@ void MeasuredGrinds::validate() const {
         throw InputError("calibration.negative",
                          "calibration: feed and wear must be zero or positive");
     }
+    for (const auto* column : {&grit, &cut}) {
+        if (column->size() == 0) continue;
+        if (column->size() != n)
+            throw InputError("calibration.lengths", "calibration: columns differ in length");
+        if (!column->allFinite() || !(*column > 0.0).all()) {
+            throw InputError("calibration.grain",
+                             "calibration: grit and remaining cut must be positive");
+        }
+    }
     if (relative.size() > 0 &&
         (relative.rows() != n || !relative.allFinite() || (relative < 0.0).any() ||
          !(relative.rowwise().sum() > 0.0).all())) {
@@ -92,6 +101,9 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
     const double decay = std::exp(-worn), rest = x[kWearRest];
     const double ln_cut =
         power ? -exponent * std::log1p(worn) : std::log(rest + (1.0 - rest) * decay);
+    const double ln_grit =
+        grinds.grit.size() > 0 ? std::log(grinds.grit[i] / references.grit) : 0.0;
+    const double ln_remaining = grinds.cut.size() > 0 ? std::log(grinds.cut[i]) : 0.0;
     const double spread = std::isnan(grinds.spread[i]) ? area : grinds.spread[i];
     if (gradient) {
         GrindVector& g = *gradient;
@@ -108,11 +120,14 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
         g[kWearExponent] = power ? -std::log1p(worn) : 0.0;
         g[kPressureThreshold] = mean.by_threshold;
         g[kLnSaturation] = mean.by_saturation;
+        g[kGritExponent] = ln_grit;
+        g[kCutExponent] = ln_remaining;
     }
     return x[kLnCoefficient] + ln_cut + std::log(references.speed) + x[kSpeedExponent] * ln_speed +
            std::log(references.pressure) + mean.ln_mean + x[kFeedExponent] * ln_feed +
            std::log(grinds.time[i]) + (x[kTimeExponent] - 1.0) * ln_time + std::log(area) +
-           x[kAreaExponent] * ln_area - std::log(spread);
+           x[kAreaExponent] * ln_area + x[kGritExponent] * ln_grit +
+           x[kCutExponent] * ln_remaining - std::log(spread);
 }
 
 }  // namespace beltgrinding

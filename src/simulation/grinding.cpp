@@ -19,7 +19,8 @@ constexpr double kUsualPressure = 0.05;  // MPa, of a belt that has not touched 
 }  // namespace
 
 Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-                   const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat)
+                   const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat,
+                   FinishKeeper* finish)
     : blocks_(blocks),
       pressing_(pressing),
       law_(law),
@@ -27,6 +28,7 @@ Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& l
       outputs_(options.outputs),
       trace_(trace),
       heat_(heat),
+      finish_(finish),
       belt_(options.process.belt),
       shifts_(
           Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(blocks.field().size()),
@@ -154,6 +156,10 @@ double Grinding::remove(double part) {
     if (heat_ != nullptr) {
         const Stopwatch watch(times_.heat);
         heat_->press(map, pressing_.displaced_pressure(), pressing_.pressing_force(), part);
+    }
+    if (finish_ != nullptr) {
+        const Stopwatch watch(times_.finish);
+        finish_->press(map, pressing_.displaced_pressure(), part, state_.belt_wear);
     }
     const Stopwatch watch(times_.removal);
     // No cell recedes below the unloaded wheel, however far beyond reason the force is.

@@ -6,6 +6,7 @@
 
 #include "actuated_wheel.h"
 #include "beltgrinding/simulation.h"
+#include "finish_keeper.h"
 #include "heat_keeper.h"
 #include "influence_keeper.h"
 #include "pressing.h"
@@ -16,9 +17,10 @@ namespace beltgrinding {
 /// The law at work under the pressed wheel: lowers the field, and counts what the belt has done.
 class Grinding {
   public:
-    /// All of them must outlive it. `trace` and `heat` may be null.
+    /// All of them must outlive it. `trace`, `heat` and `finish` may be null.
     Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-             const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat = nullptr);
+             const SimulationOptions& options, TraceKeeper* trace, HeatKeeper* heat = nullptr,
+             FinishKeeper* finish = nullptr);
 
     /// Tells a belt, before it is pressed, how much of the surface the law takes under its pressure
     /// in `duration` s: about as much as at the last pose.
@@ -95,6 +97,7 @@ class Grinding {
     TraceKeeper* trace_;
     BlockSet* reached_ = nullptr;
     HeatKeeper* heat_;
+    FinishKeeper* finish_;
     BeltState belt_;
     double integrated_rate_ = 0.0;
     double impulse_ = 0.0;         // N s

@@ -8,6 +8,7 @@
 #include "base/stopwatch.h"
 #include "beltgrinding/error.h"
 #include "checkpoint_keeper.h"
+#include "finish_keeper.h"
 #include "grinding.h"
 #include "heat_keeper.h"
 #include "heightfield/sample_blocks.h"
@@ -99,6 +100,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     resolution.validate();
     options.limits.validate(field.size());
     options.heat.validate(field.size());
+    options.finish.validate();
     StepQueue steps(path, {resolution.max_travel, resolution.max_angle, process.force});
     if (steps.planned() == 0) {
         throw InputError(
@@ -121,8 +123,9 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     SampleBlocks& blocks = *built;
     if (recording != nullptr) recording->begin(field, path.duration(), blocks.samples());
     std::optional<CheckpointKeeper> keeper;
-    // The heat in the part is not among what they hold.
-    if (options.outputs.checkpoints != nullptr && options.heat.part == nullptr) {
+    // The heat in the part and its finish are not among what they hold.
+    if (options.outputs.checkpoints != nullptr && options.heat.part == nullptr &&
+        !options.finish.wanted) {
         keeper.emplace(*options.outputs.checkpoints, steps, blocks, options);
         keeper->restore(blocks);
     }
@@ -143,8 +146,13 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         const Stopwatch watch(wall.build);
         heat.emplace(blocks, options.heat, process.belt_speed);
     }
+    std::optional<FinishKeeper> finish;
+    if (options.finish.wanted && !model.rigid()) {
+        const Stopwatch watch(wall.build);
+        finish.emplace(blocks, options.finish, process.belt_speed, resolution.max_travel);
+    }
     Grinding grinding(blocks, pressing, law, options, trace ? &*trace : nullptr,
-                      heat ? &*heat : nullptr);
+                      heat ? &*heat : nullptr, finish ? &*finish : nullptr);
     std::optional<ActuatedWheel> wheel;  // of a force control that takes time
     if (process.force_control && !process.dynamics.ideal()) wheel.emplace(process, pressing);
     bool touched = false;
@@ -197,6 +205,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         record.duration = static_cast<float>(step.duration);
         record.feed = static_cast<float>(step.feed);
 
+        if (finish) finish->begin_step(step, options.outputs.first_motion + step.pose);
         blocks.clear_changes();
         record.segments = static_cast<std::uint32_t>(pressing.localised());
         if (state != Pressing::State::kNoContact) {
@@ -274,6 +283,10 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     if (heat) {
         const Stopwatch watch(wall.heat);
         heat->keep(path.duration(), field);
+    }
+    if (finish) {
+        const Stopwatch watch(wall.finish);
+        finish->keep(field);
     }
     if (trace) {
         trace->keep(field);

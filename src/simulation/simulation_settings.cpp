@@ -93,6 +93,28 @@ void HeatRequest::validate(std::size_t samples) const {
     }
 }
 
+void FinishRequest::validate() const {
+    if (!wanted) return;
+    if (!is_limit(roughness) || !(std::isnan(before) || is_limit(before)) ||
+        !(rest >= 0.0 && rest < 1.0)) {
+        throw InputError("finish.roughness",
+                         "a roughness of the finish is none, or the share of it that a pass leaves "
+                         "is not from 0 to below 1");
+    }
+    for (const double exponent : {pressure_exponent, speed_exponent, feed_exponent, cut_exponent}) {
+        if (!std::isfinite(exponent))
+            throw InputError("finish.exponent", "an exponent of the finish is not finite");
+    }
+    for (const double reference : {reference_pressure, reference_speed, reference_feed}) {
+        if (!std::isfinite(reference) || !(reference > 0.0))
+            throw InputError("finish.reference", "a reference of the finish must be positive");
+    }
+    for (const Range& range : {pressure, speed, feed, cut}) {
+        if (!(range.low >= 0.0 && range.low <= range.high))
+            throw InputError("finish.range", "a range of the finish is not in order");
+    }
+}
+
 PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
     build += more.build;
     localise += more.localise;
@@ -102,6 +124,7 @@ PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& more) {
     trace += more.trace;
     events += more.events;
     heat += more.heat;
+    finish += more.finish;
     return *this;
 }
 

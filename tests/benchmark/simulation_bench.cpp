@@ -199,6 +199,50 @@ void trace_cost(benchmark::State& state) {
 }
 BENCHMARK(trace_cost)->Unit(benchmark::kMillisecond)->Iterations(3);
 
+/// To and fro over a plate of a million samples; neighbouring passes overlap.
+ToolPath overlapping_passes(double side) {
+    std::vector<PathPose> poses;
+    for (int k = 0; k < 8; ++k) {
+        PathPose pose;
+        pose.base_from_tcp = Eigen::Translation3d((k / 2 + k) % 2 == 0 ? 20.0 : side - 20.0,
+                                                  40.0 + 30.0 * (k / 2), 0.3) *
+                             Eigen::AngleAxisd(M_PI, Vec3::UnitX());
+        poses.push_back(pose);
+    }
+    return ToolPath(poses, {});
+}
+
+// What the finish adds to a run: processor time with and without, in turns.
+void finish_cost(benchmark::State& state) {
+    const double side = kSpacing * 1000.0;
+    const HeightField before = testing::plate(side, side, kSpacing, 0.3);
+    ElasticFoundation foundation(0.5);
+    const LocalLaw law({1e-5});
+    SimulationOptions options;
+    options.process.wheel = {100.0, 50.0, 0.0};
+    options.process.force = 100.0;
+    options.finish.roughness = 0.8;
+    options.finish.pressure_exponent = 0.4;
+    options.finish.rest = 0.3;
+    options.finish.before = 3.2;
+    const ToolPath path = overlapping_passes(side);
+    std::array<double, 2> seconds{};
+    double bytes = 0.0;
+    for (auto _ : state) {
+        for (const bool wanted : {false, true}) {
+            HeightField field = before;
+            options.finish.wanted = wanted;
+            const std::clock_t start = std::clock();
+            benchmark::DoNotOptimize(simulate(field, path, foundation, law, options));
+            seconds[wanted ? 1 : 0] += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+            bytes = static_cast<double>(field.finish.bytes()) / static_cast<double>(field.size());
+        }
+    }
+    state.counters["ratio"] = seconds[1] / seconds[0];
+    state.counters["bytes_a_sample"] = bytes;
+}
+BENCHMARK(finish_cost)->Unit(benchmark::kMillisecond)->Iterations(2);
+
 // What heat adds to a run, with its nodes: processor time with and without, in turns.
 void heat_cost(benchmark::State& state) {
     const double side = kSpacing * 1000.0;
@@ -208,15 +252,7 @@ void heat_cost(benchmark::State& state) {
     SimulationOptions options;
     options.process.wheel = {100.0, 50.0, 0.0};
     options.process.force = 100.0;
-    std::vector<PathPose> poses;
-    for (int k = 0; k < 8; ++k) {  // to and fro, neighbouring passes overlap
-        PathPose pose;
-        pose.base_from_tcp = Eigen::Translation3d((k / 2 + k) % 2 == 0 ? 20.0 : side - 20.0,
-                                                  40.0 + 30.0 * (k / 2), 0.3) *
-                             Eigen::AngleAxisd(M_PI, Vec3::UnitX());
-        poses.push_back(pose);
-    }
-    const ToolPath path(poses, {});
+    const ToolPath path = overlapping_passes(side);
     const HeatMaterial steel{15.0, 500.0, 7900.0}, aluminium{191.0, 911.0, 2700.0};
     const std::array materials = {steel, aluminium};
     std::array<double, 3> seconds{};

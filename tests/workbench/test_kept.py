@@ -16,10 +16,12 @@ from beltgrinding.job import load as jobs
 from beltgrinding.job.workpiece import OwnBrep
 from beltgrinding.presets import library
 from beltgrinding.simulation import run as runs
+from support import synthetic_finish
 from test_job import DOWN
 
 HEAT = {"conductivity_W_mK": 15.0, "heat_capacity_J_kgK": 500.0, "density_kg_m3": 7900.0}
 HEAT |= {"friction": [0.3, 0.6], "partition": [0.5, 0.8]}
+FINISH = {"grit": 120, "initial_Ra_um": 3.2, "model": synthetic_finish.model()}
 ROBOT, DH_ROBOT = (library.find("robots", name)["model"] for name in ("kuka_kr16_2", "ur10e"))
 
 
@@ -210,6 +212,20 @@ VALUES = {
     "heat.partition": lambda _: [0.4, 0.9],
     "heat.burn_source": lambda _: "another",
     "heat.burn_temperature_C": lambda _: 25.0,
+    "finish.grit": lambda _: 100.0,
+    "finish.crossing_angle_deg": lambda _: 35.0,
+    "finish.rest_per_pass": lambda _: 0.2,
+    "finish.model.rest_per_pass": lambda _: 0.2,
+    "finish.model.source": lambda _: "another",
+    "finish.model.calibration": lambda _: {"measurements": 7},
+    "finish.model.ranges.grit": lambda _: [50.0, 500.0],
+    "finish.model.ranges.pressure_MPa": lambda _: [0.0, 9.0],
+    "finish.model.ranges.belt_speed_m_s": lambda _: [11.0, 35.0],
+    "finish.model.ranges.feed_mm_s": lambda _: [16.0, 120.0],
+    "finish.model.ranges.remaining_cut": lambda _: [0.3, 1.0],
+    "inspection.zones.0.finish.Ra_max_um": lambda _: 2.5,
+    "inspection.zones.0.finish.lay_direction": lambda _: [0.0, 1.0, 0.0],
+    "inspection.zones.0.finish.lay": lambda _: "X",
     "cell.bodies.0.name": lambda _: "pillar",
     "cell.bodies.0.file": lambda folder: str(folder / "other.brep"),
     "cell.bodies.0.brep": lambda _: OwnBrep(box(4.0, 4.0)[0]),
@@ -290,6 +306,12 @@ REFUSED = {  # the whole run is an error
 
 LEAVES = dict(leaves(jobs.schema()))
 del LEAVES["schema"]  # there is one version
+ASKED = {"Ra_max_um": 2.0, "lay": "=", "lay_direction": [1, 0, 0]}  # of the finish, by a zone
+for leaf in LEAVES:
+    if leaf.startswith("finish."):
+        ALONG[leaf] = {"finish": FINISH}
+    if leaf.startswith("inspection.zones.0.finish."):
+        ALONG[leaf] = {"finish": FINISH, "inspection.zones.0.finish": ASKED}
 
 
 def put(job, key, value):
@@ -361,7 +383,7 @@ def outcome(job, **options):
     arrays = [field.points, field.normals, field.rays, field.areas, field.stock_height]
     arrays += [field.height, field.height_sd, field.faces, field.flags, field.triangles]
     arrays += [field.spacing, field.depth, *field.trace.values(), *result.steps.values()]
-    arrays += [*result.motions.values(), result.shifts]
+    arrays += [*result.motions.values(), result.shifts, *(field.finish or {}).values()]
     summary = {key: value for key, value in result.summary.items() if key != "wall_time_s"}
     told = [summary, result.events, result.verdict]
     return [

@@ -22,6 +22,8 @@ EFFECT = {  # of the parameters: code and English form
     "wear_rest": ("calibration.the_rest", "the rest of the cut of a worn belt"),
     "pressure_threshold": ("calibration.the_threshold", "the pressure threshold"),
     "ln_saturation": ("calibration.the_saturation", "the saturation pressure"),
+    "grit_exponent": ("calibration.grit", "grit"),
+    "cut_exponent": ("calibration.remaining_cut", "remaining cut"),
 }
 PRESSURE = ("pressure_exponent", "area_exponent")  # force and area
 LEAST_GRINDS = 4

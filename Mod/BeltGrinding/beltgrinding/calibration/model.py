@@ -20,6 +20,8 @@ DEFAULTS = {
     "pressure_threshold": 0.0,
     "ln_saturation": math.inf,
     "wear_exponent": math.inf,
+    "grit_exponent": 0.0,
+    "cut_exponent": 0.0,
 }
 BOUNDS = {
     "ln_coefficient": (-80.0, 40.0),

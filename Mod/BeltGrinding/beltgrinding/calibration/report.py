@@ -124,6 +124,8 @@ SHOWN = {  # name in the report, unit
     "wear_exponent": ("wear_exponent", ""),
     "pressure_threshold": ("pressure_threshold", "MPa"),
     "ln_saturation": ("saturation_pressure", "MPa"),
+    "grit_exponent": ("grit_exponent", ""),
+    "cut_exponent": ("cut_exponent", ""),
 }
 
 

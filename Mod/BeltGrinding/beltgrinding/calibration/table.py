@@ -97,7 +97,7 @@ def read(path, wheel_diameter_mm=None, measured=True, contact=None):
     """Table of a CSV file. ``measured``: whether the measured removal must be there;
     ``contact``: what the table does not say of it (contacts.of_machine). Raises InputError with file, line, column and what to do.
     """
-    header, rows, lines = _split(Path(path))
+    header, rows, lines = split(Path(path), _canonical)
     return from_columns(
         {name: [row[i] for row in rows] for i, name in enumerate(header)},
         wheel_diameter_mm,
@@ -108,8 +108,10 @@ def read(path, wheel_diameter_mm=None, measured=True, contact=None):
     )
 
 
-def _split(path):
-    """(names, rows of texts, their line numbers)."""
+def split(path, canonical):
+    """(names, rows of texts, their line numbers) of a CSV; ``canonical(name)``: None for no column of the table.
+    Raises InputError.
+    """
     content = read_regular(path, MOST_BYTES)
     encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     text = content.decode(encoding, errors="replace").replace("\0", "\ufffd")
@@ -123,7 +125,7 @@ def _split(path):
             candidate = line.lstrip("#").strip()
             separator = max(";\t,", key=candidate.count)
             names = [name.strip().strip('"') for name in candidate.split(separator)]
-            if sum(_canonical(name) is not None for name in names) >= 2:
+            if sum(canonical(name) is not None for name in names) >= 2:
                 header = names
             elif not line.startswith("#"):
                 raise InputError(
@@ -176,9 +178,14 @@ def _split(path):
     return header, rows, lines
 
 
+def small_name(name):
+    """A column's name in small letters, without what divides its words but '_'."""
+    return re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower().replace("\u00b5", "u")).strip("_")
+
+
 def _canonical(name):
     """(canonical name of a column, factor to its unit), or None."""
-    small = re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower().replace("\u00b5", "u")).strip("_")
+    small = small_name(name)
     for canonical, aliases in COLUMNS.items():
         if small == canonical.lower() or small in aliases:
             return canonical, 1.0
@@ -236,7 +243,7 @@ def from_columns(
             raw[name] = [1.0 if _unknown(cell) else cell for cell in raw.get(name, [])] or None
         raw = {name: cells for name, cells in raw.items() if cells is not None}
     c = {
-        name: np.array([_number(cell, at, given[name], name) for cell, at in zip(cells, places)])
+        name: np.array([number(cell, at, given[name], name) for cell, at in zip(cells, places)])
         * factor[name]
         for name, cells in raw.items()
     }
@@ -283,10 +290,10 @@ def _unknown(cell):
     return str(cell).strip().lower() in UNKNOWN
 
 
-def _number(cell, place, shown, name):
-    """A cell as a number; nan where it may be unknown."""
+def number(cell, place, shown, name, may_be_unknown=MAY_BE_UNKNOWN):
+    """A cell as a number; nan where it may be unknown. Raises InputError."""
     if _unknown(cell):
-        if name in MAY_BE_UNKNOWN:
+        if name in may_be_unknown:
             return math.nan
         raise InputError(
             "calibration.empty_cell",

@@ -21,6 +21,18 @@ def add(commands):
     fit.add_argument("--job", help="job (.json) on whose wheel the grinds were done")
     outputs.add(fit)
     fit.set_defaults(do=_calibrate)
+    finish = commands.add_parser(
+        "calibrate-finish", help="fit the roughness that passes leave to measured ones"
+    )
+    finish.add_argument("table", help="CSV of the measurements (docs/finish.md)")
+    finish.add_argument(
+        "-o", "--output", required=True, help="file for a job's finish.model (.json)"
+    )
+    finish.add_argument("--report", help="file for the report (.json)")
+    finish.add_argument("--job", help="job (.json) whose law tells how belts wear")
+    finish.add_argument("--source", default="", help="what was measured, and by whom")
+    outputs.add(finish)
+    finish.set_defaults(do=_calibrate_finish)
     scan = commands.add_parser(
         "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
     )
@@ -66,6 +78,26 @@ def _calibrate(arguments):
     calibration.write(result["law"], arguments.output)
     arguments.messages.print_warnings(report["warnings"])
     print_text(calibration_report.text(report))
+
+
+def _calibrate_finish(arguments):
+    from ..calibration import calibrate as calibration, finish
+    from ..job import law as laws, load as jobs
+
+    outputs.check(arguments, [arguments.output, arguments.report], [arguments.table, arguments.job])
+    remaining = None
+    if arguments.job:
+        job = jobs.load(arguments.job)
+        remaining = lambda work, removed: laws.remaining_cut(
+            job, {"work": float(work), "volume": float(removed), "time": 0.0}
+        )
+    result = finish.fit_finish(arguments.table, remaining, arguments.source)
+    report = result["report"]
+    if arguments.report:
+        calibration.write(report, arguments.report)
+    calibration.write(result["model"], arguments.output)
+    arguments.messages.print_warnings(report["warnings"])
+    print_text(finish.text(report))
 
 
 def _calibrate_scan(arguments):

@@ -14,6 +14,7 @@ from ..engine import InputError, core
 from ..job import resolution
 from ..job.poses import program_name
 from . import edge_profile
+from . import finish as finishes
 from . import heat as heats
 from .verdict_text import text
 
@@ -61,13 +62,15 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
         if zone is None and not region["samples"]:
             continue  # all faces lie in zones
         one = _region(region, zones, found["zone"], traced)
-        if thick is not None and "fail" in (thick["verdict"], one["verdict"]):
-            one["verdict"] = "fail"
-        elif thick is not None and thick["verdict"] == "unknown":
-            one["verdict"] = "unknown"
+        if thick is not None:
+            one["verdict"] = _worse(one["verdict"], thick["verdict"])
         if not region["samples"]:
             notes.append(_empty(zone, field.spacing))
         samples = np.flatnonzero(found["zone"] == region["region"])
+        finished = None
+        if zone is not None and "finish" in zone:
+            finished = finishes.judge_zone(job, field, zone["finish"], samples)
+            one["verdict"] = _worse(one["verdict"], finished["verdict"])
         edge = None
         if zone is not None and "edge_radius_mm" in zone:
             edge = edge_profile.of_zone(field, samples, zone["edge_radius_mm"])
@@ -80,13 +83,16 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
                 **one,
                 "edge": edge,
                 "thickness": thick,
+                **({"finish": finished} if finished is not None else {}),
             }
         )
+    notes += finishes.notes(job, field)
     whole = _region(found["whole"], zones, found["zone"], traced)
     del whole["verdict"]
     verdicts = {one["verdict"] for one in [*judged, *faces]}
     kinds = [event["kind"] for event in events]
     heat = heats.figures(job, field, motions)
+    finish = finishes.figures(job, field, motions)
     return {
         "format": FORMAT,
         "resolution": resolution.mode(job),
@@ -109,6 +115,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
             )
         },
         **({"heat": heat} if heat is not None else {}),
+        **({"finish": finish} if finish is not None else {}),
         "programs": _programs(job, motions),
         "notes": notes,
         "note_facts": [fact_data(note) for note in notes],
@@ -233,6 +240,11 @@ def _region(region, zones, zone_of, traced):
         "excess_volume_mm3": region["excess_volume"],
         "gouge_volume_mm3": region["gouge_volume"],
     }
+
+
+def _worse(one, other):
+    """Of two words."""
+    return next(word for word in ("fail", "unknown", "pass") if word in (one, other))
 
 
 def _word(region):

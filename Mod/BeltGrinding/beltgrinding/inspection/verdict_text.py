@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import heat
+from . import finish, heat
 
 
 def text(verdict):
@@ -34,11 +34,14 @@ def text(verdict):
                 f"    thickness out of tolerance on {100 * thick['out_share']:.2f} % of the area, at "
                 f"worst {thick['worst']['value_mm']:+.3f} mm"
             )
+    lines += [_finish(zone) for zone in verdict["zones"] if zone.get("finish")]
     lines += [_edge(zone) for zone in verdict["zones"] if zone.get("edge")]
     for cluster in verdict["clusters"][:3]:
         lines.append(f"  {cluster['number']}. {_told(cluster, verdict['programs'])}")
     if verdict.get("heat"):
         lines.append(heat.text(verdict["heat"], verdict["programs"]))
+    if verdict.get("finish"):
+        lines.append(finish.text(verdict["finish"], verdict["programs"]))
     doubts = [
         ("rays that met no stock", verdict["missed_rays"]),
         ("samples with defective stock", verdict["defective_samples"]),
@@ -52,6 +55,24 @@ def text(verdict):
     if told:
         lines.append(f"  in doubt: {', '.join(told)}")
     return "\n".join(lines + [f"  note: {note}" for note in verdict["notes"]])
+
+
+def _finish(zone):
+    found, told = zone["finish"], []
+    if found.get("Ra"):
+        ra = found["Ra"]
+        most = "not known" if ra["max_um"] is None else f"at most {ra['max_um']:.2f} µm"
+        told.append(
+            f"Ra {most} (limit {ra['limit_um']:g} µm, {found['acceptance']}): {100 * ra['above_share']:.2f} % above, "
+            f"{100 * ra['unknown_share']:.2f} % not known: {ra['verdict']}"
+        )
+    if found.get("lay"):
+        lay = found["lay"]
+        told.append(
+            f"lay {lay['symbol']}: {100 * lay['off_share']:.2f} % otherwise, "
+            f"{100 * lay['unknown_share']:.2f} % not known: {lay['verdict']}"
+        )
+    return f"  zone '{zone['name']}': finish: {'; '.join(told)}"
 
 
 def _edge(zone):

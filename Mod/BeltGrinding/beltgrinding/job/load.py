@@ -53,6 +53,7 @@ def validate(job, folder="."):
             )
     machine.filled(job["belt_machine"], schema()["properties"]["belt_machine"])
     machine.check(job)
+    _check_finish(job.get("finish"))
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])
@@ -84,5 +85,24 @@ def validate(job, folder="."):
             "{key}: the lower limit lies above the upper one",
             key="inspection.tolerance_mm",
         )
-    check_zones(job["inspection"]["zones"], job["design"]["faces"])
+    check_zones(job["inspection"]["zones"], job["design"]["faces"], "finish" in job)
     return job
+
+
+def _check_finish(finish):
+    model = (finish or {}).get("model")
+    if model is None:
+        return
+    if "grit" not in finish:
+        raise InputError(
+            "job.finish_without_grit",
+            "{key}: a roughness needs the key 'grit', the grain of the belt",
+            key="finish",
+        )
+    for name, (low, high) in model["ranges"].items():
+        if low > high:
+            raise InputError(
+                "job.finish_range",
+                "{key}: the least value is more than the greatest",
+                key=f"finish.model.ranges.{name}",
+            )

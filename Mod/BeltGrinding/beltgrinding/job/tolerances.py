@@ -12,9 +12,44 @@ def narrowest_band(inspection):
     return min(bands, key=lambda band: band[1] - band[0])
 
 
-def check_zones(zones, faces):
+NEEDED = {"=": "lay_direction", "⊥": "lay_direction", "C": "lay_centre_mm", "R": "lay_centre_mm"}
+
+
+def _check_finish(asked, where, finish):
+    """Of a zone; ``finish``: whether the job computes any."""
+    if not finish:
+        raise InputError(
+            "job.zone_without_finish",
+            "{key}: the job computes no finish; give it the key 'finish'",
+            key=where,
+        )
+    symbol = asked.get("lay")
+    if symbol is None and "Ra_max_um" not in asked:
+        raise InputError(
+            "job.zone_finish_empty", "{key}: give it the key 'Ra_max_um', 'lay' or both", key=where
+        )
+    if symbol == "P":
+        raise InputError(
+            "job.lay_particulate",
+            "{key}: a particulate lay (P) has no direction, and a belt scratches along one",
+            key=where,
+        )
+    needed = NEEDED.get(symbol)
+    if needed is not None and needed not in asked:
+        raise InputError(
+            "job.lay_incomplete",
+            "{key}: the lay {symbol} needs the key {needed}",
+            key=where,
+            symbol=symbol,
+            needed=needed,
+        )
+    if needed == "lay_direction" and not any(asked[needed]):
+        raise InputError("job.lay_direction", "{key}.lay_direction: all of it is zero", key=where)
+
+
+def check_zones(zones, faces, finish=False):
     """Raises InputError for tolerance zones that cannot be; ``faces``: those that are ground, numbered
-    from 1, none for all.
+    from 1, none for all; ``finish``: whether the job computes any.
     """
     ground, names = set(faces), set()
     for i, zone in enumerate(zones):
@@ -37,13 +72,15 @@ def check_zones(zones, faces):
                     name=zone["name"],
                     limits=key,
                 )
-        if "tolerance_mm" not in zone and "thickness_mm" not in zone:
+        if not any(key in zone for key in ("tolerance_mm", "thickness_mm", "finish")):
             raise InputError(
                 "job.zone_without_limits",
-                "{key} '{name}': give it the key 'tolerance_mm', 'thickness_mm' or both",
+                "{key} '{name}': give it the key 'tolerance_mm', 'thickness_mm' or 'finish'",
                 key=where,
                 name=zone["name"],
             )
+        if "finish" in zone:
+            _check_finish(zone["finish"], f"{where} '{zone['name']}'.finish", finish)
         for face in zone.get("faces", []):
             if ground and face not in ground:
                 raise InputError(

@@ -19,8 +19,8 @@ MEASURED, DIFFERENCE = (
     "measured",
     "difference",
 )  # of a scan: its height, and that less the predicted
-TEMPERATURE = "temperature"
-SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE]
+TEMPERATURE, ROUGHNESS = "temperature", "roughness"
+SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE, ROUGHNESS]
 BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
 SETTINGS = (  # name, kind, first value, text
     ("Bounds", "Enumeration", [BY_HAND, BY_TOLERANCE, BY_PERCENTILE], "where the ramps end"),
@@ -76,6 +76,22 @@ OUTPUTS = (
     Output(
         "BurntArea", "Float", "Temperature", "share of the area likely above the limit, percent"
     ),
+    Output(
+        "GreatestRoughness",
+        "Float",
+        "Finish",
+        "Ra of the roughest sample that was ground, µm; 0: not known",
+    ),
+    Output("MeanRoughness", "Float", "Finish", "Ra, µm, weighted by the ground area; 0: not known"),
+    Output(
+        "RoughnessKnown", "Float", "Finish", "share of the ground area with a known Ra, percent"
+    ),
+    Output(
+        "CrossedArea",
+        "Float",
+        "Finish",
+        "share of the ground area where crossed scratches stay, percent; -1: not known",
+    ),
     Output("RemovedVolume", "Volume", "Statistics", "removed by grinding"),
     Output("DesignArea", "Area", "Statistics", "of the faces"),
     Output("Shown", "String", "Deviation", "which result the colours show", True),
@@ -111,7 +127,7 @@ class Deviation(Proxy):
         if "ColourBy" not in obj.PropertiesList:
             text = (
                 "what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; "
-                "temperature: the greatest, of a job with Heat"
+                "temperature: the greatest, of a job with Heat; roughness: Ra, of a job with Finish"
             )
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
             obj.ColourBy = SHOWN
@@ -245,6 +261,35 @@ def _show_temperatures(obj, field):
     obj.BurntArea = 100.0 * (heat["burnt_share"] or 0.0) if heat else 0.0
 
 
+def roughness_of(field):
+    """(n,) Ra of every sample, µm; NaN where it is not known."""
+    return np.array(field.finish["roughness"], dtype=float)
+
+
+def _roughness_colours(obj, field):
+    values = roughness_of(field)
+    unknown = np.isnan(values)
+    colours = core.magnitude_colours(np.nan_to_num(values), field.flags, roughness_span(obj))
+    colours[unknown] = core.colour_scale(-1.0, 1.0, 2.0, [np.nan])[0]
+    return colours
+
+
+def roughness_span(obj):
+    """µm at which the roughness' colours end."""
+    return max(obj.GreatestRoughness, 1e-3)
+
+
+def _show_finish(obj, field):
+    stored = json.loads(getattr(obj.Simulation, "VerdictData", "") or "{}")
+    finish = stored.get("verdict", {}).get("finish") if field.finish is not None else None
+    spread = (finish or {}).get("Ra_um")
+    crossed = (finish or {}).get("crossed_share")
+    obj.GreatestRoughness = spread["max"] if spread else 0.0
+    obj.MeanRoughness = spread["mean"] if spread else 0.0
+    obj.RoughnessKnown = 100.0 * finish["known_share"] if finish else 0.0
+    obj.CrossedArea = -1.0 if crossed is None else 100.0 * crossed
+
+
 def show(obj, field, scale, new_mesh=True):
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
@@ -254,6 +299,7 @@ def show(obj, field, scale, new_mesh=True):
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
     obj.UncertaintyLimit = _round_up(sd)
     _show_temperatures(obj, field)
+    _show_finish(obj, field)
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
         colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
     elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
@@ -261,6 +307,8 @@ def show(obj, field, scale, new_mesh=True):
     elif obj.ColourBy == TEMPERATURE and field.heat is not None:
         rise = np.array(field.heat["rise"], dtype=float)
         colours = core.magnitude_colours(rise, field.flags, temperature_span(obj))
+    elif obj.ColourBy == ROUGHNESS and field.finish is not None:
+        colours = _roughness_colours(obj, field)
     else:
         colours = core.deviation_colours(field, *scale, bands_of(obj), preferences.colours())
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale

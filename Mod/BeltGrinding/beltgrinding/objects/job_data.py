@@ -37,6 +37,7 @@ KEYS = (
     Key("LandCurve", "VectorList", "Law", "law.land_curve"),
     Key("HeatLimit", "Float", "Law", "law.heat_limit_MPa_m_s"),
     Key("Heat", "JSON", "Law", "heat"),
+    Key("Finish", "JSON", "Law", "finish"),
     Key("PressureLimit", "Pressure", "Law", "law.pressure_limit_MPa"),
     Key("Calibration", "JSON", "Law", "law.calibration"),
     Key("WearModel", "Enumeration", "Wear", "law.wear.model"),

@@ -102,8 +102,9 @@ def verdict_of(job, simulation, inspection):
     if stored.get("inspection") == judged_by:
         return stored["verdict"]
     found = judge(job, simulation, judged_by)
-    if "heat" in stored.get("verdict", {}):  # no tolerance changes it
-        found["heat"] = stored["verdict"]["heat"]
+    for name in ("heat", "finish"):  # no tolerance changes them
+        if name in stored.get("verdict", {}):
+            found[name] = stored["verdict"][name]
     return found
 
 

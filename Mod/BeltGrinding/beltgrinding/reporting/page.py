@@ -1,7 +1,7 @@
 """A report's page, put together from its sections."""
 
 from ..base.resources import resources
-from . import charts, facts, findings, heat_section, reproduction, view
+from . import charts, facts, findings, finish_section, heat_section, reproduction, view
 from .layout import facts as rows, section, whole_page
 from .markup import element
 
@@ -18,6 +18,7 @@ def document(content, words, scale, spots, drawn, shown=None, lacking=None):
         _pictures(content, words, scale, spots, drawn, shown, lacking),
         findings.tolerance(content, words, scale),
         heat_section.heat(content.verdict, words),
+        finish_section.finish(content.verdict, words),
         findings.events(content, words),
         _process(content, words),
         findings.trust(content, words),

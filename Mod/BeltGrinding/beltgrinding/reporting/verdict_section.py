@@ -157,6 +157,35 @@ def _thickness(found, words):
     return [element("h3", words("Thickness")), table(heads, rows, "list faces")]
 
 
+def finishes(verdict, words):
+    """The table of what zones call for of the finish; None where none does."""
+    rows = []
+    for zone in verdict["zones"]:
+        asked = zone.get("finish")
+        if not asked:
+            continue
+        told, ra, lay = [], asked.get("Ra"), asked.get("lay")
+        if ra:
+            limit = words.figures(ra["limit_um"])
+            told.append((f"Ra {limit} µm ({asked['acceptance']})", ra["above_share"], ra))
+        if lay:
+            told.append((words("lay {symbol}", symbol=lay["symbol"]), lay["off_share"], lay))
+        for what, off, one in told:
+            unknown = words.percent(one["unknown_share"], 1)
+            verdict_of = mark(one["verdict"], words)
+            rows.append((zone["name"], what, words.percent(off, 1), unknown, verdict_of))
+    if not rows:
+        return None
+    heads = [
+        (words("Zone"), ""),
+        (words("Called for"), ""),
+        (words("beyond"), "number"),
+        (words("not known"), "number"),
+        (words("Verdict"), ""),
+    ]
+    return table(heads, rows, "list faces")
+
+
 def clusters(verdict, words):
     """The places out of tolerance, largest first, with the lines of the program that made them."""
     found = verdict["clusters"]

@@ -9,7 +9,7 @@ of its legend, or ``swatches`` ([colour, text]); ``missing``: what it means wher
 import numpy as np
 
 from ..engine import core
-from ..inspection import heat
+from ..inspection import finish, heat
 from ..inspection import verdict as verdicts
 from ..inspection.section_plot import ticks
 from . import view_mesh
@@ -39,6 +39,14 @@ def modes(content, scale, packed, chosen, words, context=None):
     if hot is not None:
         start = result.job["heat"]["start_temperature_C"]
         found.append(made.ramp("temperature", words("Greatest temperature"), "°C", 0, hot, start))
+    rough = finish.roughness(field)
+    if rough is not None:
+        found.append(made.ramp("roughness", words("Roughness Ra"), "µm", 2, rough))
+    across = finish.crossed_of(result.job, field)
+    if across is not None and across.any():
+        angle = np.degrees(np.asarray(field.finish["crossing"], dtype=float))
+        shown = np.where(across, angle, 0.0)
+        found.append(made.ramp("crossing", words("Angle of crossed scratches"), "°", 0, shown))
     if len(field.height_sd) == field.size:
         found.append(
             made.ramp("sd", words("Uncertainty (one standard deviation)"), "mm", 4, field.height_sd)

@@ -15,7 +15,7 @@ from ..job.engine_input import engine_arguments
 from ..job.law import remaining_cut
 from ..job.poses import program_name
 from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
-from . import heat, idle
+from . import finish, heat, idle
 from .checkpoints import RunCheckpoints
 from .result import Result
 
@@ -128,6 +128,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
     heated = heat.options(job, field, shape, warnings, context.part(0.3, 0.3))
     if heated:
         phases.end("heat")
+    finished = finish.options(job, warnings)
     if early is not None:
         early(list(warnings))
 
@@ -140,15 +141,17 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
         force_influence=forces,
         lower_limits=verdicts.lower_limits(job, field),
         heat=heated,
+        finish=finished,
     )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
-    # The heat in the part is not among what a checkpoint holds.
+    # The heat in the part and its finish are not among what a checkpoint holds.
+    whole = not heated and not finished
     checkpoints = RunCheckpoints(
         field,
         (wheel, compliance, law, options),
         recording is not None,
         len(paths),
-        resume and not heated,
+        resume and whole,
     )
     phases.end("hash")
     found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}

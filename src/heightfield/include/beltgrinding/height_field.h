@@ -56,6 +56,39 @@ struct HeatTrace {
     void clear() { *this = {}; }
 };
 
+/// What finish the passes over each sample have left. All arrays have one value per sample, or are
+/// empty: not computed.
+struct FinishTrace {
+    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no pass
+    static constexpr float kMostUnknown = 0.05F;         ///< of `unknown`, up to which Ra is known
+    /// What the last pass had that no measurement had; what is told first of several.
+    enum Outside : std::uint8_t {
+        kInside,     ///< nothing
+        kPressure,   ///< its mean pressure
+        kBeltSpeed,  ///< the belt's speed
+        kFeed,       ///< the feed
+        kBeltWear    ///< what remains of the belt's cut
+    };
+
+    std::vector<float> settled;   ///< um: shares of the passes' own Ra, added up; see `roughness`
+    std::vector<float> unknown;   ///< share of Ra that is from what is not known, [0, 1]
+    std::vector<Vec3f> lay;       ///< unit, in the tangent plane, work frame: where the last pass
+                                  ///< scratched along; 0: no pass
+    std::vector<float> crossing;  ///< rad, [0, pi/2], between the last two passes' lays; NaN: none
+    std::vector<std::uint32_t> passes;  ///< counted
+    std::vector<std::uint32_t> motion;  ///< of the last pass, numbered as in a RemovalTrace; kNever
+    std::vector<std::uint8_t> outside;  ///< an Outside
+
+    /// Nothing is known.
+    bool empty() const { return settled.empty(); }
+    /// um, Ra of sample i; NaN where it is not known.
+    float roughness(std::size_t i) const;
+    /// Forgets all.
+    void clear() { *this = {}; }
+    /// Bytes held by all arrays.
+    std::size_t bytes() const;
+};
+
 /// The discrete height field: samples of the design surface, each with the segment of its normal
 /// ray that is still material, as a structure of arrays. Frame: work (the part's own). Lengths in
 /// mm.
@@ -83,6 +116,7 @@ struct HeightField {
     std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
     HeatTrace heat;                   ///< how hot it became where; empty: not computed
+    FinishTrace finish;               ///< what finish the passes left; empty: not computed
     std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm

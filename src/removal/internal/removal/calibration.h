@@ -19,6 +19,8 @@ enum GrindParameter : int {
     kPressureThreshold,  ///< MPa
     kLnSaturation,       ///< ln of the saturation pressure in MPa; inf: none
     kWearExponent,       ///< m of a cut that falls as (1 + W / scale)^-m; inf: exponentially
+    kGritExponent,       ///< a, of the grain's number or size; 0 where it is not known
+    kCutExponent,        ///< f, of the share of a fresh belt's cut that remains; 0 likewise
     kGrindParameters,
 };
 using GrindVector = Eigen::Matrix<double, kGrindParameters, 1>;
@@ -31,6 +33,7 @@ struct GrindReferences {
     double feed = 50.0;     ///< mm/s
     double time = 1.0;      ///< s
     double area = 1.0;      ///< mm2
+    double grit = 1.0;      ///< in the unit of `MeasuredGrinds::grit`
 };
 
 /// Measured grinds, one a row.
@@ -46,6 +49,8 @@ struct MeasuredGrinds {
     Eigen::ArrayXd measured;  ///< mm3 or mm
     /// (n, m) pressure over the mean F/A on m equal shares of the contact; empty: 1 everywhere.
     Eigen::ArrayXXd relative;
+    Eigen::ArrayXd grit;   ///< number or size of the belt's grain, in one unit; empty: not known
+    Eigen::ArrayXd cut;    ///< share of a fresh belt's cut that remains; empty: not known
     Eigen::ArrayXd areas;  ///< (k,) mm2, what an unknown area can be; empty if all are known
 
     /// Throws InputError if sizes differ, or a figure is not finite or out of range.
@@ -54,8 +59,8 @@ struct MeasuredGrinds {
 
 /// ln of the measured figure that the model says, volume = A t dh/dt with
 ///   dh/dt = K k_t(W) g_b(V_b) g_w(V_w) <g_p(p)>, <> the mean over the contact, and t, A raised to
-/// tau, 1 + delta about their references, for row `i` with contact area `area`; its gradient by the
-/// parameters.
+/// tau, 1 + delta about their references, times (grit / grit_ref)^a cut^f where these are known,
+/// for row `i` with contact area `area`; its gradient by the parameters.
 double log_grind(const GrindVector& parameters, const GrindReferences& references,
                  const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -121,6 +122,41 @@ struct HeatRequest {
     void validate(std::size_t samples) const;
 };
 
+/// A range of a quantity; all by default.
+struct Range {
+    double low = 0.0;                                       ///< the least
+    double high = std::numeric_limits<double>::infinity();  ///< the greatest
+
+    /// Whether it holds the value.
+    bool holds(double value) const { return value >= low && value <= high; }
+};
+
+/// What finish the passes leave, if asked for. The roughness of a pass, where it has come to rest:
+/// Ra = Ra_ref (p / p_ref)^b (V_b / V_ref)^d (V_w / V_w,ref)^e k^f, p the mean pressure over the
+/// time that the pass pressed the sample, V_b, V_w and k, the share of a fresh belt's cut that
+/// remains, as it left the sample. Each pass leaves `rest` of the difference to it.
+struct FinishRequest {
+    bool wanted = false;               ///< lays and passes, and the rest if there is a `roughness`
+    double roughness = 0.0;            ///< Ra_ref, um, of the belt's grain; 0: none is computed
+    double pressure_exponent = 0.0;    ///< b
+    double speed_exponent = 0.0;       ///< d
+    double feed_exponent = 0.0;        ///< e
+    double cut_exponent = 0.0;         ///< f
+    double reference_pressure = 0.1;   ///< p_ref, MPa
+    double reference_speed = 20000.0;  ///< V_ref, mm/s
+    double reference_feed = 50.0;      ///< V_w,ref, mm/s
+    Range pressure = {};               ///< MPa: what was measured; passes elsewhere leave what is
+                                       ///< not known, those lighter than that nothing
+    Range speed = {};                  ///< mm/s
+    Range feed = {};                   ///< mm/s
+    Range cut = {};                    ///< of k
+    double rest = 0.0;                 ///< share of the roughness before that a pass leaves, [0, 1)
+    double before = std::numeric_limits<double>::quiet_NaN();  ///< um, Ra of the part; NaN: unknown
+
+    /// Throws InputError naming the setting that is none.
+    void validate() const;
+};
+
 /// What a simulation keeps besides the heights and the time series.
 struct OutputRequest {
     bool trace = true;  ///< keep `field.trace`; without, what it holds is dropped
@@ -146,6 +182,7 @@ struct SimulationOptions {
     MonitorLimits limits;     ///< what is noted as an event
     OutputRequest outputs;    ///< what is kept
     HeatRequest heat;         ///< how hot the part becomes
+    FinishRequest finish;     ///< what finish it gets
     bool must_touch = true;   ///< a path that never touches the stock is an error
 };
 
@@ -159,6 +196,7 @@ struct PhaseTimes {
     double trace = 0.0;     ///< noting what removed
     double events = 0.0;    ///< watching for them
     double heat = 0.0;      ///< conducting heat
+    double finish = 0.0;    ///< noting what the passes leave
 
     /// Adds each phase.
     PhaseTimes& operator+=(const PhaseTimes& more);
@@ -203,10 +241,10 @@ struct SimulationResult {
 };
 
 /// Grinds `field` along `path`: localise, gap, contact, removal, pose by pose. Only
-/// `field.height`, `field.trace` and, with heat, `field.heat` change; a trace goes on with what is
-/// there. On cancel or error the field is left as it was before the call. Results do not depend on
-/// the number of threads. Throws InputError (no contact anywhere on the path, bad options) and
-/// Cancelled.
+/// `field.height`, `field.trace` and, where asked for, `field.heat` and `field.finish` change;
+/// trace and finish go on with what is there. On cancel or error the field is left as it was before
+/// the call. Results do not depend on the number of threads. Throws InputError (no contact anywhere
+/// on the path, bad options) and Cancelled.
 SimulationResult simulate(HeightField& field, const ToolPath& path, const ContactModel& model,
                           const RemovalLaw& law, const SimulationOptions& options,
                           const RunContext& context = {});

@@ -43,6 +43,7 @@ class DeviationPanel(Panel):
             obj.ExpectedInTolerance > 0.0
             or getattr(obj.Simulation, "ScanFigures", "")
             or obj.GreatestTemperature > 0.0
+            or obj.GreatestRoughness > 0.0
         ):
             shown = {
                 "deviation": translate("BeltGrinding", "Deviation"),
@@ -50,6 +51,7 @@ class DeviationPanel(Panel):
                 "measured": translate("BeltGrinding", "Scan"),
                 "difference": translate("BeltGrinding", "Scan less prediction"),
                 "temperature": translate("BeltGrinding", "Greatest temperature"),
+                "roughness": translate("BeltGrinding", "Roughness"),
             }
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
         self.table = QtGui.QTableWidget(0, 2)
@@ -122,6 +124,15 @@ class DeviationPanel(Panel):
                 (translate("BeltGrinding", "Hottest"), f"{obj.GreatestTemperature:.0f} °C"),
                 (translate("BeltGrinding", "Hottest, at most"), most),
             )
+        if obj.GreatestRoughness > 0.0:  # never without how much of it is known
+            known = f"{obj.RoughnessKnown:.1f} %"
+            rows += (
+                (translate("BeltGrinding", "Ra, mean"), f"{obj.MeanRoughness:.2f} µm"),
+                (translate("BeltGrinding", "Ra, greatest"), f"{obj.GreatestRoughness:.2f} µm"),
+                (translate("BeltGrinding", "Ra known"), known),
+            )
+        if obj.CrossedArea >= 0.0:
+            rows += ((translate("BeltGrinding", "Crossed scratches"), f"{obj.CrossedArea:.1f} %"),)
         self.table.setRowCount(len(rows))
         for i, (name, text) in enumerate(rows):
             self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))

@@ -9,9 +9,12 @@ from ...objects import preferences
 from ...objects.deviation import (
     DIFFERENCE,
     MEASURED,
+    ROUGHNESS,
     TEMPERATURE,
     UNCERTAINTY,
     bands_of,
+    roughness_of,
+    roughness_span,
     scan_heights,
     temperature_span,
 )
@@ -82,6 +85,9 @@ class CrispColours:
         elif obj.ColourBy == TEMPERATURE and field.heat is not None:
             rise = np.array(field.heat["rise"], dtype=float)
             self.shape.colour_by(field_view.TEMPERATURE, temperature_span(obj), values=rise)
+        elif obj.ColourBy == ROUGHNESS and field.finish is not None:
+            rough = roughness_of(field)
+            self.shape.colour_by(field_view.ROUGHNESS, roughness_span(obj), values=rough)
         else:
             self.shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
 

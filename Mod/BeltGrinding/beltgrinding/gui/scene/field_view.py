@@ -16,9 +16,10 @@ STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHe
 PICK_RADIUS = 1.0  # pixels
 DEVIATION, REMOVED, UNCERTAINTY, FACE = "deviation", "removed depth", "uncertainty", "face"
 PRESSURE, CONTACT, TEMPERATURE = "pressure", "contact", "temperature"
+ROUGHNESS = "roughness"
 LEAST = 1e-9  # of a scale: half its range
 PALETTE = 2048  # colours from one end of a scale to the other
-MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE)
+MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE, ROUGHNESS)
 
 
 def _coin_module():

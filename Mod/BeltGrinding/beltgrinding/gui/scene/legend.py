@@ -120,6 +120,15 @@ def temperature(start, span, out_of_date=False):
     return Spec(colours, labels, text, ("", ""), (False, False), _warning(out_of_date))
 
 
+def roughness(span, out_of_date=False):
+    """The ``Spec`` of Ra, up to ``span`` µm."""
+    colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
+    labels = {k / 4: f"{span * k / 4:.2g}" for k in range(5)}
+    text = translate("BeltGrinding", "roughness Ra, µm")
+    colours = [int(c) for c in colours]
+    return Spec(colours, labels, text, ("", ""), (False, False), _warning(out_of_date))
+
+
 class Legend:
     """A legend over the 3D views: ``node`` goes into a scene, where it is not picked and not counted by
     fitAll. It takes a twelfth of a view's width and stands where it hides least of the part.

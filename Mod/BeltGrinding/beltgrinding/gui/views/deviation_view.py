@@ -5,14 +5,17 @@ from pivy import coin
 from ...objects.deviation import (
     DIFFERENCE,
     MEASURED,
+    ROUGHNESS,
     TEMPERATURE,
     UNCERTAINTY,
     bands_of,
+    roughness_span,
     temperature_span,
 )
 from ..common.compat import QtCore
 from ..scene import legend
 from ..scene.crisp_colours import CrispColours
+from ..scene.lay_strokes import lay_strokes
 from ..scene.part_context import rest_of_part
 from .coloured_mesh_view import ColouredMeshView
 
@@ -22,6 +25,7 @@ LEGEND = (
     "ColourLimit",
     "UncertaintyLimit",
     "GreatestTemperature",
+    "GreatestRoughness",
     "Bands",
     "Minimum",
     "Maximum",
@@ -42,10 +46,25 @@ class DeviationView(ColouredMeshView):
             "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
         )
         view.RestOfPart = True
+        self._lay_property(view)
+
+    @staticmethod
+    def _lay_property(view):
+        if "Scratches" in view.PropertiesList:
+            return
+        view.addProperty(
+            "App::PropertyBool",
+            "Scratches",
+            "Deviation",
+            "draw the direction of the scratches, of a job with Finish; red: crossed",
+        )
+        view.Scratches = True
 
     def attach(self, view):
         self.crisp = CrispColours(view.RootNode)
+        self.lay = coin.SoSwitch()
         super().attach(view)
+        view.RootNode.addChild(self.lay)
         self.rest = coin.SoSwitch()
         # Before the mesh's materials and light, which it would inherit.
         view.RootNode.insertChild(self.rest, 0)
@@ -58,6 +77,7 @@ class DeviationView(ColouredMeshView):
     def finishRestoring(self):
         if hasattr(self.view, "Lit"):  # 0.1.0 shaded the colours, which made others of them
             self.view.removeProperty("Lit")
+        self._lay_property(self.view)
         super().finishRestoring()
         self.update_rest()
         QtCore.QTimer.singleShot(0, self._redraw)  # the simulation may come after it
@@ -69,6 +89,7 @@ class DeviationView(ColouredMeshView):
             self.update_rest()
         if name == "Shown":  # what the object says last
             self.update_crisp()
+            self.update_lay()
         if name in LEGEND:
             self.update_legend()
 
@@ -80,6 +101,8 @@ class DeviationView(ColouredMeshView):
             self.update_rest()
         if name in ("Visibility", "DisplayMode", "Transparency"):
             self.update_crisp()
+        if name in ("Visibility", "Scratches"):
+            self.update_lay()
 
     def legend_spec(self):
         obj = self.view.Object
@@ -92,6 +115,8 @@ class DeviationView(ColouredMeshView):
             return legend.scan(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
         if obj.ColourBy == TEMPERATURE and obj.GreatestTemperature > 0.0:
             return legend.temperature(obj.StartTemperature, temperature_span(obj), obj.OutOfDate)
+        if obj.ColourBy == ROUGHNESS and obj.GreatestRoughness > 0.0:
+            return legend.roughness(roughness_span(obj), obj.OutOfDate)
         beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
         return legend.deviation(*scale, obj.OutOfDate, bands_of(obj), beyond)
 
@@ -101,6 +126,17 @@ class DeviationView(ColouredMeshView):
             self.crisp.update(self.view)
         self.colour()
 
+    def update_lay(self):
+        """Draws the direction of the scratches, where it is known."""
+        self.lay.removeAllChildren()
+        self.lay.whichChild = coin.SO_SWITCH_NONE
+        view = self.view
+        if view.Visibility and getattr(view, "Scratches", False):
+            drawn = lay_strokes(view.Object)
+            if drawn is not None:
+                self.lay.addChild(drawn)
+                self.lay.whichChild = coin.SO_SWITCH_ALL
+
     def colour(self):
         """Lets FreeCAD take the vertices' colours over, which takes long, where it draws them."""
         if not self.crisp.shown():
@@ -109,6 +145,7 @@ class DeviationView(ColouredMeshView):
     def _redraw(self):
         try:
             self.update_crisp()
+            self.update_lay()
         except (ReferenceError, RuntimeError):
             pass  # the document is closed again
 

@@ -1,0 +1,252 @@
+"""What finish grinding left on a part: figures of the roughness and the lay that a result holds by sample, and whether
+they are what zones call for. Terms of ISO 21920-1 and ISO 1302: Ra, lay and its symbols.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..engine import core
+
+__all__ = [
+    "crossed",
+    "crossed_of",
+    "figures",
+    "judge_zone",
+    "notes",
+    "rest_per_pass",
+    "roughness",
+    "text",
+    "widened",
+]
+
+SLACK = 0.03  # of a range of measurements: what counts as the same
+SEEN = 0.05  # share of an earlier pass from which its scratches are seen
+SIXTEEN_PERCENT = 0.16  # ISO 21920-3
+NORMAL_95 = 1.96  # standard deviations that hold 95 %
+OUTSIDE = ("pressure", "belt speed", "feed", "belt wear")  # as core numbers them, from 1
+CODES = {  # of the facts that name them
+    "pressure": ("calibration.the_pressure", "the mean pressure"),
+    "belt speed": ("calibration.the_speed", "the belt's speed"),
+    "feed": ("calibration.the_feed", "the feed"),
+    "belt wear": ("calibration.the_wear", "the belt's wear"),
+}
+
+
+def widened(span):
+    """A range of what was measured, by what counts as the same."""
+    return span[0] * (1.0 - SLACK), span[1] * (1.0 + SLACK)
+
+
+def rest_per_pass(given):
+    """Share of the roughness before that a pass leaves, of a job's ``finish``; None: not known."""
+    return given.get("rest_per_pass", given.get("model", {}).get("rest_per_pass"))
+
+
+def roughness(field):
+    """(n,) Ra of every sample, um; NaN where it is not known. None where no finish was computed."""
+    return None if field.finish is None else np.asarray(field.finish["roughness"], dtype=float)
+
+
+def crossed(field, rest, angle_deg):
+    """(n,) whether scratches of the last two passes cross by ``angle_deg`` or more and both are seen; None where that
+    is not known. ``rest``: as ``rest_per_pass`` gives it.
+    """
+    if field.finish is None or rest is None:
+        return None
+    crossing = np.nan_to_num(np.asarray(field.finish["crossing"], dtype=float))
+    return (crossing >= math.radians(angle_deg)) & (rest >= SEEN)
+
+
+def crossed_of(job, field):
+    """``crossed`` by a job's ``finish``; None without."""
+    given = job.get("finish")
+    return given and crossed(field, rest_per_pass(given), given["crossing_angle_deg"])
+
+
+def figures(job, field, motions=None):
+    """The dict of a verdict's ``finish``; None where none was computed. ``motions``: as ``motions.of_paths`` gives
+    them, or None.
+    """
+    given = job.get("finish")
+    if given is None or field.finish is None:
+        return None
+    areas = np.asarray(field.areas, dtype=float)
+    ground = np.asarray(field.finish["passes"]) > 0
+    found, across = roughness(field), crossed_of(job, field)
+    known = ground & np.isfinite(found)
+    outside = np.asarray(field.finish["outside"])
+    whole = float(areas[ground].sum())
+    share = lambda chosen: float(areas[ground & chosen].sum()) / whole if whole > 0.0 else 0.0
+    model = given.get("model")
+    return {
+        "initial_Ra_um": given.get("initial_Ra_um"),
+        "grit": given.get("grit"),
+        "source": model["source"] if model else None,
+        "rest_per_pass": rest_per_pass(given),
+        "crossing_angle_deg": given["crossing_angle_deg"],
+        "ground_area_mm2": whole,
+        "known_share": share(known),
+        "outside_shares": {
+            name.replace(" ", "_"): share(outside == k) for k, name in enumerate(OUTSIDE, 1)
+        },
+        "Ra_um": _spread(found[known], areas[known]) if known.any() else None,
+        "ln_deviation": model.get("ln_deviation") if model else None,
+        "worst": _worst(field, found, known, model, motions) if known.any() else None,
+        "crossed_share": None if across is None else share(across),
+    }
+
+
+def _spread(values, areas):
+    order = np.argsort(values)
+    summed = np.cumsum(areas[order])
+    high = values[order][min(int(np.searchsorted(summed, 0.95 * summed[-1])), len(order) - 1)]
+    mean = float(np.average(values, weights=areas)) if summed[-1] > 0.0 else float(values.mean())
+    return {
+        "min": float(values.min()),
+        "mean": mean,
+        "p95": float(high),
+        "max": float(values.max()),
+    }
+
+
+def _worst(field, found, known, model, motions):
+    index = int(np.flatnonzero(known)[found[known].argmax()])
+    factor = math.exp(NORMAL_95 * (model or {}).get("ln_deviation", 0.0))
+    motion = int(field.finish["motion"][index])
+    told = motions is not None and motion < len(motions["program"])
+    return {
+        "Ra_um": float(found[index]),
+        "least_um": float(found[index] / factor),
+        "greatest_um": float(found[index] * factor),
+        "sample": index,
+        "point_mm": [float(x) for x in field.points[index]],
+        "face": int(field.faces[index]) + 1,
+        "motion": motion,
+        "program": int(motions["program"][motion]) if told else None,
+        "line": int(motions["line"][motion]) or None if told else None,
+    }
+
+
+def judge_zone(job, field, asked, samples):
+    """What the finish of a zone is like, a dict; ``asked``: the zone's ``finish``, ``samples``: (k,) of the zone."""
+    areas = np.asarray(field.areas, dtype=float)[samples]
+    whole = float(areas.sum())
+    share = lambda chosen: float(areas[chosen].sum()) / whole if whole > 0.0 else 0.0
+    allowed = SIXTEEN_PERCENT if asked["acceptance"] == "T16%" else 0.0
+    computed = field.finish is not None
+    nothing = np.ones(len(samples), dtype=bool)
+    verdicts, judged = [], {"acceptance": asked["acceptance"]}
+    limit = asked.get("Ra_max_um")
+    if limit is not None:
+        values = roughness(field)[samples] if computed else np.full(len(samples), np.nan)
+        unknown = share(np.isnan(values))
+        above = share(np.nan_to_num(values) > limit)
+        known = values[np.isfinite(values)]
+        judged["Ra"] = {
+            "limit_um": limit,
+            "max_um": float(known.max()) if len(known) else None,
+            "above_share": above,
+            "unknown_share": unknown,
+            "verdict": _word(above, unknown, allowed, whole),
+        }
+        verdicts.append(judged["Ra"]["verdict"])
+    symbol = asked.get("lay")
+    if symbol is not None:
+        off, unknown = _lay(job, field, asked, samples) if computed else (~nothing, nothing)
+        judged["lay"] = {
+            "symbol": symbol,
+            "off_share": share(off),
+            "unknown_share": share(unknown),
+            "verdict": _word(share(off), share(unknown), allowed, whole),
+        }
+        verdicts.append(judged["lay"]["verdict"])
+    judged["verdict"] = next((w for w in ("fail", "unknown", "pass") if w in verdicts), "unknown")
+    return judged
+
+
+def _word(off, unknown, allowed, whole):
+    if off > allowed:
+        return "fail"
+    return "unknown" if off + unknown > allowed or not whole > 0.0 else "pass"
+
+
+def _lay(job, field, asked, samples):
+    """((k,) where the scratches are not what is asked for, (k,) where that is not known)."""
+    lay = np.asarray(field.finish["lay"], dtype=float)[samples]
+    none = ~lay.any(axis=1)
+    across = crossed_of(job, field)
+    across = None if across is None else across[samples]
+    symbol = asked["lay"]
+    if symbol in ("X", "M"):
+        return (none & False, none | True) if across is None else (~across & ~none, none)
+    normals = np.asarray(field.normals, dtype=float)[samples]
+    if symbol in ("=", "⊥"):
+        along = np.tile(np.asarray(asked["lay_direction"], dtype=float), (len(samples), 1))
+    else:
+        along = np.asarray(field.points, dtype=float)[samples] - np.asarray(asked["lay_centre_mm"])
+    along = along - np.einsum("ij,ij->i", along, normals)[:, None] * normals
+    size = np.linalg.norm(along, axis=1)
+    blind = size < 1e-6  # the direction has no trace on the surface there
+    cosine = np.abs(np.einsum("ij,ij->i", along, lay)) / np.where(blind, 1.0, size)
+    tolerance = math.radians(asked["lay_tolerance_deg"])
+    angle = np.arccos(np.clip(cosine, 0.0, 1.0))
+    off = (angle if symbol in ("=", "R") else 0.5 * math.pi - angle) > tolerance + 1e-9
+    unknown = none | blind
+    if across is not None:
+        off = off | across
+    return off & ~unknown, unknown
+
+
+def notes(job, field):
+    """Facts of what is not known of the finish."""
+    found = figures(job, field)
+    if found is None or "model" not in job["finish"]:
+        return []
+    told = [
+        core.Fact(
+            "inspection.finish_outside",
+            "{percent:.1f} % of the ground area has no roughness: {what} of its last pass lies outside of what was "
+            "measured",
+            percent=100.0 * found["outside_shares"][name.replace(" ", "_")],
+            what=core.Fact(*CODES[name]),
+        )
+        for name in OUTSIDE
+        if found["outside_shares"][name.replace(" ", "_")] > 0.0
+    ]
+    unsettled = 1.0 - found["known_share"] - sum(found["outside_shares"].values())
+    if found["ground_area_mm2"] > 0.0 and unsettled > 1e-6:
+        told.append(
+            core.Fact(
+                "inspection.finish_unsettled",
+                "{percent:.1f} % of the ground area has no roughness: too much is left there of what was before, which "
+                "is not known ({key})",
+                percent=100.0 * unsettled,
+                key="finish.initial_Ra_um",
+            )
+        )
+    return told
+
+
+def text(finish, programs):
+    """A line in words; ``programs``: of the verdict."""
+    lines = []
+    worst, spread = finish["worst"], finish["Ra_um"]
+    if worst is None:
+        lines.append("  roughness: not known")
+    else:
+        told = (
+            f"  roughness: Ra {spread['min']:.2f} to {spread['max']:.2f} µm, mean {spread['mean']:.2f} µm, known on "
+            f"{100 * finish['known_share']:.1f} % of the ground area; most on face {worst['face']}"
+        )
+        if finish["ln_deviation"]:
+            told += f" (95 %: {worst['least_um']:.2f} to {worst['greatest_um']:.2f} µm)"
+        if worst["line"] is not None and worst["program"] is not None:
+            told += f", by {Path(programs[worst['program']]['name']).name}, line {worst['line']}"
+        lines.append(told)
+    if finish["crossed_share"] is not None:
+        lines.append(
+            f"  crossed scratches on {100 * finish['crossed_share']:.1f} % of the ground area"
+        )
+    return "\n".join(lines)

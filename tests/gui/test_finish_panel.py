@@ -1,0 +1,75 @@
+"""The finish in the window: none without the key, then figures, colours, legend and strokes. The roughness is of a made-up
+belt."""
+
+
+def test_roughness_and_scratches_are_shown_once_the_job_asks_for_them(freecad):
+    freecad.run(
+        """
+import json
+from pivy import coin
+from beltgrinding.objects import api
+from beltgrinding.gui.scene import lay_strokes
+from support import synthetic_finish
+from support.hands import *
+job = prepare()
+doc = job.Document
+
+def rows():
+    table = field("statistics")
+    return {table.item(i, 0).text(): table.item(i, 1).text() for i in range(table.rowCount())}
+
+def shown():
+    api.simulate(job)
+    deviation = doc.getObject("Deviation") or api.make_deviation(job)
+    settle()
+    deviation.ViewObject.Proxy.doubleClicked(deviation.ViewObject)
+    settle()
+    return deviation
+
+def stroked(deviation):
+    lay = deviation.ViewObject.Proxy.lay
+    search = coin.SoSearchAction()
+    search.setType(coin.SoLineSet.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.apply(lay)
+    return lay.whichChild.getValue() == coin.SO_SWITCH_ALL and search.getPaths().getLength()
+
+deviation = shown()
+assert deviation.GreatestRoughness == 0.0 and deviation.CrossedArea == -1.0
+assert "Ra, mean" not in rows() and not stroked(deviation)
+press("OK")
+
+job.Finish = json.dumps({"grit": 120, "initial_Ra_um": 3.2, "model": synthetic_finish.model()})
+deviation = shown()
+assert 0.0 < deviation.MeanRoughness < deviation.GreatestRoughness
+assert rows()["Ra, greatest"] == f"{deviation.GreatestRoughness:.2f} µm"
+assert rows()["Ra known"] == f"{deviation.RoughnessKnown:.1f} %"
+assert "Crossed scratches" in rows()
+before = list(deviation.VertexColors)
+choice = field("ColourBy")
+choice.setCurrentIndex(choice.findText("Roughness"))
+settle()
+assert deviation.ColourBy == "roughness"
+assert list(deviation.VertexColors) != before
+assert stroked(deviation)
+deviation.ViewObject.Scratches = False
+settle()
+assert not stroked(deviation)
+deviation.ViewObject.Scratches = True
+press("OK")
+
+from beltgrinding.objects.fields import field_of
+import numpy as np
+ground = field_of(deviation.Simulation)
+ends, across = lay_strokes.strokes(ground, None, 20.0)
+assert 200 < len(ends) < 2.5 * lay_strokes.MOST and not across.any()
+# Along the surface, where passes were.
+middle, way = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
+near = np.linalg.norm(middle[:, None] - ground.points[None], axis=2).argmin(axis=1) if ground.size < 20000 else None
+if near is not None:
+    assert (np.asarray(ground.finish["passes"])[near] > 0).mean() > 0.95
+    square = np.abs(np.einsum("ij,ij->i", way, np.asarray(ground.normals)[near]))
+    assert np.median(square / np.linalg.norm(way, axis=1)) < 0.02
+""",
+        window=True,
+    )

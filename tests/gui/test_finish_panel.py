@@ -6,6 +6,8 @@ def test_roughness_and_scratches_are_shown_once_the_job_asks_for_them(freecad):
     freecad.run(
         """
 import json
+import numpy as np
+from PIL import Image
 from pivy import coin
 from beltgrinding.objects import api
 from beltgrinding.gui.scene import lay_strokes
@@ -52,14 +54,24 @@ settle()
 assert deviation.ColourBy == "roughness"
 assert list(deviation.VertexColors) != before
 assert stroked(deviation)
+
+def picture():
+    settle()
+    Gui.ActiveDocument.ActiveView.saveImage("strokes.png", 400, 300, "White")
+    return np.asarray(Image.open("strokes.png").convert("RGB"), dtype=int)
+
+Gui.ActiveDocument.ActiveView.viewTop()
+Gui.ActiveDocument.ActiveView.fitAll()
+drawn = picture()
 deviation.ViewObject.Scratches = False
 settle()
 assert not stroked(deviation)
+darker = (drawn.sum(axis=2) < picture().sum(axis=2) - 30).mean()
+assert 0.01 < darker < 0.5, darker
 deviation.ViewObject.Scratches = True
 press("OK")
 
 from beltgrinding.objects.fields import field_of
-import numpy as np
 ground = field_of(deviation.Simulation)
 ends, across = lay_strokes.strokes(ground, None, 20.0)
 assert 200 < len(ends) < 2.5 * lay_strokes.MOST and not across.any()

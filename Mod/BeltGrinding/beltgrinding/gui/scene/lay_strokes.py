@@ -10,7 +10,7 @@ from ...inspection import finish
 from ...objects.fields import field_of
 from .shapes3d import separator, unpickable
 
-MOST = 2500  # strokes: enough to see the lay, few enough to see what lies below
+MOST = 1000  # strokes: enough to see the lay, few enough to see what lies below
 LENGTH = 0.7  # of a stroke, of the distance between neighbouring ones
 ABOVE = 0.01  # of that distance: off the surface, so that it does not hide them
 WIDTH = 1.5  # pixels

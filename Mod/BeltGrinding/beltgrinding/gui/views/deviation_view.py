@@ -64,9 +64,10 @@ class DeviationView(ColouredMeshView):
         self.crisp = CrispColours(view.RootNode)
         self.lay = coin.SoSwitch()
         super().attach(view)
-        view.RootNode.addChild(self.lay)
         self.rest = coin.SoSwitch()
-        # Before the mesh's materials and light, which it would inherit.
+        # Before the mesh's materials and light, which they would inherit, and its style, which hides it where the
+        # height field is drawn in its place.
+        view.RootNode.insertChild(self.lay, 0)
         view.RootNode.insertChild(self.rest, 0)
 
     def panel(self, obj):

@@ -195,7 +195,7 @@ def test_thickness_against_a_face_that_is_not_ground_and_one_that_is(job, plate)
     "zone, word",
     [
         ({"tolerance_mm": [0, 1]}, "'name' is missing"),
-        ({"name": "a"}, "'tolerance_mm', 'thickness_mm' or both"),
+        ({"name": "a"}, "'tolerance_mm', 'thickness_mm' or 'finish'"),
         ({"name": "a", "tolerance_mm": [1, 0]}, "tolerance_mm: the lower limit"),
         ({"name": "a", "thickness_mm": [1, 0]}, "thickness_mm: the lower limit"),
         ({"name": "a", "tolerance_mm": [0, 1], "faces": [999]}, "face 999 is not ground"),

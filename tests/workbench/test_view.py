@@ -355,7 +355,7 @@ def test_programs_that_are_gone_leave_the_wheel_out(tmp_path):
     about, _ = data_of(result)
     assert about["wheel"] is None
     html = beltgrinding.view(result, tmp_path / "v.html").read_text()
-    assert "no wheel is shown" in html and 'id="view-play"' not in html
+    assert "No wheel is shown: " in html and 'id="view-play"' not in html
 
 
 def test_an_older_result_has_its_view(ground, tmp_path):

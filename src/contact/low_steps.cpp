@@ -130,7 +130,8 @@ bool GapMap::find_low_steps(const SampleBlocks& blocks) {
     near_steps_.clear();
     const auto note = [&](std::size_t position, std::size_t first, float gap, float u, float v,
                           float slope_s, float slope_y) {
-        const auto column = static_cast<float>(first % nx), row = static_cast<float>(first / nx);
+        const std::size_t line = first / nx;
+        const auto column = static_cast<float>(first - line * nx), row = static_cast<float>(line);
         const std::uint32_t sample = blocks.sample(position);
         const float own = gap + u * slope_s + v * slope_y;
         const auto at = [&](std::size_t cell, float carried) {

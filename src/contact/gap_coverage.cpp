@@ -22,9 +22,6 @@ constexpr int kEdgeMatters = 2;     // cells from what may bear pressure
 }  // namespace
 
 void GapMap::find_borders(const HeightField& field) {
-    if (borders_of_ == &field && borders_size_ == field.size()) return;
-    borders_of_ = &field;
-    borders_size_ = field.size();
     borders_.clear();
     find_forms(field);
     for (std::uint32_t k = 0; k < field.size(); ++k)

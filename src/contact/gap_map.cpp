@@ -126,10 +126,18 @@ void GapMap::put_on_grid(Footprint& f) const {
     f.gap += f.slope_s * (i - u) + f.slope_y * (j - v);
 }
 
+void GapMap::prepare(const SampleBlocks& blocks) {
+    const HeightField& field = blocks.field();
+    if (prepared_for_ == &field && prepared_size_ == field.size()) return;
+    prepared_for_ = &field;
+    prepared_size_ = field.size();
+    find_borders(field);
+    find_steps(blocks);
+}
+
 void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
                     const Frame& work_from_contact, double reach, double ahead, double pressable) {
-    find_borders(blocks.field());
-    find_steps(blocks);
+    prepare(blocks);
     contact_from_work_ = work_from_contact.inverse();
     reach_gap_ = reach;
     seen_gap_ = reach + whole_layer_;  // else the surface had edges where its gap is `reach`

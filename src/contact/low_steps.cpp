@@ -33,10 +33,8 @@ double stock_step(const HeightField& field, std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 void GapMap::find_steps(const SampleBlocks& blocks) {
+    if (run_) return;  // a belt bridges them
     const HeightField& field = blocks.field();
-    if (steps_of_ == &field && steps_size_ == field.size()) return;
-    steps_of_ = &field;
-    steps_size_ = field.size();
     // By what does not change while it is ground: a run that goes on from a checkpoint sees it too.
     const double lowest = kLowest * std::max(grid_.ds, grid_.dy);
     std::vector<std::uint8_t> may_step(field.size(), 0);
@@ -101,7 +99,7 @@ double GapMap::step_between(const HeightField& field, std::span<NearStep> sample
 
 bool GapMap::find_low_steps(const SampleBlocks& blocks) {
     layer_ = whole_layer_;
-    if (run_) return false;  // a belt bridges them; its slopes are steep
+    if (run_) return false;
     const auto cells = static_cast<std::size_t>(grid_.cells());
     const auto nx = static_cast<std::size_t>(grid_.nx);
     const std::size_t above = grid_.ny > 1 ? nx : 0;
@@ -130,6 +128,9 @@ bool GapMap::find_low_steps(const SampleBlocks& blocks) {
     near_steps_.clear();
     const auto note = [&](std::size_t position, std::size_t first, float gap, float u, float v,
                           float slope_s, float slope_y) {
+        if ((stepped_[first] | stepped_[first + 1] | stepped_[first + above] |
+             stepped_[first + above + 1]) == 0)
+            return;
         const std::size_t line = first / nx;
         const auto column = static_cast<float>(first - line * nx), row = static_cast<float>(line);
         const std::uint32_t sample = blocks.sample(position);

@@ -139,7 +139,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
     {
         const Stopwatch watch(wall.build);
-        pressing.map().prepare(field);
+        pressing.map().prepare(blocks);
     }
     std::optional<HeatKeeper> heat;
     if (options.heat.part != nullptr && !model.rigid()) {

@@ -39,6 +39,18 @@ def effect_of(name):
     return core.Fact(*EFFECT[name])
 
 
+def together(one, other, correlation):
+    """The warning that the inputs of two parameters move together."""
+    return core.Fact(
+        "calibration.together",
+        "{one} and {other} move together in the data (correlation {correlation:+.2f}), "
+        "which hardly separate their effects; vary them separately",
+        one=effect_of(one),
+        other=effect_of(other),
+        correlation=correlation,
+    )
+
+
 def spread_of(values):
     """Standard deviation of ln of the finite ones of ``values`` (n,)."""
     values = values[np.isfinite(values)]
@@ -83,16 +95,7 @@ def name_inputs(table, warnings):
                     )
                 )
             elif abs(correlation) > MOST_CORRELATION:
-                warnings.append(
-                    core.Fact(
-                        "calibration.together",
-                        "{one} and {other} move together in the data (correlation {correlation:+.2f}), "
-                        "which hardly separate their effects; vary them separately",
-                        one=effect_of(one),
-                        other=effect_of(two),
-                        correlation=correlation,
-                    )
-                )
+                warnings.append(together(one, two, correlation))
 
 
 def name_unsure(model, found, free, warnings):

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from ..engine import InputError, core
-from .cautions import LEAST_SPREAD, MOST_CORRELATION, effect_of, spread_of
+from .cautions import LEAST_SPREAD, MOST_CORRELATION, effect_of, spread_of, together
 from .finish_table import FinishTable, from_columns, read
 from .law import student
 from .model import DEFAULTS, INDEX, NAMES
@@ -189,16 +189,7 @@ def _name_pairs(table, free, warnings):
         for one, a in inputs[:j]:
             correlation = float(np.corrcoef(a, b)[0, 1])
             if abs(correlation) > MOST_CORRELATION:
-                warnings.append(
-                    core.Fact(
-                        "calibration.together",
-                        "{one} and {other} move together in the data (correlation {correlation:+.2f}), "
-                        "which hardly separate their effects; vary them separately",
-                        one=effect_of(one),
-                        other=effect_of(two),
-                        correlation=correlation,
-                    )
-                )
+                warnings.append(together(one, two, correlation))
 
 
 def _references(table):

@@ -37,9 +37,9 @@ class GapMap {
     /// is the depth below a plane, far steeper slopes are of one layer, and there is nothing beyond
     /// its free run from `from` to `to`, mm along the travel.
     void lie_flat(double from, double to);
-    /// Looks once at the borders of a field and the form of its samples' patches, which `update`
-    /// does otherwise.
-    void prepare(const HeightField& field) { find_borders(field); }
+    /// Looks once at the borders and steps of a field and the form of its samples' patches, which
+    /// `update` does otherwise.
+    void prepare(const SampleBlocks& blocks);
 
     /// Maps the samples of the blocks `hits` (ascending) for the wheel at `work_from_contact`,
     /// which faces the work by the part of it beyond `ahead` mm from its axis. Samples that face
@@ -242,11 +242,10 @@ class GapMap {
     void part_edges(const SampleBlocks& blocks);
     /// Keeps the footprint's patch if that reaches beyond the side faces.
     void note_beside(const Patch& patch);
-    /// Once for each field.
     void find_borders(const HeightField& field);
-    /// The same for the samples at which the surface may step.
+    /// The samples at which the surface may step.
     void find_steps(const SampleBlocks& blocks);
-    /// The same for the patches' forms, where samples do not lie evenly.
+    /// The patches' forms, where samples do not lie evenly.
     void find_forms(const HeightField& field);
     /// Null if the sample lies on no border.
     const BorderPatch* border_patch(std::uint32_t sample) const;
@@ -316,10 +315,8 @@ class GapMap {
     double beside_ = 0.0;  // mm
     std::vector<BesidePatch> beside_patches_;
     Eigen::ArrayXd reach_;  // mm, of what bulges; empty: nothing does
-    const HeightField* borders_of_ = nullptr;
-    std::size_t borders_size_ = 0;  // samples that it had
-    const HeightField* steps_of_ = nullptr;
-    std::size_t steps_size_ = 0;        // samples that it had
+    const HeightField* prepared_for_ = nullptr;
+    std::size_t prepared_size_ = 0;     // samples that it had
     std::vector<std::uint64_t> steps_;  // by block: lanes beside which the surface may step
     double scale_ = 1.0;                // of the last `remove`, so that volumes are equal
 
@@ -341,7 +338,7 @@ class GapMap {
     };
     double step_between(const HeightField& field, std::span<NearStep> samples) const;
     std::vector<NearStep> near_steps_;
-    std::vector<std::uint8_t> stepped_;    // by cell: 1 may be, 2 beside a sample that may step
+    std::vector<std::uint8_t> stepped_;    // by cell: it may be
     std::vector<float> limit_;             // mm, by cell: what lies deeper is another layer's
     mutable std::vector<Bilinear> table_;  // by cell
     std::vector<float> lowering_;          // mm, of regular lanes

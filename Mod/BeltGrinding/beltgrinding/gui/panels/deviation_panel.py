@@ -39,20 +39,8 @@ class DeviationPanel(Panel):
         colours.add("Bands", translate("BeltGrinding", "Steps of each ramp"))
         self.colours, self.tolerance = colours, form
         self.body.addWidget(colours)
-        if (
-            obj.ExpectedInTolerance > 0.0
-            or getattr(obj.Simulation, "ScanFigures", "")
-            or obj.GreatestTemperature > 0.0
-            or obj.GreatestRoughness > 0.0
-        ):
-            shown = {
-                "deviation": translate("BeltGrinding", "Deviation"),
-                "uncertainty": translate("BeltGrinding", "Uncertainty (1 sd)"),
-                "measured": translate("BeltGrinding", "Scan"),
-                "difference": translate("BeltGrinding", "Scan less prediction"),
-                "temperature": translate("BeltGrinding", "Greatest temperature"),
-                "roughness": translate("BeltGrinding", "Roughness"),
-            }
+        shown = self._shown()
+        if len(shown) > 1:
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
         self.table = QtGui.QTableWidget(0, 2)
         self.table.setObjectName("statistics")
@@ -66,6 +54,28 @@ class DeviationPanel(Panel):
         self.body.addWidget(self.probe)
         self.finish()
         self.update()
+
+    def _shown(self):
+        """{name: text} of what the result has to colour by, and of what is chosen: without it, the deviation is shown."""
+        obj = self.obj
+        scanned = bool(getattr(obj.Simulation, "ScanFigures", ""))
+        modes = (
+            ("deviation", translate("BeltGrinding", "Deviation"), True),
+            (
+                "uncertainty",
+                translate("BeltGrinding", "Uncertainty (1 sd)"),
+                obj.ExpectedInTolerance > 0.0,
+            ),
+            ("measured", translate("BeltGrinding", "Scan"), scanned),
+            ("difference", translate("BeltGrinding", "Scan less prediction"), scanned),
+            (
+                "temperature",
+                translate("BeltGrinding", "Greatest temperature"),
+                obj.GreatestTemperature > 0.0,
+            ),
+            ("roughness", translate("BeltGrinding", "Roughness"), obj.GreatestRoughness > 0.0),
+        )
+        return {name: text for name, text, there in modes if there or name == obj.ColourBy}
 
     def update(self):
         """Colours and figures anew."""

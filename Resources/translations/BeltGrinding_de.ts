@@ -1591,6 +1591,66 @@
         <source>draw the direction of the scratches, of a job with Finish; red: crossed</source>
         <translation>die Richtung der Schleifspuren zeichnen, einer Aufgabe mit Finish; rot: gekreuzt</translation>
     </message>
+    <message>
+        <source>Poisson&apos;s ratio of the belt, below 0.5</source>
+        <translation>Querkontraktionszahl des Bandes, unter 0,5</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus of the belt, MPa</source>
+        <translation>Elastizitätsmodul des Bandes, MPa</translation>
+    </message>
+    <message>
+        <source>along the belt&apos;s travel from the middle between the rollers to the contact frame&apos;s origin, mm</source>
+        <translation>in Laufrichtung des Bandes von der Mitte zwischen den Rollen zum Ursprung des Kontaktsystems, mm</translation>
+    </message>
+    <message>
+        <source>by how much the belt&apos;s face (grains, size coat) gives way under pressure, MPa/mm; 0: as its own thickness does</source>
+        <translation>wie sehr die Fläche des Bandes (Körner, Deckbindung) unter Druck nachgibt, MPa/mm; 0: wie seine eigene Dicke</translation>
+    </message>
+    <message>
+        <source>by how much what lies between belt and layers gives way, MPa/mm; 0: as the belt&apos;s face does</source>
+        <translation>wie sehr nachgibt, was zwischen Band und Schichten liegt, MPa/mm; 0: wie die Fläche des Bandes</translation>
+    </message>
+    <message>
+        <source>fixed: they stay, and the belt&apos;s stretch adds to its tension; tensioned: they keep the pull</source>
+        <translation>fixed: sie bleiben stehen, und die Dehnung des Bandes erhöht seine Spannung; tensioned: sie halten den Zug</translation>
+    </message>
+    <message>
+        <source>layers between the plate and the belt, from the plate outwards; empty: the plate itself bears the belt</source>
+        <translation>Schichten zwischen Platte und Band, von der Platte nach außen; leer: die Platte selbst trägt das Band</translation>
+    </message>
+    <message>
+        <source>length along the belt&apos;s travel, mm</source>
+        <translation>Länge in Laufrichtung des Bandes, mm</translation>
+    </message>
+    <message>
+        <source>length between the rollers, mm</source>
+        <translation>Länge zwischen den Rollen, mm</translation>
+    </message>
+    <message>
+        <source>radius of the rollers, for collisions, mm; 0: none are looked at</source>
+        <translation>Radius der Rollen, für Kollisionen, mm; 0: keine werden betrachtet</translation>
+    </message>
+    <message>
+        <source>tension of the belt that touches nothing, N per mm of its width</source>
+        <translation>Spannung des Bandes, das nichts berührt, N je mm seiner Breite</translation>
+    </message>
+    <message>
+        <source>thickness of the belt, mm</source>
+        <translation>Dicke des Bandes, mm</translation>
+    </message>
+    <message>
+        <source>thickness of the plate behind the layers, for collisions, mm</source>
+        <translation>Dicke der Platte hinter den Schichten, für Kollisionen, mm</translation>
+    </message>
+    <message>
+        <source>what presses the belt on the part. contact_wheel, and without the key: a wheel with the belt round it; free_belt: the belt itself, between two rollers; platen: a plate behind the belt (docs/free-belt.md). Of the last two, the contact frame&apos;s origin lies on the face of the belt that touches nothing; wheel and compliance are then of no account</source>
+        <translation>was das Band auf das Werkstück drückt. contact_wheel, auch ohne den Schlüssel: ein Rad mit dem Band darum; free_belt: das Band selbst, zwischen zwei Rollen; platen: eine Platte hinter dem Band (docs/free-belt.md). Bei den beiden letzten liegt der Ursprung des Kontaktsystems auf der Fläche des Bandes, das nichts berührt; Rad und Nachgiebigkeit zählen dann nicht</translation>
+    </message>
+    <message>
+        <source>width of the belt, mm</source>
+        <translation>Breite des Bandes, mm</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -4916,6 +4976,122 @@ im Mittel {} abgetragen</translation>
         <source>roughness Ra, µm</source>
         <translation>Rauheit Ra, µm</translation>
     </message>
+    <message>
+        <source>Add layer</source>
+        <translation>Schicht hinzufügen</translation>
+    </message>
+    <message>
+        <source>Belt between rollers</source>
+        <translation>Band zwischen Rollen</translation>
+    </message>
+    <message>
+        <source>Belt&apos;s face (0: own)</source>
+        <translation>Bandfläche (0: eigene)</translation>
+    </message>
+    <message>
+        <source>Belt&apos;s thickness</source>
+        <translation>Dicke des Bandes</translation>
+    </message>
+    <message>
+        <source>Belt&apos;s width</source>
+        <translation>Breite des Bandes</translation>
+    </message>
+    <message>
+        <source>Contact off the middle</source>
+        <translation>Kontakt neben der Mitte</translation>
+    </message>
+    <message>
+        <source>E, MPa</source>
+        <translation>E, MPa</translation>
+    </message>
+    <message>
+        <source>Fixed: the belt stretches</source>
+        <translation>Fest: das Band dehnt sich</translation>
+    </message>
+    <message>
+        <source>Free belt</source>
+        <translation>Freies Band</translation>
+    </message>
+    <message>
+        <source>Free belt or platen</source>
+        <translation>Freies Band, Platte</translation>
+    </message>
+    <message>
+        <source>Free length</source>
+        <translation>Freie Länge</translation>
+    </message>
+    <message>
+        <source>From the side, to scale; the work is above</source>
+        <translation>Von der Seite, maßstäblich; das Werkstück ist oben</translation>
+    </message>
+    <message>
+        <source>Its back (0: same)</source>
+        <translation>Rückseite (0: ebenso)</translation>
+    </message>
+    <message>
+        <source>Kind of machine</source>
+        <translation>Art der Maschine</translation>
+    </message>
+    <message>
+        <source>Length</source>
+        <translation>Länge</translation>
+    </message>
+    <message>
+        <source>Plate&apos;s thickness</source>
+        <translation>Dicke der Platte</translation>
+    </message>
+    <message>
+        <source>Platen</source>
+        <translation>Stützplatte</translation>
+    </message>
+    <message>
+        <source>Poisson</source>
+        <translation>Querk.-zahl</translation>
+    </message>
+    <message>
+        <source>Rollers</source>
+        <translation>Rollen</translation>
+    </message>
+    <message>
+        <source>Rollers&apos; radius</source>
+        <translation>Radius der Rollen</translation>
+    </message>
+    <message>
+        <source>Takes the layer away</source>
+        <translation>Entfernt die Schicht</translation>
+    </message>
+    <message>
+        <source>Tension</source>
+        <translation>Spannung</translation>
+    </message>
+    <message>
+        <source>Tensioned: keep the pull</source>
+        <translation>Gespannt: halten den Zug</translation>
+    </message>
+    <message>
+        <source>mm thick</source>
+        <translation>mm dick</translation>
+    </message>
+    <message>
+        <source>must be greater than 0</source>
+        <translation>muss größer als 0 sein</translation>
+    </message>
+    <message>
+        <source>must lie from 0 to {}</source>
+        <translation>muss zwischen 0 und {} liegen</translation>
+    </message>
+    <message>
+        <source>rim {} mm</source>
+        <translation>Belag {} mm</translation>
+    </message>
+    <message>
+        <source>width {}</source>
+        <translation>Breite {}</translation>
+    </message>
+    <message>
+        <source>work</source>
+        <translation>Werkstück</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>
@@ -5036,6 +5212,17 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Makes a document with a tap that a robot holds against the belt</source>
         <translation>Erstellt ein Dokument mit einer Armatur, die ein Roboter ans Band hält</translation>
+    </message>
+</context>
+<context>
+    <name>BeltGrinding_ExampleTapBelt</name>
+    <message>
+        <source>Example: tap spout on a free belt</source>
+        <translation>Beispiel: Armaturenauslauf am freien Band</translation>
+    </message>
+    <message>
+        <source>Makes a document with a tap whose spout a free belt wraps round</source>
+        <translation>Legt ein Dokument mit einer Armatur an, um deren Auslauf sich ein freies Band legt</translation>
     </message>
 </context>
 <context>

@@ -40,7 +40,7 @@ def test_the_panel_lays_a_scan_on_the_design(freecad):
 doc.openTransaction("Edit")
 Gui.Selection.addSelection(stock)
 settle()
-from beltgrinding.gui.panels.settings_panels import StockPanel
+from beltgrinding.gui.panels.stock_panel import StockPanel
 Gui.Control.showDialog(StockPanel(stock))
 settle()
 press("Lay the scan on the design")

@@ -7,7 +7,9 @@ def add(commands):
     """Adds the commands to the parser's ``commands``."""
     preset = commands.add_parser("presets", help="list the presets, with their sources")
     preset.add_argument(
-        "kind", nargs="?", choices=("wheels", "belts", "materials", "robots", "actuators")
+        "kind",
+        nargs="?",
+        choices=("machines", "wheels", "belts", "materials", "robots", "actuators"),
     )
     preset.add_argument("--json", action="store_true", help="as JSON")
     preset.set_defaults(do=_presets)

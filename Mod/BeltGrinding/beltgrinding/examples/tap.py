@@ -120,18 +120,26 @@ def _inward(outline, inside):
 
 def strokes(face):
     """Passes along the spout, side by side round it; as ``passes.motions`` takes them."""
-    low, high = face.ParameterRange[2:]
-    margin = MARGIN * (high - low)
-    along = np.linspace(low + margin, high - margin, POSES_A_PASS)
-    across = passes.evenly(face, PASSES, 0.5 * (low + high), (INSET, INSET))
-    points, normals = passes.lines(face, across, along)
-    tangents = np.gradient(points, axis=1)
+    points, normals, tangents = lines_along(face, PASSES, POSES_A_PASS)
     feeds = passes.feed(COEFFICIENT, BELT_SPEED, FORCE, ALLOWANCE, passes.widths(points, tangents))
+    return there_and_back(points + ALLOWANCE * normals, normals, tangents, feeds)
+
+
+def lines_along(face, count, poses, margin=MARGIN):
+    """Points, outward normals and tangents (count, poses, 3) of lines along the spout, side by side round it."""
+    low, high = face.ParameterRange[2:]
+    margin *= high - low
+    along = np.linspace(low + margin, high - margin, poses)
+    across = passes.evenly(face, count, 0.5 * (low + high), (INSET, INSET))
+    points, normals = passes.lines(face, across, along)
+    return points, normals, np.gradient(points, axis=1)
+
+
+def there_and_back(points, normals, travels, feeds):
+    """Passes with the belt's travel along ``travels``, every second one backwards."""
     result = []
-    for k in range(PASSES):
-        contacts = passes.contact_frames(
-            points[k] + ALLOWANCE * normals[k], normals[k], tangents[k]
-        )
+    for k in range(len(points)):
+        contacts = passes.contact_frames(points[k], normals[k], travels[k])
         way = slice(None) if k % 2 == 0 else slice(None, None, -1)
         result.append({"contacts": contacts[way], "feeds": feeds[k][way]})
     return result

@@ -1,10 +1,37 @@
-"""The belt machine in the document: contact wheel, belt, control, the cell's frames, the robot."""
+"""The belt machine in the document: what presses the belt, the belt, control, the cell's frames, the robot."""
 
+from ..base import schemas
+from ..job import machine as machines
 from .belt import Belt
 from .geometry import matrix, placement_to_job
 from .properties import Key, add_keys, check_limits, to_job
 from .proxy import Proxy, checking, type_of
 
+KIND = Key("Kind", "Enumeration", "Machine", "belt_machine.kind")
+RUN_KEYS = (
+    Key("RunLength", "Length", "Free run", "belt_machine.free_run.length_mm"),
+    Key("RunPosition", "Distance", "Free run", "belt_machine.free_run.position_mm"),
+    Key("Rollers", "Enumeration", "Free run", "belt_machine.free_run.rollers"),
+    Key("RollerRadius", "Length", "Free run", "belt_machine.free_run.roller_radius_mm"),
+    Key("RunWidth", "Length", "Free run", "belt_machine.free_run.width_mm"),
+    Key("RunThickness", "Length", "Free run", "belt_machine.free_run.thickness_mm"),
+    Key("RunTension", "Float", "Free run", "belt_machine.free_run.tension_N_per_mm"),
+    Key("RunModulus", "Pressure", "Free run", "belt_machine.free_run.youngs_modulus_MPa"),
+    Key("RunPoissonsRatio", "Float", "Free run", "belt_machine.free_run.poissons_ratio"),
+    Key("FaceStiffness", "Float", "Free run", "belt_machine.free_run.surface_stiffness_MPa_per_mm"),
+)
+PLATEN_KEYS = (
+    Key("PlatenLength", "Length", "Platen", "belt_machine.platen.length_mm"),
+    Key("PlatenLayers", "JSON", "Platen", "belt_machine.platen.layers"),
+    Key("LayerStiffness", "Float", "Platen", "belt_machine.platen.surface_stiffness_MPa_per_mm"),
+    Key("PlateThickness", "Length", "Platen", "belt_machine.platen.plate_thickness_mm"),
+)
+# What a job has only of such a machine; a contact wheel's is that of earlier versions.
+KIND_KEYS = {
+    machines.WHEEL: (),
+    machines.FREE_BELT: (KIND, *RUN_KEYS),
+    machines.PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS),
+}
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
     Key("WheelWidth", "Length", "Wheel", "belt_machine.wheel.width_mm"),
@@ -51,6 +78,7 @@ KEYS = (
     Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),
     Key("FlipAngle", "Angle", "Robot", "robot.flip_deg"),
 )
+ALL_KEYS = (KIND, *RUN_KEYS, *PLATEN_KEYS, *KEYS)
 FRAMES = {
     "BaseFromWork": ("base_from_work", "tool in hand: the document's origin in the base frame"),
     "TcpFromContact": ("tcp_from_contact", "tool in hand: the contact frame in the tool frame"),
@@ -70,14 +98,26 @@ ROBOT_FRAMES = {
 }
 
 
+def half_size(machine):
+    """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
+    if machine.Kind == machines.WHEEL:
+        return machine.WheelRadius.Value
+    return 0.5 * machine.RunLength.Value
+
+
+def across(machine):
+    """mm: the width of what presses."""
+    return (machine.WheelWidth if machine.Kind == machines.WHEEL else machine.RunWidth).Value
+
+
 class BeltMachine(Proxy):
-    """Proxy."""
+    """Proxy. Of the properties of the other kinds none is in its job; the property editor hides them."""
 
     TYPE = "BeltGrinding::BeltMachine"
     VIEW = "BeltMachineView"
 
     def add_properties(self, obj):
-        add_keys(obj, KEYS)
+        add_keys(obj, ALL_KEYS)
         if "Belt" not in obj.PropertiesList:
             obj.addProperty(
                 "App::PropertyLinkGlobal", "Belt", "Belt", "the belt, none: a fresh one"
@@ -91,16 +131,37 @@ class BeltMachine(Proxy):
         for name, (_, text) in ROBOT_FRAMES.items():
             if name not in obj.PropertiesList:
                 obj.addProperty("App::PropertyPlacement", name, "Robot", text)
+        self.arrange(obj)
 
     def execute(self, obj):
         """Raises InputError for a machine that cannot be; the tree shows it there."""
         with checking(obj):
-            check_limits(obj, KEYS)
+            check_limits(obj, (*KIND_KEYS[obj.Kind], *KEYS))
+            if obj.Kind != machines.WHEEL:
+                rule = schemas.schema("job")["properties"]["belt_machine"]
+                given = self.to_job(obj)["belt_machine"]
+                machines.check_run(schemas.checked(given, rule, "belt_machine"))
+
+    def onChanged(self, obj, name):
+        """Called by FreeCAD: shows the properties of the kind that was chosen."""
+        if name == KIND.name and obj.Kind in KIND_KEYS:
+            self.arrange(obj)
+
+    def arrange(self, obj):
+        """Hides in the property editor what the kind does not use."""
+        used = {key.name for key in KIND_KEYS[obj.Kind]}
+        if obj.Kind == machines.WHEEL:
+            used |= {key.name for key in KEYS if key.group in ("Wheel", "Elasticity")}
+        for key in (*RUN_KEYS, *PLATEN_KEYS, *KEYS):
+            if key.group in ("Free run", "Platen", "Wheel", "Elasticity") and hasattr(
+                obj, key.name
+            ):
+                obj.setEditorMode(key.name, 0 if key.name in used else 2)
 
     def to_job(self, obj):
         """The parts of a job under 'belt_machine', 'cell' and 'robot'."""
         job = {}
-        to_job(obj, KEYS, job)
+        to_job(obj, (*KIND_KEYS[obj.Kind], *KEYS), job)
         if type_of(obj.Belt) == Belt.TYPE:
             job["belt_machine"]["belt"] = obj.Belt.Proxy.state(obj.Belt)
         for name, (key, _) in FRAMES.items():

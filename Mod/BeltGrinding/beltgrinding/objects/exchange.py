@@ -10,9 +10,9 @@ import Part
 
 from ..base import schemas
 from ..base.files import cannot_be_written, write_whole
-from ..engine import InputError, core
-from ..examples import blade, knife, tap, vane
-from ..job import load as jobs, machine as machines, workpiece
+from ..engine import InputError
+from ..examples import blade, knife, tap, tap_belt, vane
+from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
 from ..programs import given
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
@@ -64,7 +64,6 @@ def _relative(path, folder):
 def open_job(doc, path):
     """Makes the objects of a job.json in a document; returns the job."""
     data = jobs.load(path)
-    machines.need_wheel(data, core.Fact("objects.documents", "documents of FreeCAD work"))
     made = []
     try:
         return _open_job(doc, data, Path(path), made)
@@ -74,7 +73,7 @@ def open_job(doc, path):
         raise
 
 
-EXAMPLES = {"blade": blade, "tap": tap, "vane": vane, "knife": knife}
+EXAMPLES = {"blade": blade, "tap": tap, "tap_belt": tap_belt, "vane": vane, "knife": knife}
 
 
 def open_example(folder, name="blade"):
@@ -88,7 +87,7 @@ def open_example(folder, name="blade"):
             name=name,
             known=", ".join(EXAMPLES),
         )
-    return open_job(FreeCAD.newDocument(name.capitalize()), EXAMPLES[name].make(folder))
+    return open_job(FreeCAD.newDocument(name.title().replace("_", "")), EXAMPLES[name].make(folder))
 
 
 def _values(program):
@@ -117,7 +116,7 @@ def _open_job(doc, data, path, made):
     _open_stock(doc, stock, data["stock"], made)
     machine = make_belt_machine(job)
     made.append(machine)
-    from_job(machine, belt_machine.KEYS, data)
+    from_job(machine, belt_machine.ALL_KEYS, data)
     for name, (key, _) in belt_machine.FRAMES.items():
         setattr(machine, name, placement_from_job(data["cell"].get(key)))
     for name, (key, _) in belt_machine.ROBOT_FRAMES.items():

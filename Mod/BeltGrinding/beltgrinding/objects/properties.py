@@ -213,13 +213,26 @@ def get_value(obj, key):
     if key.kind in AS_IS:
         return value
     if key.kind == "JSON":
-        return json.loads(value) if value else copy.deepcopy(rule(key.key)[1])
+        return _parsed(obj, key, value) if value else copy.deepcopy(rule(key.key)[1])
     if key.kind == "Vector":
         return [float(f"{x:.15g}") for x in value]
     if key.kind == "VectorList":  # pairs
         return [[float(f"{point.x:.15g}"), float(f"{point.y:.15g}")] for point in value]
     value = float(getattr(value, "Value", value)) / key.scale
     return float(f"{value:.15g}")  # 0.05 stays 0.05 on its way through FreeCAD's units
+
+
+def _parsed(obj, key, text):
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise InputError(
+            "objects.not_json",
+            "{object}: {key} is no JSON: {reason}",
+            object=obj.Label,
+            key=key.name,
+            reason=str(error),
+        ) from None
 
 
 def set_value(obj, key, value):

@@ -91,7 +91,7 @@ def _holders(job):
     found = [(job, job_data.KEYS)]
     machine, raw = child(job, BeltMachine), child(job, Stock)
     if machine is not None:
-        found.append((machine, belt_machine.KEYS))
+        found.append((machine, (*belt_machine.KIND_KEYS[machine.Kind], *belt_machine.KEYS)))
         if type_of(machine.Belt) == Belt.TYPE:
             found.append((machine.Belt, belt.KEYS))
     if raw is not None:

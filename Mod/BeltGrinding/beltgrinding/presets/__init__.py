@@ -1,15 +1,26 @@
-"""Presets of wheels, belts, materials, robots and force controls, and rubber's modulus.
+"""Presets of machines, wheels, belts, materials, robots and force controls, and rubber's modulus.
 
 What a macro calls; the modules import each other, not this.
 """
 
-from .library import actuators, apply, belts, materials, problems, robots, settings, wheels
+from .library import (
+    actuators,
+    apply,
+    belts,
+    machines,
+    materials,
+    problems,
+    robots,
+    settings,
+    wheels,
+)
 from .rubber import shore_to_modulus
 
 __all__ = [
     "actuators",
     "apply",
     "belts",
+    "machines",
     "materials",
     "problems",
     "robots",

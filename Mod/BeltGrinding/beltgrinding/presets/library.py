@@ -1,4 +1,4 @@
-"""Presets of contact wheels, belts, materials, robots and force controls: plain data, every number with its unit and
+"""Presets of belt machines, contact wheels, belts, materials, robots and force controls: plain data, every number with its unit and
 its source (Resources/presets, and the user's own files; presets.schema.json).
 """
 
@@ -20,6 +20,7 @@ __all__ = [
     "actuators",
     "apply",
     "belts",
+    "machines",
     "materials",
     "problems",
     "robots",
@@ -28,11 +29,18 @@ __all__ = [
     "wheels",
 ]
 
-KINDS = ("wheels", "belts", "materials", "robots", "actuators")
+KINDS = ("machines", "wheels", "belts", "materials", "robots", "actuators")
 LABELS = {
     "shore_a": "hardness",
     "youngs_modulus": "Young's modulus",
     "poissons_ratio": "Poisson's ratio",
+    "run_width": "width",
+    "run_thickness": "thickness",
+    "run_tension": "tension",
+    "run_modulus": "Young's modulus",
+    "run_poissons_ratio": "Poisson's ratio",
+    "roller_radius": "rollers' radius",
+    "machine_speed": "belt speed of the machine",
     "belt_speed": "belt speed",
     "belt_speed_roughing": "belt speed, roughing",
     "belt_speed_polishing": "belt speed, polishing",
@@ -40,6 +48,14 @@ LABELS = {
 }
 # The job's key for a preset's number, and its value for the number's 1.
 JOB_KEYS = {
+    "run_width": ("belt_machine.free_run.width_mm", 1.0),
+    "free_length": ("belt_machine.free_run.length_mm", 1.0),
+    "run_thickness": ("belt_machine.free_run.thickness_mm", 1.0),
+    "run_tension": ("belt_machine.free_run.tension_N_per_mm", 1.0),
+    "run_modulus": ("belt_machine.free_run.youngs_modulus_MPa", 1.0),
+    "run_poissons_ratio": ("belt_machine.free_run.poissons_ratio", 1.0),
+    "roller_radius": ("belt_machine.free_run.roller_radius_mm", 1.0),
+    "platen_length": ("belt_machine.platen.length_mm", 1.0),
     "diameter": ("belt_machine.wheel.radius_mm", 0.5),
     "width": ("belt_machine.wheel.width_mm", 1.0),
     "rim_thickness": ("belt_machine.compliance.rim_thickness_mm", 1.0),
@@ -55,6 +71,7 @@ JOB_KEYS = {
     "damping": ("belt_machine.force_dynamics.damping_N_s_per_mm", 1.0),
     "speed_limit": ("belt_machine.force_dynamics.speed_limit_mm_s", 1.0),
 }
+MACHINE_KIND = "belt_machine.kind"
 # What a force control's preset sets besides its numbers: what it has no number for is not there.
 ACTUATOR = {
     "belt_machine.force_dynamics.model": "actuator",
@@ -68,6 +85,7 @@ ACTUATOR = {
 class Library(NamedTuple):
     """All presets by kind, and what is wrong with the files (InputError each)."""
 
+    machines: list
     wheels: list
     belts: list
     materials: list
@@ -89,7 +107,7 @@ def user_folder():
 
 def library():
     """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
-    found = Library([], [], [], [], [], [])
+    found = Library(*([] for _ in Library._fields))
     rules = schemas.schema("presets")
     files = [
         *sorted((resources() / "presets").glob("*.json")),
@@ -185,6 +203,13 @@ def wheels():
     return library().wheels
 
 
+def machines():
+    """Presets of free belts and platens: as ``wheels``, with kind (a job's belt_machine.kind), run_width, free_length,
+    run_thickness, run_tension, run_modulus, run_poissons_ratio, roller_radius, platen_length, machine_speed.
+    """
+    return library().machines
+
+
 def belts():
     """Presets of belts: as ``wheels``, with grain, grit, grain_size, tension, bending_stiffness."""
     return library().belts
@@ -222,12 +247,18 @@ def middle(number):
     return number["value"] if "value" in number else sum(number["range"]) / 2.0
 
 
-def settings(wheel=None, belt=None, material=None, actuator=None):
+def settings(wheel=None, belt=None, material=None, actuator=None, machine=None):
     """{dotted key of a job: value} of what the presets say; each an id or a preset. Only keys that
     jobs have; the modulus follows from the hardness unless the preset gives it. Raises InputError.
     """
     found, known = {}, schemas.schema("job")
-    chosen = {"wheels": wheel, "belts": belt, "materials": material, "actuators": actuator}
+    chosen = {
+        "wheels": wheel,
+        "belts": belt,
+        "materials": material,
+        "actuators": actuator,
+        "machines": machine,
+    }
     for kind, preset in chosen.items():
         if preset is None:
             continue
@@ -235,6 +266,8 @@ def settings(wheel=None, belt=None, material=None, actuator=None):
             preset = find(kind, preset)
         if kind == "actuators":
             found.update(ACTUATOR)
+        if kind == "machines":
+            found[MACHINE_KIND] = preset["kind"]
         for name, number in numbers(preset).items():
             if name in JOB_KEYS:
                 key, factor = JOB_KEYS[name]
@@ -252,10 +285,10 @@ def _is_known(key, rules):
     return True
 
 
-def apply(job, wheel=None, belt=None, material=None, actuator=None):
+def apply(job, wheel=None, belt=None, material=None, actuator=None, machine=None):
     """A copy of the job (a dict) with what the presets say put in. Raises InputError."""
     job = copy.deepcopy(job)
-    for key, value in settings(wheel, belt, material, actuator).items():
+    for key, value in settings(wheel, belt, material, actuator, machine).items():
         *path, last = key.split(".")
         node = job
         for part in path:

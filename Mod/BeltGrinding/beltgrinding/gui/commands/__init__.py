@@ -68,6 +68,7 @@ SUBMENUS = {
     QT_TRANSLATE_NOOP("Workbench", "Examples"): (
         files.ExampleBlade,
         files.ExampleTap,
+        files.ExampleTapBelt,
         files.ExampleVane,
         files.ExampleKnife,
     ),

@@ -90,6 +90,16 @@ class ExampleTap(ExampleBlade):
     EXAMPLE = "tap"
 
 
+class ExampleTapBelt(ExampleBlade):
+    NAME = "BeltGrinding_ExampleTapBelt"
+    TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleTapBelt", "Example: tap spout on a free belt")
+    TIP = QT_TRANSLATE_NOOP(
+        "BeltGrinding_ExampleTapBelt",
+        "Makes a document with a tap whose spout a free belt wraps round",
+    )
+    EXAMPLE = "tap_belt"
+
+
 class ExampleVane(ExampleBlade):
     NAME = "BeltGrinding_ExampleVane"
     TEXT = QT_TRANSLATE_NOOP("BeltGrinding_ExampleVane", "Example: blade with fillet and edges")

@@ -5,6 +5,7 @@ import FreeCADGui as Gui
 import numpy as np
 
 from ...objects import api, raster_path, verdict as objects
+from ...objects.belt_machine import half_size
 from ...objects.job_data import children, face_name
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
@@ -215,7 +216,7 @@ class VerdictDock(ObjectDock):
             return self._show_wheel(None, 0)
         self._show_wheel(path, motion["pose"])
         contact = self.wheel.frames()["contact"]
-        radius = 0.0 if path.Machine is None else path.Machine.WheelRadius.Value
+        radius = 0.0 if path.Machine is None else half_size(path.Machine)
         size = max(LEAST_SEEN, WHEELS * radius)
         self._sight().at_contact(self.wheel, contact[:3, 3], size)
         if self.shown_path is not path:

@@ -4,6 +4,7 @@ import math
 from itertools import groupby
 
 from ...engine import InputError
+from ...job.machine import WHEEL
 from ...objects import belt_machine, job_data, job_object
 from ...objects.properties import set_value
 from ...objects.proxy import type_of
@@ -87,18 +88,23 @@ def _formulas_text():
 
 
 class PresetForm(QtGui.QGroupBox):
-    """Combo boxes of wheel, belt, material and force control. A preset sets what it knows when it is chosen; the
+    """Combo boxes of machine, wheel, belt, material and force control. A preset sets what it knows when it is chosen; the
     recommended belt speed only by its button.
     """
 
     def __init__(self, obj, forms, hardness):
         super().__init__(translate("BeltGrinding", "Presets"))
         self.obj, self.forms, self.hardness = obj, forms, hardness
-        self.boxes = {}  # combo boxes by kind
+        self.boxes, self.labels, self.hints = (
+            {},
+            {},
+            {},
+        )  # combo boxes and what is beside and below them, by kind
         self.rows = QtGui.QFormLayout(self)
         self.rows.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.rows.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         found = presets.library()
+        self._add("machine", translate("BeltGrinding", "Free belt or platen"), found.machines)
         self._add("wheel", translate("BeltGrinding", "Wheel"), found.wheels)
         self._add("belt", translate("BeltGrinding", "Belt"), found.belts)
         self.speed = QtGui.QPushButton()
@@ -116,6 +122,12 @@ class PresetForm(QtGui.QGroupBox):
             wrong.show()
             self.rows.addRow(wrong)
 
+    def show_kind(self, kind):
+        """Shows the presets that a kind of belt machine has: a wheel's only of a contact wheel."""
+        for widgets in (self.labels, self.boxes):
+            widgets["wheel"].setVisible(kind == WHEEL)
+        self.hints["wheel"].setVisible(kind == WHEEL and bool(self.hints["wheel"].text()))
+
     def _add(self, kind, text, found):
         box, hint = steady(QtGui.QComboBox()), _hint(f"{kind}PresetHint")
         self.boxes[kind] = box
@@ -130,7 +142,8 @@ class PresetForm(QtGui.QGroupBox):
         box.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         box.setMinimumContentsLength(10)
         box.view().setMinimumWidth(box.view().sizeHintForColumn(0) + 24)
-        self.rows.addRow(text, box)
+        self.labels[kind], self.hints[kind] = QtGui.QLabel(text), hint
+        self.rows.addRow(self.labels[kind], box)
         self.rows.addRow(hint)
         box.currentIndexChanged.connect(
             lambda i: self._chosen(kind, found[i - 1] if i > 0 else None, hint)
@@ -155,7 +168,7 @@ class PresetForm(QtGui.QGroupBox):
     def _put(self, values):
         """Sets the properties of the machine and of its job that mirror the job's keys."""
         jobs = [o for o in self.obj.InList if type_of(o) == job_object.BeltGrindingJob.TYPE]
-        targets = [(self.obj, belt_machine.KEYS), *((job, job_data.KEYS) for job in jobs)]
+        targets = [(self.obj, belt_machine.ALL_KEYS), *((job, job_data.KEYS) for job in jobs)]
         for obj, keys in targets:
             for key in keys:
                 if key.key in values and hasattr(obj, key.name):

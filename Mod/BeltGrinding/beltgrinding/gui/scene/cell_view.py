@@ -10,7 +10,10 @@ from pivy import coin
 
 from ...base.frames import work_from_frames
 from ...job.bodies import WHEEL
+from ...job.machine import WHEEL as WHEELS
 from ...objects import bodies
+from ...objects.belt_machine import half_size
+from . import belt_shapes
 from .robot_view import RobotView
 from .shapes3d import (
     axes,
@@ -93,9 +96,10 @@ class CellView:
             things.removeAllChildren()
         size = 50.0
         if self.machine is not None:
-            size = self.machine.WheelRadius.Value
-            self.bodies = {WHEEL: wheel(self.machine)}
-            self.things["contact"].addChild(self.bodies[WHEEL])
+            size = half_size(self.machine)
+            self.bodies = self._pressing()
+            for node in self.bodies.values():
+                self.things["contact"].addChild(node)
             for name, frame, obj in bodies.listed(self.machine):
                 self.bodies[name] = body(obj)
                 self.things[PLACES.get(frame, frame)].addChild(self.bodies[name])
@@ -104,6 +108,12 @@ class CellView:
             self.tint(self.tinted)
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
+
+    def _pressing(self):
+        """{name as events have it: node} of what presses on the part."""
+        if self.machine.Kind == WHEELS:
+            return {WHEEL: wheel(self.machine)}
+        return belt_shapes.parts(self.machine)
 
     def tint(self, names):
         """Draws the bodies of these names, as events have them, in a warning colour; the others in

@@ -6,6 +6,8 @@ from pivy import coin
 
 from ...engine import InputError, core
 from ...inspection import sight
+from ...job import machine as machines
+from ...objects import belt_machine
 from .camera import fly_to
 from .part_context import REST, design_of, tessellated
 from .shapes3d import faint
@@ -60,8 +62,11 @@ class Sight:
         machine = cell.machine
         places = [point]
         if machine is not None:
-            centre = contact[:3, 3] + machine.WheelRadius.Value * away
-            ends = [centre + share * machine.WheelWidth.Value * axis for share in WHEEL_AXIS]
+            # A belt's rollers lie beside the work, not above it: half a width away is where it is seen from.
+            wide = belt_machine.across(machine)
+            wheel = machine.Kind == machines.WHEEL
+            centre = contact[:3, 3] + (machine.WheelRadius.Value if wheel else 0.5 * wide) * away
+            ends = [centre + share * wide * axis for share in WHEEL_AXIS]
             places += ends
         # The camera stands where it is wanted if all is seen from there; facing is no matter here.
         facing = np.tile(wanted / np.linalg.norm(wanted), (len(places), 1))

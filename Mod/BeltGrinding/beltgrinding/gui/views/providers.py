@@ -119,7 +119,7 @@ class StockView(View):
             self.shell.whichChild = coin.SO_SWITCH_ALL
 
     def panel(self, obj):
-        from ..panels.settings_panels import StockPanel
+        from ..panels.stock_panel import StockPanel
 
         return StockPanel(obj)
 
@@ -129,7 +129,7 @@ class BeltMachineView(Undrawn):
     COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
 
     def panel(self, obj):
-        from ..panels.settings_panels import BeltMachinePanel
+        from ..panels.belt_machine_panel import BeltMachinePanel
 
         return BeltMachinePanel(obj)
 

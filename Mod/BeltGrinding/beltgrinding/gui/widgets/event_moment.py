@@ -6,7 +6,7 @@ from pivy import coin
 
 from ...job.bodies import PART, STOCK
 from ...objects import job_data, job_inputs
-from ...objects.belt_machine import BeltMachine
+from ...objects.belt_machine import BeltMachine, half_size
 from ...objects.robot_path import RobotPath
 from ..common import event_texts
 from ..common.compat import QtGui
@@ -61,7 +61,7 @@ class EventMoment:
         contact = cell.frames()["contact"]
         point = contact[:3, 3] if event["point"] is None else np.array(event["point"])
         self._mark(event, point)
-        radius = job_data.child(job, BeltMachine).WheelRadius.Value
+        radius = half_size(job_data.child(job, BeltMachine))
         self.sight.at_contact(cell, point, max(LEAST_SIZE, WHEELS * radius))
 
     def _own_cell(self, job):

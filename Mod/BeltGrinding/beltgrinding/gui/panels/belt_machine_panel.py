@@ -1,134 +1,19 @@
-"""Task panels of the stock and of the belt machine."""
+"""Task panel of the belt machine: only what its kind needs, with a drawing of it."""
 
 from ...engine import InputError
-from ...objects import preferences, stock_scan
+from ...job import machine as machines
 from ...objects.belt import Belt
-from ...objects.geometry import placement_from_job
+from ...objects.belt_machine import KIND_KEYS, PLATEN_KEYS
+from ...objects.properties import get_value, set_value, to_job
 from ...objects.proxy import type_of
-from ...scan import start as scan_start
-from ..common.compat import QtGui, translate
-from ..common.messages import error_text
-from ..common.runner import Background
-from ..widgets.form import Form
-from ..widgets.steady import steady
+from ..common.compat import translate
+from ..widgets.form import SIGNED, Form
+from ..widgets.layer_rows import LayerRows
+from ..widgets.machine_drawing import MachineDrawing
 from .panel import Panel
 from .preset_form import HardnessField, PresetForm
 
-MESH_FILES = "*.stl *.ply *.obj *.off *.3mf"
-
-
-class StockPanel(Panel):
-    """Edits a Stock."""
-
-    def __init__(self, obj):
-        super().__init__(obj, translate("BeltGrinding", "Stock"), "BeltGrinding_Stock")
-        form = self.fields = Form(obj, translate("BeltGrinding", "Stock on the design faces"))
-        kinds = {
-            "allowance": translate("BeltGrinding", "Uniform allowance"),
-            "solid": translate("BeltGrinding", "Solid"),
-            "mesh": translate("BeltGrinding", "Mesh (a scan)"),
-        }
-        bodies = [
-            one
-            for one in obj.Document.Objects
-            if hasattr(one, "Shape") or (hasattr(one, "Mesh") and not hasattr(one, "Simulation"))
-        ]
-        form.add("Kind", translate("BeltGrinding", "Kind"), kinds)
-        form.add("Allowance", translate("BeltGrinding", "Allowance"))
-        form.add("Source", translate("BeltGrinding", "Object"), bodies)
-        form.add(
-            "File",
-            translate("BeltGrinding", "or file"),
-            translate("BeltGrinding", "Mesh") + f" ({MESH_FILES})",
-        )
-        form.add("FileUnit", translate("BeltGrinding", "Unit of the file"), unit="mm")
-        form.add("FilePlacement", translate("BeltGrinding", "Place of the file"))
-        form.add("Deflection", translate("BeltGrinding", "Chord error"))
-        form.add("SearchAbove", translate("BeltGrinding", "Search outward"))
-        form.add("SearchBelow", translate("BeltGrinding", "Search inward"))
-        form.changed = self.arrange
-        self.body.addWidget(form)
-        self.work = None
-        self.scan = QtGui.QWidget()
-        rows = QtGui.QFormLayout(self.scan)
-        rows.setContentsMargins(0, 0, 0, 0)
-        self.start = steady(QtGui.QComboBox())
-        self.start.setObjectName("scanStart")
-        self.start.addItem(translate("BeltGrinding", "as it lies"), None)
-        self.start.addItem(translate("BeltGrinding", "principal axes"), "principal")
-        rows.addRow(translate("BeltGrinding", "Start"), self.start)
-        self.datum = QtGui.QLineEdit()
-        self.datum.setObjectName("scanDatum")
-        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
-        rows.addRow(translate("BeltGrinding", "Datum faces"), self.datum)
-        self.lay = QtGui.QPushButton(translate("BeltGrinding", "Lay the scan on the design"))
-        self.lay.setObjectName("layScan")
-        self.lay.clicked.connect(self.align)
-        rows.addRow(self.lay)
-        self.body.addWidget(self.scan)
-        self.finish()
-        self.arrange()
-
-    def align(self):
-        """Lays the file's mesh on the faces that are not ground; ``_laid`` follows."""
-        try:
-            job = self.obj.getParentGroup()
-            stock, data, placed = stock_scan.prepare(job)
-            options = {"start": self.start.currentData() or placed}
-            if self.datum.text().strip():
-                options["datum_faces"] = scan_start.face_numbers(self.datum.text())
-        except InputError as error:
-            self.tell(error_text(error), True)
-            return
-        self.lay.setEnabled(False)
-        self.tell(translate("BeltGrinding", "Laying the scan on the design..."))
-        file, unit = stock.File, stock.FileUnit
-        self.work = Background(
-            lambda context: stock_scan.align(data, file, unit, context, **options), self._laid
-        )
-
-    def _laid(self, found, error):
-        self.work = None
-        self.lay.setEnabled(True)
-        if error is not None:
-            self.tell(error_text(error), True)
-            return
-        placement, figures = found
-        self.obj.FilePlacement = placement_from_job(placement)
-        self.fields.refresh("FilePlacement")
-        text = translate("BeltGrinding", "Laid on the design with {} rms.").format(
-            preferences.length_text(figures["rms_mm"], 1, "")
-        )
-        warnings = [error_text(warning) for warning in figures["warnings"]]
-        self.tell("\n".join([text, *warnings]), bool(warnings))
-
-    def close(self):
-        if self.work is not None:
-            self.work.abandon()
-            self.work = None
-
-    def arrange(self):
-        """Shows the fields that the kind uses."""
-        self.scan.setVisible(
-            self.obj.Kind == "mesh" and self.obj.Source is None and bool(self.obj.File)
-        )
-        rays = {"Kind", "Source", "SearchAbove", "SearchBelow"}
-        files = {"File", "FileUnit", "FilePlacement"} if self.obj.Source is None else set()
-        self.fields.show_rows(
-            {
-                "allowance": {"Kind", "Allowance"},
-                "solid": rays | {"Deflection"},
-                "mesh": rays | files,
-            }[self.obj.Kind]
-        )
-        self.tell("")
-
-    def check(self):
-        obj = self.obj
-        if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
-            raise InputError("gui.choose_solid", "Choose the solid that is the stock.")
-        if obj.Kind == "mesh" and not (hasattr(obj.Source, "Mesh") or obj.File):
-            raise InputError("gui.choose_mesh", "Choose the mesh: an object or a file.")
+LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
 
 
 def _belts(document):
@@ -141,6 +26,24 @@ class BeltMachinePanel(Panel):
     def __init__(self, obj):
         title = translate("BeltGrinding", "Belt machine")
         super().__init__(obj, title, "BeltGrinding_BeltMachine")
+        kind = Form(obj, translate("BeltGrinding", "Kind of machine"))
+        kinds = {
+            machines.WHEEL: translate("BeltGrinding", "Contact wheel"),
+            machines.FREE_BELT: translate("BeltGrinding", "Free belt"),
+            machines.PLATEN: translate("BeltGrinding", "Platen"),
+        }
+        kind.add("Kind", translate("BeltGrinding", "Kind"), kinds)
+        self.drawing = MachineDrawing(obj)
+        kind.layout_.addRow(self.drawing)
+        self.run = _run_form(obj)
+        self.platen = Form(obj, translate("BeltGrinding", "Platen"))
+        self.platen.add("PlatenLength", translate("BeltGrinding", "Length"))
+        self.platen.add("PlateThickness", translate("BeltGrinding", "Plate's thickness"))
+        text = translate("BeltGrinding", "Its back (0: same)")
+        self.platen.add("LayerStiffness", text, unit="MPa/mm")
+        self.layers = LayerRows(get_value(obj, LAYERS))
+        self.layers.changed = self._layers_changed
+        self.platen.layout_.addRow(self.layers)
         wheel = Form(obj, translate("BeltGrinding", "Contact wheel"))
         wheel.add("WheelRadius", translate("BeltGrinding", "Radius"))
         wheel.add("WheelWidth", translate("BeltGrinding", "Width"))
@@ -195,16 +98,28 @@ class BeltMachinePanel(Panel):
         belt.add("BounceTime", translate("BeltGrinding", "Bounces told within"), unit="s")
         text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
         belt.add("RobotStiffness", text, unit="N/mm")
-        self.body.addWidget(PresetForm(obj, (wheel, belt), self.hardness))
-        for form in (wheel, belt):
-            form.changed = self.arrange
-            self.body.addWidget(form)
         self.belt, self.wheel = belt, wheel
+        self.body.addWidget(kind)
+        forms = (kind, wheel, self.run, self.platen, belt)
+        self.presets = PresetForm(obj, forms, self.hardness)
+        self.body.addWidget(self.presets)
+        for form in forms:
+            form.changed = self.arrange
+            if form is not kind:
+                self.body.addWidget(form)
         self.finish()
         self.arrange()
 
     def arrange(self):
-        """Shows the fields that the elasticity and the control use."""
+        """Shows the fields that the kind, the elasticity and the control use."""
+        of_wheel = self.obj.Kind == machines.WHEEL
+        self.wheel.setVisible(of_wheel)
+        self.run.setVisible(not of_wheel)
+        self.platen.setVisible(self.obj.Kind == machines.PLATEN)
+        self.presets.show_kind(self.obj.Kind)
+        if not self.layers.same(get_value(self.obj, LAYERS)):
+            self.layers.show_layers(get_value(self.obj, LAYERS))
+        self.drawing.update()
         moving = {"ForceLag", "OvershootLimit", "BounceTime"}
         dynamics = {
             "ideal": set(),
@@ -236,13 +151,29 @@ class BeltMachinePanel(Panel):
         self.hardness.follow()
         self.tell("")
 
+    def _layers_changed(self):
+        try:
+            set_value(self.obj, LAYERS, self.layers.values())
+        except InputError:
+            return  # told below the rows, and again by OK
+        self.drawing.update()
+
     def check(self):
+        if self.obj.BeltSpeed.Value <= 0:
+            raise InputError("gui.belt_speed", "The belt speed must be positive.")
+        if self.obj.Kind == machines.WHEEL:
+            return self._check_wheel()
+        machine = {}
+        to_job(self.obj, KIND_KEYS[self.obj.Kind], machine)
+        if self.obj.Kind == machines.PLATEN:
+            machine["belt_machine"]["platen"]["layers"] = self.layers.values()
+        machines.check_run(machine["belt_machine"])
+
+    def _check_wheel(self):
         if self.obj.WheelRadius.Value <= 0:
             raise InputError("gui.wheel_radius", "The wheel's radius must be positive.")
         if self.obj.WheelWidth.Value <= 0:
             raise InputError("gui.wheel_width", "The wheel's width must be positive.")
-        if self.obj.BeltSpeed.Value <= 0:
-            raise InputError("gui.belt_speed", "The belt speed must be positive.")
         rim = self.obj.Compliance in ("wheel_rim", "bonded_layer")
         if rim and not 0 < self.obj.RimThickness.Value < self.obj.WheelRadius.Value:
             raise InputError(
@@ -260,3 +191,24 @@ class BeltMachinePanel(Panel):
             )
         if not 0 <= self.obj.PoissonsRatio <= 0.499:
             raise InputError("gui.poissons_ratio", "Poisson's ratio lies from 0 to 0.499.")
+
+
+def _run_form(obj):
+    """The belt between its rollers."""
+    form = Form(obj, translate("BeltGrinding", "Belt between rollers"))
+    form.add("RunLength", translate("BeltGrinding", "Free length"))
+    form.add("RunPosition", translate("BeltGrinding", "Contact off the middle"), SIGNED)
+    rollers = {
+        "tensioned": translate("BeltGrinding", "Tensioned: keep the pull"),
+        "fixed": translate("BeltGrinding", "Fixed: the belt stretches"),
+    }
+    form.add("Rollers", translate("BeltGrinding", "Rollers"), rollers)
+    form.add("RollerRadius", translate("BeltGrinding", "Rollers' radius"))
+    form.add("RunWidth", translate("BeltGrinding", "Belt's width"))
+    form.add("RunThickness", translate("BeltGrinding", "Belt's thickness"))
+    form.add("RunTension", translate("BeltGrinding", "Tension"), unit="N/mm")
+    form.add("RunModulus", translate("BeltGrinding", "Young's modulus"))
+    form.add("RunPoissonsRatio", translate("BeltGrinding", "Poisson's ratio"))
+    text = translate("BeltGrinding", "Belt's face (0: own)")
+    form.add("FaceStiffness", text, unit="MPa/mm")
+    return form

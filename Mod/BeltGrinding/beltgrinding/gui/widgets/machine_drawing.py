@@ -1,0 +1,146 @@
+"""A small drawing of a belt machine, from its side and to scale: what presses, the belt's way, the work on it."""
+
+import math
+
+from ...job import machine as machines
+from ...objects.belt_machine import PLATEN_KEYS
+from ...objects.properties import get_value
+from ..common.compat import QtCore, QtGui, translate
+from ..common.theme import readable, theme
+
+LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
+HEIGHT = 132  # pixels
+EDGE = 6.0  # pixels round the drawing
+BELT, RUBBER, METAL = "#7a4026", "#3a3f47", "#9aa1ab"
+THICKEST = 0.5  # of the height that layers may take, so that the rest is seen
+ARROW = 5.0  # pixels
+
+
+class MachineDrawing(QtGui.QWidget):
+    """Draws a BeltMachine of the document as its properties are now; ``update()`` after they have changed."""
+
+    def __init__(self, machine):
+        super().__init__()
+        self.machine = machine
+        self.setObjectName("machineDrawing")
+        self.setMinimumWidth(160)
+        self.setFixedHeight(HEIGHT)
+        self.setToolTip(translate("BeltGrinding", "From the side, to scale; the work is above"))
+
+    def paintEvent(self, _):
+        painter = QtGui.QPainter(self)
+        painter.setRenderHint(QtGui.QPainter.Antialiasing)
+        painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
+        try:
+            (self._wheel if self.machine.Kind == machines.WHEEL else self._belt)(painter)
+        finally:
+            painter.end()
+
+    def _wheel(self, painter):
+        radius = max(self.machine.WheelRadius.Value, 1e-3)
+        # The work's mound takes a quarter of the height above the wheel.
+        scale = (self.height() - 2 * EDGE - 34) / (2.0 * radius)
+        middle = QtCore.QPointF(0.27 * self.width(), self.height() - EDGE - radius * scale)
+        rim = min(self.machine.RimThickness.Value, radius) if self._has_rim() else 0.0
+        outer = radius * scale
+        self._disc(painter, middle, outer, BELT)
+        self._disc(painter, middle, outer - 2.5, RUBBER if rim else METAL)
+        self._disc(painter, middle, max(outer - max(rim * scale, 2.5), 0.0), METAL)
+        top = QtCore.QPointF(middle.x(), middle.y() - outer)
+        self._work(painter, top)
+        self._travel(painter, QtCore.QPointF(middle.x() + 0.62 * outer + 14, top.y() + 6))
+        lines = [f"R {radius:g} mm", f"{self.machine.WheelWidth.Value:g} mm"]
+        lines[1] = translate("BeltGrinding", "width {}").format(lines[1])
+        if rim:
+            lines.append(translate("BeltGrinding", "rim {} mm").format(f"{rim:g}"))
+        self._texts(painter, middle.x() + outer + 8, middle.y() - 14, lines)
+
+    def _has_rim(self):
+        return self.machine.Compliance in (
+            "wheel_rim",
+            "bonded_layer",
+            "elastic_foundation",
+            "surrogate",
+        )
+
+    def _belt(self, painter):
+        machine, thick = self.machine, 3.0  # pixels that the belt is drawn thick
+        length = max(machine.RunLength.Value, 1e-3)
+        radius = machine.RollerRadius.Value
+        whole = length + 2.0 * max(radius, 0.05 * length)
+        scale = (self.width() - 2 * EDGE - 4) / whole
+        high = self.height() - 2 * EDGE - 58
+        roll = max(min(radius * scale, 0.5 * high), 2.0)
+        left = EDGE + 2 + max(radius, 0.05 * length) * scale
+        top = EDGE + 40.0
+        ends = left, left + length * scale
+        at = QtCore.QPointF(left + (0.5 * length + machine.RunPosition.Value) * scale, top)
+        if machine.Kind == machines.PLATEN:
+            self._plate(painter, at, scale, top + thick, 2.0 * roll - 2 * thick)
+        for x in ends:
+            self._disc(painter, QtCore.QPointF(x, top + roll), roll - 0.5 * thick, METAL)
+        loop = QtCore.QRectF(ends[0] - roll, top, ends[1] - ends[0] + 2 * roll, 2 * roll)
+        painter.setBrush(QtCore.Qt.NoBrush)
+        painter.setPen(QtGui.QPen(readable(BELT), thick))
+        painter.drawRoundedRect(loop, roll, roll)
+        self._work(painter, at)
+        self._travel(painter, QtCore.QPointF(ends[1] - 30, top - 9))
+        wide = translate("BeltGrinding", "width {}").format(f"{machine.RunWidth.Value:g} mm")
+        said = f"{length:g} mm · {machine.RunTension:g} N/mm\n{wide}"
+        painter.setPen(QtGui.QColor(theme().text))
+        low = loop.bottom() + 3
+        box = QtCore.QRectF(EDGE, low, self.width() - 2 * EDGE, self.height() - low)
+        painter.drawText(box, QtCore.Qt.AlignHCenter | QtCore.Qt.AlignTop, said)
+
+    def _plate(self, painter, at, scale, top, room):
+        machine = self.machine
+        half = 0.5 * machine.PlatenLength.Value * scale
+        layers = [layer["thickness_mm"] * scale for layer in get_value(machine, LAYERS)]
+        whole = sum(layers)
+        # Thin layers must be seen, and thick ones leave room for the plate.
+        layers = [max(one, 2.0) * min(1.0, THICKEST * room / max(whole, 1e-9)) for one in layers]
+        painter.setPen(QtCore.Qt.NoPen)
+        for thick in reversed(layers):
+            painter.setBrush(QtGui.QColor(RUBBER))
+            painter.drawRect(QtCore.QRectF(at.x() - half, top, 2 * half, thick))
+            painter.setPen(QtGui.QPen(QtGui.QColor(METAL), 1))
+            top += thick
+        plate = max(min(machine.PlateThickness.Value * scale, room - sum(layers)), 2.0)
+        painter.setBrush(QtGui.QColor(METAL))
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.drawRect(QtCore.QRectF(at.x() - half, top, 2 * half, plate))
+
+    def _disc(self, painter, middle, radius, colour):
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.setBrush(readable(colour) if colour == BELT else QtGui.QColor(colour))
+        painter.drawEllipse(middle, radius, radius)
+
+    def _work(self, painter, at):
+        """A round piece of work that touches the belt at a point."""
+        wide, high = 34.0, 26.0
+        path = QtGui.QPainterPath()
+        path.moveTo(at.x() - 0.5 * wide, at.y() - high)
+        path.cubicTo(
+            *(at.x() - 0.5 * wide, at.y() - 2.0, at.x() + 0.5 * wide, at.y() - 2.0),
+            *(at.x() + 0.5 * wide, at.y() - high),
+        )
+        painter.setBrush(QtGui.QColor("#5b86c2"))
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.drawPath(path.translated(0.0, 6.0))
+        painter.setPen(QtGui.QColor(theme().faint))
+        box = QtCore.QRectF(at.x() - 60, at.y() - high - 10, 120, 14)
+        painter.drawText(box, QtCore.Qt.AlignCenter, translate("BeltGrinding", "work"))
+
+    def _travel(self, painter, at):
+        """An arrow in the belt's travel."""
+        painter.setPen(QtGui.QPen(QtGui.QColor(theme().text), 1.5))
+        end = QtCore.QPointF(at.x() + 24, at.y())
+        painter.drawLine(at, end)
+        for side in (-1.0, 1.0):
+            painter.drawLine(end, QtCore.QPointF(end.x() - ARROW, end.y() + side * 0.7 * ARROW))
+
+    def _texts(self, painter, x, y, lines):
+        painter.setPen(QtGui.QColor(theme().text))
+        step = math.ceil(painter.fontMetrics().height())
+        for k, line in enumerate(lines):
+            painter.drawText(QtCore.QPointF(x, y + k * step), line)

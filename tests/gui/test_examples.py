@@ -90,6 +90,17 @@ dock.close()
     )
 
 
+def test_the_tap_on_a_free_belt(walk):
+    walk(
+        """
+menu("Example: tap spout on a free belt")
+doc = ground((-0.75, 0.55, -0.45))
+assert 65 < float(tutorial.statistics()["In tolerance"].split()[0]) < 85
+picture("example-tap-belt")
+"""
+    )
+
+
 def test_the_blade_with_fillet_and_edges(walk):
     walk(
         """

@@ -58,6 +58,14 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath", "RasterPath
     view = doc.getObject(name).ViewObject
     view.Proxy.doubleClicked(view)
     look(name)
+for kind in ("free_belt", "platen"):
+    doc.BeltMachine.Kind = kind
+    doc.BeltMachine.PlatenLayers = json.dumps(
+        [{"thickness_mm": 12.345, "youngs_modulus_MPa": 2.3456, "poissons_ratio": 0.4567}])
+    view = doc.BeltMachine.ViewObject
+    view.Proxy.doubleClicked(view)
+    look(kind)
+doc.BeltMachine.Kind = "contact_wheel"
 for program in programs:
     view = program.ViewObject
     view.Proxy.doubleClicked(view)

@@ -1,7 +1,7 @@
 """The belt machine in the document: what presses the belt, the belt, control, the cell's frames, the robot."""
 
 from ..base import schemas
-from ..job import machine as machines
+from ..job.machine import FREE_BELT, PLATEN, WHEEL, check_run
 from .belt import Belt
 from .geometry import matrix, placement_to_job
 from .properties import Key, add_keys, check_limits, to_job
@@ -28,9 +28,9 @@ PLATEN_KEYS = (
 )
 # What a job has only of such a machine; a contact wheel's is that of earlier versions.
 KIND_KEYS = {
-    machines.WHEEL: (),
-    machines.FREE_BELT: (KIND, *RUN_KEYS),
-    machines.PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS),
+    WHEEL: (),
+    FREE_BELT: (KIND, *RUN_KEYS),
+    PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS),
 }
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
@@ -100,14 +100,14 @@ ROBOT_FRAMES = {
 
 def half_size(machine):
     """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
-    if machine.Kind == machines.WHEEL:
+    if machine.Kind == WHEEL:
         return machine.WheelRadius.Value
     return 0.5 * machine.RunLength.Value
 
 
 def across(machine):
     """mm: the width of what presses."""
-    return (machine.WheelWidth if machine.Kind == machines.WHEEL else machine.RunWidth).Value
+    return (machine.WheelWidth if machine.Kind == WHEEL else machine.RunWidth).Value
 
 
 class BeltMachine(Proxy):
@@ -137,10 +137,10 @@ class BeltMachine(Proxy):
         """Raises InputError for a machine that cannot be; the tree shows it there."""
         with checking(obj):
             check_limits(obj, (*KIND_KEYS[obj.Kind], *KEYS))
-            if obj.Kind != machines.WHEEL:
+            if obj.Kind != WHEEL:
                 rule = schemas.schema("job")["properties"]["belt_machine"]
                 given = self.to_job(obj)["belt_machine"]
-                machines.check_run(schemas.checked(given, rule, "belt_machine"))
+                check_run(schemas.checked(given, rule, "belt_machine"))
 
     def onChanged(self, obj, name):
         """Called by FreeCAD: shows the properties of the kind that was chosen."""
@@ -150,7 +150,7 @@ class BeltMachine(Proxy):
     def arrange(self, obj):
         """Hides in the property editor what the kind does not use."""
         used = {key.name for key in KIND_KEYS[obj.Kind]}
-        if obj.Kind == machines.WHEEL:
+        if obj.Kind == WHEEL:
             used |= {key.name for key in KEYS if key.group in ("Wheel", "Elasticity")}
         for key in (*RUN_KEYS, *PLATEN_KEYS, *KEYS):
             if key.group in ("Free run", "Platen", "Wheel", "Elasticity") and hasattr(

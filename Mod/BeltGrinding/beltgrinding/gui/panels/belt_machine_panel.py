@@ -1,7 +1,7 @@
 """Task panel of the belt machine: only what its kind needs, with a drawing of it."""
 
 from ...engine import InputError
-from ...job import machine as machines
+from ...objects import belt_machine as machines
 from ...objects.belt import Belt
 from ...objects.belt_machine import KIND_KEYS, PLATEN_KEYS
 from ...objects.properties import get_value, set_value, to_job

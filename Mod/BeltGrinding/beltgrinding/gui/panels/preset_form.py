@@ -4,7 +4,6 @@ import math
 from itertools import groupby
 
 from ...engine import InputError
-from ...job.machine import WHEEL
 from ...objects import belt_machine, job_data, job_object
 from ...objects.properties import set_value
 from ...objects.proxy import type_of
@@ -125,8 +124,10 @@ class PresetForm(QtGui.QGroupBox):
     def show_kind(self, kind):
         """Shows the presets that a kind of belt machine has: a wheel's only of a contact wheel."""
         for widgets in (self.labels, self.boxes):
-            widgets["wheel"].setVisible(kind == WHEEL)
-        self.hints["wheel"].setVisible(kind == WHEEL and bool(self.hints["wheel"].text()))
+            widgets["wheel"].setVisible(kind == belt_machine.WHEEL)
+        self.hints["wheel"].setVisible(
+            kind == belt_machine.WHEEL and bool(self.hints["wheel"].text())
+        )
 
     def _add(self, kind, text, found):
         box, hint = steady(QtGui.QComboBox()), _hint(f"{kind}PresetHint")

@@ -8,9 +8,8 @@ import math
 
 import numpy as np
 
-from ...job import machine as machines
 from ...job.bodies import PLATE, ROLLERS
-from ...objects.belt_machine import PLATEN_KEYS
+from ...objects.belt_machine import PLATEN, PLATEN_KEYS
 from ...objects.properties import get_value
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
@@ -27,7 +26,7 @@ def parts(machine):
     for name, middle in zip(ROLLERS, ends(machine)):
         if machine.RollerRadius.Value > 0.0:
             found[name] = separator(material(CORE), triangles(*roller(machine, middle)))
-    if machine.Kind == machines.PLATEN:
+    if machine.Kind == PLATEN:
         plate, layers = platen(machine)
         found[PLATE] = separator(material(CORE), triangles(*plate, crease=0.0))
         for layer in layers:

@@ -10,9 +10,7 @@ from pivy import coin
 
 from ...base.frames import work_from_frames
 from ...job.bodies import WHEEL
-from ...job.machine import WHEEL as WHEELS
-from ...objects import bodies
-from ...objects.belt_machine import half_size
+from ...objects import belt_machine, bodies
 from . import belt_shapes
 from .robot_view import RobotView
 from .shapes3d import (
@@ -96,7 +94,7 @@ class CellView:
             things.removeAllChildren()
         size = 50.0
         if self.machine is not None:
-            size = half_size(self.machine)
+            size = belt_machine.half_size(self.machine)
             self.bodies = self._pressing()
             for node in self.bodies.values():
                 self.things["contact"].addChild(node)
@@ -111,7 +109,7 @@ class CellView:
 
     def _pressing(self):
         """{name as events have it: node} of what presses on the part."""
-        if self.machine.Kind == WHEELS:
+        if self.machine.Kind == belt_machine.WHEEL:
             return {WHEEL: wheel(self.machine)}
         return belt_shapes.parts(self.machine)
 

@@ -6,7 +6,6 @@ from pivy import coin
 
 from ...engine import InputError, core
 from ...inspection import sight
-from ...job import machine as machines
 from ...objects import belt_machine
 from .camera import fly_to
 from .part_context import REST, design_of, tessellated
@@ -64,7 +63,7 @@ class Sight:
         if machine is not None:
             # A belt's rollers lie beside the work, not above it: half a width away is where it is seen from.
             wide = belt_machine.across(machine)
-            wheel = machine.Kind == machines.WHEEL
+            wheel = machine.Kind == belt_machine.WHEEL
             centre = contact[:3, 3] + (machine.WheelRadius.Value if wheel else 0.5 * wide) * away
             ends = [centre + share * wide * axis for share in WHEEL_AXIS]
             places += ends

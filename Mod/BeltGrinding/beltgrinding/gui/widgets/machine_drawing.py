@@ -2,7 +2,7 @@
 
 import math
 
-from ...job import machine as machines
+from ...objects import belt_machine as machines
 from ...objects.belt_machine import PLATEN_KEYS
 from ...objects.properties import get_value
 from ..common.compat import QtCore, QtGui, translate
@@ -69,10 +69,10 @@ class MachineDrawing(QtGui.QWidget):
         radius = machine.RollerRadius.Value
         whole = length + 2.0 * max(radius, 0.05 * length)
         scale = (self.width() - 2 * EDGE - 4) / whole
-        high = self.height() - 2 * EDGE - 58
+        high = self.height() - 2 * EDGE - 80
         roll = max(min(radius * scale, 0.5 * high), 2.0)
         left = EDGE + 2 + max(radius, 0.05 * length) * scale
-        top = EDGE + 40.0
+        top = EDGE + 46.0
         ends = left, left + length * scale
         at = QtCore.QPointF(left + (0.5 * length + machine.RunPosition.Value) * scale, top)
         if machine.Kind == machines.PLATEN:

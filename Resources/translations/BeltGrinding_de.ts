@@ -5092,6 +5092,58 @@ im Mittel {} abgetragen</translation>
         <source>work</source>
         <translation>Werkstück</translation>
     </message>
+    <message>
+        <source>Before grinding, °C</source>
+        <translation>Vor dem Schleifen, °C</translation>
+    </message>
+    <message>
+        <source>Burnt above, °C (0: unknown)</source>
+        <translation>Verbrannt ab, °C (0: ?)</translation>
+    </message>
+    <message>
+        <source>Conductivity, W/(m K)</source>
+        <translation>Leitfähigkeit, W/(m K)</translation>
+    </message>
+    <message>
+        <source>Density, kg/m³</source>
+        <translation>Dichte, kg/m³</translation>
+    </message>
+    <message>
+        <source>Friction</source>
+        <translation>Reibung</translation>
+    </message>
+    <message>
+        <source>Heat capacity, J/(kg K)</source>
+        <translation>Wärmekap., J/(kg K)</translation>
+    </message>
+    <message>
+        <source>Share into the work</source>
+        <translation>Anteil ins Werkstück</translation>
+    </message>
+    <message>
+        <source>Temperatures</source>
+        <translation>Temperaturen</translation>
+    </message>
+    <message>
+        <source>The rise is in proportion to friction times share: measure them before you believe a temperature.</source>
+        <translation>Der Anstieg ist proportional zu Reibung mal Anteil: beide messen, bevor man einer Temperatur glaubt.</translation>
+    </message>
+    <message>
+        <source>least … greatest</source>
+        <translation>kleinster … größter Wert</translation>
+    </message>
+    <message>
+        <source>not computed</source>
+        <translation>nicht berechnet</translation>
+    </message>
+    <message>
+        <source>own values</source>
+        <translation>eigene Werte</translation>
+    </message>
+    <message>
+        <source>the greatest lies below the least</source>
+        <translation>der größte Wert liegt unter dem kleinsten</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

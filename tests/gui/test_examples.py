@@ -123,6 +123,28 @@ picture("example-knife")
     )
 
 
+def test_the_blades_temperatures(walk):
+    walk(
+        """
+menu("Example: compressor blade")
+job = FreeCAD.ActiveDocument.BeltGrindingJob
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+settle()
+field("foldHeat").click()
+choice = field("thermalPreset", QtGui.QComboBox)
+choice.setCurrentIndex(choice.findText("Titanium alloy Ti-6Al-4V"))
+press("OK")
+doc = ground((-0.5, 2, -0.6))
+deviation = doc.Deviation
+assert 20 < deviation.GreatestTemperature < deviation.GreatestTemperatureAtMost
+colours = field("ColourBy", QtGui.QComboBox)
+colours.setCurrentIndex(colours.findText("Greatest temperature"))
+settle()
+picture("heat-blade")
+"""
+    )
+
+
 def test_the_readme_shows_an_animation():
     kept = pictures.IMAGES / "tap.gif"
     assert "docs/images/tap.gif" in (pictures.ROOT / "README.md").read_text()

@@ -45,3 +45,63 @@ press("OK")
 """,
         window=True,
     )
+
+
+def test_the_material_is_chosen_and_its_values_are_the_jobs(freecad):
+    freecad.run(
+        """
+import json
+from support.hands import *
+
+def choose_in(name, text):
+    box = field(name, QtGui.QComboBox)
+    assert box.findText(text) >= 0, [box.itemText(k) for k in range(box.count())]
+    box.setCurrentIndex(box.findText(text))
+    settle()
+
+def heat():
+    return json.loads(job.Heat) if job.Heat else None
+
+def edit():
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    field("foldHeat").click()
+    settle()
+
+job = prepare()
+doc = job.Document
+steps = doc.UndoCount
+edit()
+assert field("thermalPreset").currentText() == "not computed" and heat() is None
+assert not field("conductivity_W_mK").isEnabled()
+choose_in("thermalPreset", "Stainless steel, austenitic (1.4301)")
+assert heat()["conductivity_W_mK"] == 15 and heat()["burn_temperature_C"] == 290
+assert "Stainless Steel Association" in heat()["burn_source"]
+assert "EN 10088-1" in field("heatNote").text() and "estimate" in field("heatNote").text()
+press("Cancel")
+assert heat() is None and doc.UndoCount == steps
+
+edit()
+choose_in("thermalPreset", "Stainless steel, austenitic (1.4301)")
+type_in("friction2", "0.2")  # below the least
+assert field("friction2").styleSheet() and heat()["friction"] == [0.3, 0.5]
+press("OK")
+assert Gui.Control.activeDialog() and "0.2" in field("note").text(), field("note").text()
+type_in("friction2", "0,6")
+assert not field("friction2").styleSheet() and heat()["friction"] == [0.3, 0.6]
+assert field("thermalPreset").currentText() == "own values" and heat()["material"] == ""
+type_in("burn_temperature_C", "400")
+assert heat()["burn_temperature_C"] == 400 and heat()["burn_source"] == ""
+type_in("start_temperature_C", "-5")
+press("OK")
+assert heat()["start_temperature_C"] == -5 and doc.UndoCount == steps + 1
+edit()
+assert field("thermalPreset").currentText() == "own values" and field("friction2").text() == "0.6"
+choose_in("thermalPreset", "not computed")
+press("OK")
+assert heat() is None
+doc.undo()
+assert heat()["friction"] == [0.3, 0.6]
+""",
+        window=True,
+    )

@@ -66,6 +66,11 @@ for kind in ("free_belt", "platen"):
     view.Proxy.doubleClicked(view)
     look(kind)
 doc.BeltMachine.Kind = "contact_wheel"
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+settle()
+field("foldHeat").click()
+field("thermalPreset", QtGui.QComboBox).setCurrentIndex(5)
+look("heat")
 for program in programs:
     view = program.ViewObject
     view.Proxy.doubleClicked(view)

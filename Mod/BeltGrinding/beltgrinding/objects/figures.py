@@ -137,6 +137,9 @@ SECTIONS = (
         (
             ("WheelRadius", QT_TRANSLATE_NOOP("BeltGrinding", "Wheel radius"), "mm"),
             ("WheelWidth", QT_TRANSLATE_NOOP("BeltGrinding", "Wheel width"), "mm"),
+            ("RunLength", QT_TRANSLATE_NOOP("BeltGrinding", "Free length"), "mm"),
+            ("RunWidth", QT_TRANSLATE_NOOP("BeltGrinding", "Belt's width"), "mm"),
+            ("RunTension", QT_TRANSLATE_NOOP("BeltGrinding", "Tension"), "[N/mm]"),
             ("BeltSpeed", QT_TRANSLATE_NOOP("BeltGrinding", "Belt speed"), "m/s"),
             ("Force", QT_TRANSLATE_NOOP("BeltGrinding", "Force"), "N"),
         ),
@@ -204,8 +207,8 @@ def _fill(sheet, row, heading, obj, rows):
     sheet.set(f"A{row}", _in_words(heading))
     sheet.setStyle(f"A{row}", "bold")
     for name, label, unit in rows:
-        if name not in obj.PropertiesList:
-            continue
+        if name not in obj.PropertiesList or "Hidden" in obj.getEditorMode(name):
+            continue  # of another kind of machine
         row += 1
         sheet.set(f"A{row}", _in_words(label))
         sheet.set(f"B{row}", f"={obj.Name}.{name}")

@@ -26,5 +26,6 @@ __all__ = [
     "robots",
     "settings",
     "shore_to_modulus",
+    "thermals",
     "wheels",
 ]

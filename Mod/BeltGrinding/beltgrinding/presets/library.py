@@ -14,6 +14,7 @@ from ..base.files import at_key, in_file
 from ..base.resources import resources
 from ..engine import InputError
 from . import robot_model
+from .job_keys import ACTUATOR, JOB_KEYS, MACHINE_KIND, RANGES
 from .rubber import cite, modulus, shore_to_modulus, spread_text
 
 __all__ = [
@@ -26,10 +27,11 @@ __all__ = [
     "robots",
     "settings",
     "shore_to_modulus",
+    "thermals",
     "wheels",
 ]
 
-KINDS = ("machines", "wheels", "belts", "materials", "robots", "actuators")
+KINDS = ("machines", "wheels", "belts", "materials", "thermals", "robots", "actuators")
 LABELS = {
     "shore_a": "hardness",
     "youngs_modulus": "Young's modulus",
@@ -46,40 +48,6 @@ LABELS = {
     "belt_speed_polishing": "belt speed, polishing",
     "belt_speed_offhand": "belt speed, offhand",
 }
-# The job's key for a preset's number, and its value for the number's 1.
-JOB_KEYS = {
-    "run_width": ("belt_machine.free_run.width_mm", 1.0),
-    "free_length": ("belt_machine.free_run.length_mm", 1.0),
-    "run_thickness": ("belt_machine.free_run.thickness_mm", 1.0),
-    "run_tension": ("belt_machine.free_run.tension_N_per_mm", 1.0),
-    "run_modulus": ("belt_machine.free_run.youngs_modulus_MPa", 1.0),
-    "run_poissons_ratio": ("belt_machine.free_run.poissons_ratio", 1.0),
-    "roller_radius": ("belt_machine.free_run.roller_radius_mm", 1.0),
-    "platen_length": ("belt_machine.platen.length_mm", 1.0),
-    "diameter": ("belt_machine.wheel.radius_mm", 0.5),
-    "width": ("belt_machine.wheel.width_mm", 1.0),
-    "rim_thickness": ("belt_machine.compliance.rim_thickness_mm", 1.0),
-    "youngs_modulus": ("belt_machine.compliance.youngs_modulus_MPa", 1.0),
-    "poissons_ratio": ("belt_machine.compliance.poissons_ratio", 1.0),
-    "land_share": ("law.land_share", 1.0),
-    "tension": ("belt_machine.compliance.belt_tension_N_per_mm", 1.0),
-    "bending_stiffness": ("belt_machine.compliance.belt_bending_N_mm", 1.0),
-    "belt_speed": ("belt_machine.belt_speed_m_s", 1.0),
-    "heat_limit": ("law.heat_limit_MPa_m_s", 1.0),
-    "lag": ("belt_machine.force_dynamics.lag_s", 1.0),
-    "moving_mass": ("belt_machine.force_dynamics.moving_mass_kg", 1.0),
-    "damping": ("belt_machine.force_dynamics.damping_N_s_per_mm", 1.0),
-    "speed_limit": ("belt_machine.force_dynamics.speed_limit_mm_s", 1.0),
-}
-MACHINE_KIND = "belt_machine.kind"
-# What a force control's preset sets besides its numbers: what it has no number for is not there.
-ACTUATOR = {
-    "belt_machine.force_dynamics.model": "actuator",
-    "belt_machine.force_dynamics.lag_s": 0.0,
-    "belt_machine.force_dynamics.moving_mass_kg": 0.0,
-    "belt_machine.force_dynamics.damping_N_s_per_mm": 0.0,
-    "belt_machine.force_dynamics.speed_limit_mm_s": 0.0,
-}
 
 
 class Library(NamedTuple):
@@ -89,6 +57,7 @@ class Library(NamedTuple):
     wheels: list
     belts: list
     materials: list
+    thermals: list
     robots: list
     actuators: list
     problems: list
@@ -222,6 +191,13 @@ def materials():
     return library().materials
 
 
+def thermals():
+    """What temperatures are computed with, by material: as ``wheels``, with conductivity, heat_capacity, density,
+    burn_temperature, friction, partition.
+    """
+    return library().thermals
+
+
 def robots():
     """Presets of robots: dict(id, name, source, model as a job's robot.model; where, text)."""
     return library().robots
@@ -247,7 +223,7 @@ def middle(number):
     return number["value"] if "value" in number else sum(number["range"]) / 2.0
 
 
-def settings(wheel=None, belt=None, material=None, actuator=None, machine=None):
+def settings(wheel=None, belt=None, material=None, actuator=None, machine=None, thermal=None):
     """{dotted key of a job: value} of what the presets say; each an id or a preset. Only keys that
     jobs have; the modulus follows from the hardness unless the preset gives it. Raises InputError.
     """
@@ -258,6 +234,7 @@ def settings(wheel=None, belt=None, material=None, actuator=None, machine=None):
         "materials": material,
         "actuators": actuator,
         "machines": machine,
+        "thermals": thermal,
     }
     for kind, preset in chosen.items():
         if preset is None:
@@ -268,6 +245,12 @@ def settings(wheel=None, belt=None, material=None, actuator=None, machine=None):
             found.update(ACTUATOR)
         if kind == "machines":
             found[MACHINE_KIND] = preset["kind"]
+        if kind == "thermals":
+            found["heat.material"] = preset["name"]
+            limit = preset.get("burn_temperature")
+            found["heat.burn_source"] = source_text(limit) if limit else ""
+            found["heat.burn_temperature_C"] = 0.0
+            found.update((key, list(preset[name]["range"])) for name, key in RANGES.items())
         for name, number in numbers(preset).items():
             if name in JOB_KEYS:
                 key, factor = JOB_KEYS[name]
@@ -285,10 +268,10 @@ def _is_known(key, rules):
     return True
 
 
-def apply(job, wheel=None, belt=None, material=None, actuator=None, machine=None):
+def apply(job, wheel=None, belt=None, material=None, actuator=None, machine=None, thermal=None):
     """A copy of the job (a dict) with what the presets say put in. Raises InputError."""
     job = copy.deepcopy(job)
-    for key, value in settings(wheel, belt, material, actuator, machine).items():
+    for key, value in settings(wheel, belt, material, actuator, machine, thermal).items():
         *path, last = key.split(".")
         node = job
         for part in path:

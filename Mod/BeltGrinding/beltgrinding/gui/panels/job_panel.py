@@ -4,7 +4,7 @@ import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
 from ...objects import first_settings, job_data, sides
-from ...objects.belt_machine import BeltMachine
+from ...objects.belt_machine import WHEEL, BeltMachine
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
 from ..common.compat import QtGui, translate
@@ -12,6 +12,7 @@ from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from ..widgets.fold import Fold
 from ..widgets.form import NUMBERS, QUANTITIES, Form
+from .heat_form import HeatForm
 from .law_forms import LawForms
 from .panel import Panel
 
@@ -80,6 +81,8 @@ class JobPanel(Panel):
         title = translate("BeltGrinding", "Removal and belt wear")
         new = self.first is not None
         self._fold("foldLaw", self.law, self._law_text, title, new)
+        self.heat = HeatForm(obj)
+        self._fold("foldHeat", self.heat, self.heat.summary, folded=True)
         text = self.timing.rows["Timing"][1].currentText
         self._fold("foldTiming", self.timing, text, folded=new)
         self.sampling = sampling
@@ -130,15 +133,24 @@ class JobPanel(Panel):
         machine = job_data.child(self.obj, BeltMachine)
         if machine is not None:
             form = Form(machine, "")
-            form.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
-            form.add("WheelWidth", translate("BeltGrinding", "Wheel width"))
+            of_wheel = machine.Kind == WHEEL
+            if of_wheel:
+                form.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
+                form.add("WheelWidth", translate("BeltGrinding", "Wheel width"))
+            else:
+                form.add("RunLength", translate("BeltGrinding", "Free length"))
+                form.add("RunWidth", translate("BeltGrinding", "Belt's width"))
             form.add("Force", translate("BeltGrinding", "Force"))
             form.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
             yield Fold(
                 "foldMachine",
                 translate("BeltGrinding", "Belt machine"),
                 form,
-                lambda: f"R {machine.WheelRadius.Value:g} × {machine.WheelWidth.Value:g} mm",
+                lambda: (
+                    f"R {machine.WheelRadius.Value:g} × {machine.WheelWidth.Value:g} mm"
+                    if of_wheel
+                    else f"{machine.RunLength.Value:g} × {machine.RunWidth.Value:g} mm"
+                ),
                 not new,
             )
         self.passes = None
@@ -354,6 +366,7 @@ class JobPanel(Panel):
         if self.obj.Spacing.Value < 0:
             raise InputError("gui.spacing", "The sample spacing must not be negative.")
         check_tolerance(self.obj)
+        self.heat.check()
         job_data.design(self.obj)
 
     def apply(self):

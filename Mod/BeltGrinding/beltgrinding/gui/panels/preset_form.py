@@ -152,7 +152,7 @@ class PresetForm(QtGui.QGroupBox):
 
     def _chosen(self, kind, preset, hint):
         lines = presets.describe(preset) if preset else []
-        hint.setText("\n".join(_short(preset)) if preset else "")
+        hint.setText("\n".join(short(preset)) if preset else "")
         hint.setToolTip("\n".join(lines))
         hint.setVisible(bool(lines))
         self.boxes[kind].setToolTip(preset["name"] if preset else "")
@@ -189,7 +189,7 @@ def _hint(name):
     return label
 
 
-def _short(preset):
+def short(preset):
     """What the preset says, by source and without its page, which the tool tip has."""
     lines = [preset["text"]] if "text" in preset else []
     numbers = presets.numbers(preset).items()

@@ -11,10 +11,10 @@ constexpr Severity kInfo = Severity::kInfo, kWarning = Severity::kWarning,
 constexpr bool kLarger = true, kSmaller = false;
 
 constexpr std::array kKinds = {
-    EventKind{
-        "loss_of_contact", kWarning, "mm", kLarger,
-        "within a pass the wheel runs over the work without touching it; the value is how far",
-        "move the poses towards the work there, or enlarge the travel of the force control"},
+    EventKind{"loss_of_contact", kWarning, "mm", kLarger,
+              "within a pass the wheel or belt runs over the work without touching it; the value "
+              "is how far",
+              "move the poses towards the work there, or enlarge the travel of the force control"},
     EventKind{"force_not_reached", kWarning, "N", kSmaller,
               "the force control is at the end of its travel and presses less than commanded",
               "move the pose towards the work, or enlarge the travel of the force control"},
@@ -24,38 +24,36 @@ constexpr std::array kKinds = {
     EventKind{
         "force_overshoot", kWarning, "N", kLarger,
         "the force control takes time, and presses more than commanded by a larger share than "
-        "stated: on the way up a rib or an edge, or when the wheel meets the work",
-        "lower the feed there, or take a lighter or a better damped force control; let the "
-        "pass begin and end away from edges, with less force"},
-    EventKind{
-        "bounces", kWarning, "s", kLarger,
-        "the wheel leaves the work and comes back to it within a short time, by the motion of "
-        "the force control; the value is how long it was off",
-        "lower the feed there, or take a lighter or a better damped force control"},
-    EventKind{
-        "over_pressure", kWarning, "MPa", kLarger,
-        "the pressure exceeds the limit that the process law has",
-        "lower the force, take a softer or a wider wheel, or lead it over the edge more gently"},
-    EventKind{
-        "edge_contact", kWarning, "%", kLarger,
-        "the wheel presses with the edge of its rim; the value is the share of the force that "
-        "the outer tenth of the width carries there",
-        "turn the wheel's axis parallel to the surface, shift it sideways, or take a crowned "
-        "wheel"},
-    EventKind{
-        "wheel_too_large", kWarning, "mm", kSmaller,
-        "the surface is hollow and the wheel spans it: it rests on both sides and does not "
-        "touch between; the value is the surface's radius",
-        "take a smaller wheel, or one with a stronger crown; across the width, a narrower one"},
+        "stated: on the way up a rib or an edge, or when the wheel or belt meets the work",
+        "lower the feed there, or take a lighter or a better damped force control; let the pass "
+        "begin and end away from edges, with less force"},
+    EventKind{"bounces", kWarning, "s", kLarger,
+              "the wheel or belt leaves the work and comes back to it within a short time, by the "
+              "motion of the force control; the value is how long it was off",
+              "lower the feed there, or take a lighter or a better damped force control"},
+    EventKind{"over_pressure", kWarning, "MPa", kLarger,
+              "the pressure exceeds the limit that the process law has",
+              "lower the force, take a softer or a wider wheel, or a wider belt, or lead it over "
+              "the edge more gently"},
+    EventKind{"edge_contact", kWarning, "%", kLarger,
+              "the wheel or belt presses with its side edge; the value is the share of the force "
+              "that the outer tenth of the width carries there",
+              "turn the wheel's axis, or the belt's breadth, parallel to the surface, shift it "
+              "sideways, or take a crowned wheel"},
+    EventKind{"wheel_too_large", kWarning, "mm", kSmaller,
+              "the surface is hollow and the wheel or belt spans it: it rests on both sides and "
+              "does not touch between; the value is the surface's radius",
+              "take a smaller wheel, or one with a stronger crown; across the width, a narrower "
+              "wheel or belt; along a belt, a wheel that fits into the hollow"},
     EventKind{"tilted_contact", kWarning, "deg", kLarger,
               "the wheel touches far round its rim from the programmed contact point, so that the "
               "pressing direction is not the surface's normal",
               "turn the pose so that its z axis points against the surface's normal"},
-    EventKind{"burn_risk", kError, "MPa m/s", kLarger,
-              "pressure times belt speed exceeds the limit of heat; or, in °C, the temperature "
-              "exceeds the material's limit",
-              "lower the force or the belt speed, raise the feed, or let the part cool between "
-              "passes"},
+    EventKind{
+        "burn_risk", kError, "MPa m/s", kLarger,
+        "pressure times belt speed exceeds the limit of heat; or, in °C, the temperature exceeds "
+        "the material's limit",
+        "lower the force or the belt speed, raise the feed, or let the part cool between passes"},
     EventKind{"law_out_of_range", kWarning, "", kLarger,
               "the process law is asked for what was not measured; its last value is used",
               "come back into the measured range, or measure there and calibrate again"},
@@ -69,11 +67,10 @@ constexpr std::array kKinds = {
     EventKind{"depth_exceeded", kError, "mm", kSmaller,
               "the motion grinds deeper below the design than the height segments reach",
               "correct the pose; if it is meant, raise sampling.depth_mm"},
-    EventKind{
-        "orientation_jump", kWarning, "deg", kLarger,
-        "two neighbouring poses of a feed motion are turned far against each other",
-        "put poses between them, check the angles of the pose, or choose another roll where the "
-        "program gives tool axes only"},
+    EventKind{"orientation_jump", kWarning, "deg", kLarger,
+              "two neighbouring poses of a feed motion are turned far against each other",
+              "put poses between them, check the angles of the pose, or choose another roll where "
+              "the program gives tool axes only"},
     EventKind{"program_gap", kWarning, "", kLarger,
               "motions of the program before this pose are left out, since they are not known: the "
               "way to it is taken as a positioning move, and nothing is ground on it",
@@ -106,22 +103,22 @@ constexpr std::array kKinds = {
               "lower the feed there, or keep clear of the singularity"},
     EventKind{"over_compressed", kWarning, "mm", kLarger,
               "the wheel is pressed in further than its elastic rim is thick, or than half its "
-              "radius: no contact model holds there",
+              "radius, or a belt further than a platen's layers are thick, or than half its free "
+              "length: no contact model holds there",
               "lower the force, or move the pose away from the work; check Young's modulus and the "
               "unit of the force"},
-    EventKind{"step_too_coarse", kWarning, "mm", kLarger,
-              "the wheel follows the surface, and more than it is pressed in by is "
-              "ground at one place before it moves on, even with the step cut smaller; the value "
-              "is how much",
-              "lower simulation.max_travel_mm; or raise the feed, lower the force or the law's "
-              "coefficient, if one of them is a mistake"},
+    EventKind{
+        "step_too_coarse", kWarning, "mm", kLarger,
+        "the wheel or belt follows the surface, and more than it is pressed in by is ground at one "
+        "place before it moves on, even with the step cut smaller; the value is how much",
+        "lower simulation.max_travel_mm; or raise the feed, lower the force or the law's "
+        "coefficient, if one of them is a mistake"},
     EventKind{
         "volume_lost", kWarning, "mm3", kLarger,
-        "less is ground than the law takes under the wheel's pressure: no sample has it, since "
-        "the wheel's own surface stands in the way, or the samples are too coarse for the "
-        "part's form there; the value is how much on the whole path",
-        "lower sampling.spacing_mm; or the force or the law's coefficient, if it is a "
-        "mistake"},
+        "less is ground than the law takes under the pressure: no sample has it, since the wheel's "
+        "own surface stands in the way, or the samples are too coarse for the part's form there; "
+        "the value is how much on the whole path",
+        "lower sampling.spacing_mm; or the force or the law's coefficient, if it is a mistake"},
     EventKind{"not_converged", kWarning, "iterations", kLarger,
               "the contact was not solved to the tolerance asked for",
               "refine the contact grid, or raise belt_machine.contact_tolerance"},

@@ -118,43 +118,6 @@ void ProcessMonitor::note_force(std::size_t index, const Pressing& pressing) {
     put(*event, pressing, 0.0, 0.0);
 }
 
-void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressing,
-                                      Pressing::State state) {
-    const double depth = pressing.indentation(), most = pressing.largest_indentation();
-    const bool stopped = state == Pressing::State::kOverCompressed;
-    if (!stopped && !(depth > most)) return;
-    Event* event = note("over_compressed", index, depth);
-    if (event == nullptr) return;
-    event->limit = most;
-    event->facts = {{"event.over_compressed",
-                     "the wheel is pressed in by {depth:.3g} mm, more than the {limit:.3g} mm that "
-                     "it can yield: what the contact model says there is not to be trusted",
-                     {{"depth", depth}, {"limit", most}}}};
-    if (stopped) {
-        event->facts = {{"event.force_over_compresses",
-                         "{commanded:.3g} N would press the wheel in by more than the {limit:.3g} "
-                         "mm that it can yield: it is held there, at {force:.3g} N",
-                         {{"commanded", steps_[index].force},
-                          {"limit", most},
-                          {"force", pressing.solution().force}}}};
-    }
-    put(*event, pressing, 0.0, 0.0);
-}
-
-void ProcessMonitor::coarse(const Pressing& pressing, double removal, double most, int parts) {
-    const std::size_t index = steps_.size() - 1;
-    Event* event = note("step_too_coarse", index, removal);
-    if (event == nullptr) return;
-    event->limit = most;
-    event->facts = {
-        {"event.step_too_coarse",
-         "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
-         "the {limit:.3g} mm that it is pressed in by, in a step cut into {parts}; more parts are "
-         "not tried: the heights are bounded by the wheel's envelope, and not resolved in time",
-         {{"removal", removal}, {"limit", most}, {"parts", parts}}}};
-    put(*event, pressing, 0.0, 0.0);
-}
-
 void ProcessMonitor::note_limits(std::size_t index, const Pressing& pressing,
                                  const BeltState& belt) {
     const PathStep& step = steps_[index];
@@ -341,9 +304,15 @@ void ProcessMonitor::note_lost_contact() {
             way += steps_[k].feed * steps_[k].duration;
             Event* event = note("loss_of_contact", k, way);
             if (event == nullptr) continue;
-            event->facts = {{"event.loss_of_contact",
-                             "the wheel loses the work for {way:.3g} mm of its way",
-                             {{"way", way}}}};
+            if (process_.machine.free_face()) {
+                event->facts = {{"event.belt_loses_contact",
+                                 "the belt loses the work for {way:.3g} mm of its way",
+                                 {{"way", way}}}};
+            } else {
+                event->facts = {{"event.loss_of_contact",
+                                 "the wheel loses the work for {way:.3g} mm of its way",
+                                 {{"way", way}}}};
+            }
             event->point = position(before + (k - before + 1) / 2);
         }
     }
@@ -369,9 +338,15 @@ void ProcessMonitor::moved(const Pressing& pressing, Pressing::State state, doub
     if (bounce > 0.0 && bounce <= limits_.bounce) {
         if (Event* event = note("bounces", index, bounce)) {
             event->limit = limits_.bounce;
-            event->facts = {{"event.bounces",
-                             "the wheel leaves the work and is back after {time:.3g} s",
-                             {{"time", bounce}}}};
+            if (pressing.flat()) {
+                event->facts = {{"event.belt_bounces",
+                                 "the belt leaves the work and is back after {time:.3g} s",
+                                 {{"time", bounce}}}};
+            } else {
+                event->facts = {{"event.bounces",
+                                 "the wheel leaves the work and is back after {time:.3g} s",
+                                 {{"time", bounce}}}};
+            }
             put(*event, pressing, 0.0, 0.0);
         }
     }

@@ -1,4 +1,5 @@
-// How the pressure lies across the wheel: uneven, on an edge, round a hollow.
+// How the tool is pressed: too far, more than a step can follow; how the pressure lies across it:
+// uneven, on an edge, round a hollow.
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,68 @@ constexpr double kHollow = 0.02;
 constexpr double kSlopeReach = 2.0;  // cells over whose samples a slope is averaged
 
 }  // namespace
+
+void ProcessMonitor::note_compression(std::size_t index, const Pressing& pressing,
+                                      Pressing::State state) {
+    const double depth = pressing.indentation(), most = pressing.largest_indentation();
+    const bool stopped = state == Pressing::State::kOverCompressed;
+    if (!stopped && !(depth > most)) return;
+    Event* event = note("over_compressed", index, depth);
+    if (event == nullptr) return;
+    event->limit = most;
+    const Arguments held = {
+        {"commanded", steps_[index].force}, {"limit", most}, {"force", pressing.solution().force}};
+    const Arguments deep = {{"depth", depth}, {"limit", most}};
+    if (stopped && pressing.flat()) {
+        event->facts = {{"event.force_over_compresses_belt",
+                         "{commanded:.3g} N would press the belt in by more than the {limit:.3g} "
+                         "mm that it can yield: it is held there, at {force:.3g} N",
+                         held}};
+    } else if (stopped) {
+        event->facts = {{"event.force_over_compresses",
+                         "{commanded:.3g} N would press the wheel in by more than the {limit:.3g} "
+                         "mm that it can yield: it is held there, at {force:.3g} N",
+                         held}};
+    } else if (pressing.flat()) {
+        event->facts = {
+            {"event.belt_over_compressed",
+             "the belt is pressed in by {depth:.3g} mm, more than the {limit:.3g} mm "
+             "that it can yield: what the contact model says there is not to be trusted",
+             deep}};
+    } else {
+        event->facts = {
+            {"event.over_compressed",
+             "the wheel is pressed in by {depth:.3g} mm, more than the {limit:.3g} mm "
+             "that it can yield: what the contact model says there is not to be trusted",
+             deep}};
+    }
+    put(*event, pressing, 0.0, 0.0);
+}
+
+void ProcessMonitor::coarse(const Pressing& pressing, double removal, double most, int parts) {
+    const std::size_t index = steps_.size() - 1;
+    Event* event = note("step_too_coarse", index, removal);
+    if (event == nullptr) return;
+    event->limit = most;
+    const Arguments arguments = {{"removal", removal}, {"limit", most}, {"parts", parts}};
+    if (pressing.flat()) {
+        event->facts = {
+            {"event.belt_step_too_coarse",
+             "the law takes {removal:.3g} mm while the belt stands at one place, more than the "
+             "{limit:.3g} mm that it is pressed in by, in a step cut into {parts}; more parts are "
+             "not tried: the heights are bounded by the belt's face, and not resolved in time",
+             arguments}};
+    } else {
+        event->facts = {
+            {"event.step_too_coarse",
+             "the law takes {removal:.3g} mm while the wheel stands at one place, more than "
+             "the {limit:.3g} mm that it is pressed in by, in a step cut into {parts}; more parts "
+             "are not tried: the heights are bounded by the wheel's envelope, and not resolved in "
+             "time",
+             arguments}};
+    }
+    put(*event, pressing, 0.0, 0.0);
+}
 
 void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressing) {
     const ContactSolution& contact = pressing.solution();

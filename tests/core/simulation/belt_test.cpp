@@ -212,6 +212,63 @@ TEST(BeltSimulation, ValuesThatAreNoneAreRefused) {
     refused(o);
 }
 
+/// The codes of the facts of all events of a kind; what each says has the belt for the wheel.
+std::vector<std::string> facts(const SimulationResult& result, const std::string& kind) {
+    std::vector<std::string> codes;
+    for (const Event& event : result.events) {
+        if (event.kind != kind) continue;
+        for (const Fact& fact : event.facts) {
+            EXPECT_EQ(std::string(fact.text).find("wheel"), std::string::npos) << fact.text;
+            codes.emplace_back(fact.code);
+        }
+    }
+    return codes;
+}
+
+const std::vector<std::string> kLoses = {"event.belt_loses_contact"};
+
+TEST(BeltSimulation, ABeltThatLosesTheWorkIsCalledABelt) {
+    // A gap of 36 mm in the rod, deeper than the travel: a belt of 20 mm is clear of both sides.
+    HeightField field = rod(60.0, 110.0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        if (std::abs(field.point[i].y() - 55.0) > 18.0) continue;
+        field.height[i] -= 12.0;
+        field.stock_height[i] -= 12.0F;
+    }
+    SimulationOptions o = free_belt();
+    o.process.force_travel = 5.0;
+    EXPECT_EQ(facts(ground(field, along(22, 88), o), "loss_of_contact"), kLoses);
+}
+
+TEST(BeltSimulation, ABeltPressedThroughItsLayersIsCalledABelt) {
+    HeightField field = testing::plate(60.0, 60.0, 0.6, 0.2);
+    SimulationOptions o = platen();
+    o.process.force_control = false;
+    const ToolPath path({pressing_down(30, 29, -6.0, 40.0), pressing_down(30, 31, -6.0, 40.0)}, {});
+    const SimulationResult result = ground(field, path, o);
+    const auto codes = facts(result, "over_compressed");
+    ASSERT_FALSE(codes.empty());
+    for (const std::string& code : codes) EXPECT_EQ(code, "event.belt_over_compressed");
+}
+
+TEST(BeltSimulation, ABeltThatBouncesIsCalledABelt) {
+    // Light damping, quickly over a step down.
+    HeightField field = testing::plate(30.0, 100.0, 1.0, 0.2);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        if (field.point[i].y() > 40.0) continue;
+        field.height[i] += 2.0;
+        field.stock_height[i] += 2.0F;
+    }
+    SimulationOptions o = platen();
+    o.process.force = 40.0;
+    o.process.dynamics = {0.0, 8e-3, 0.02, 0.0};
+    o.limits.bounce = 0.5;
+    const ToolPath path({pressing_down(15, 20, 0.2, 400.0), pressing_down(15, 90, 0.2, 400.0)}, {});
+    const auto codes = facts(ground(field, path, o), "bounces");
+    ASSERT_FALSE(codes.empty());
+    for (const std::string& code : codes) EXPECT_EQ(code, "event.belt_bounces");
+}
+
 TEST(BeltSimulation, IsTheSameInAnyThread) {
     const auto once = [] {
         HeightField field = rod();

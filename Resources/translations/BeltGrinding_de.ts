@@ -1644,12 +1644,24 @@
         <translation>Dicke der Platte hinter den Schichten, für Kollisionen, mm</translation>
     </message>
     <message>
-        <source>what presses the belt on the part. contact_wheel, and without the key: a wheel with the belt round it; free_belt: the belt itself, between two rollers; platen: a plate behind the belt (docs/free-belt.md). Of the last two, the contact frame&apos;s origin lies on the face of the belt that touches nothing; wheel and compliance are then of no account</source>
-        <translation>was das Band auf das Werkstück drückt. contact_wheel, auch ohne den Schlüssel: ein Rad mit dem Band darum; free_belt: das Band selbst, zwischen zwei Rollen; platen: eine Platte hinter dem Band (docs/free-belt.md). Bei den beiden letzten liegt der Ursprung des Kontaktsystems auf der Fläche des Bandes, das nichts berührt; Rad und Nachgiebigkeit zählen dann nicht</translation>
-    </message>
-    <message>
         <source>width of the belt, mm</source>
         <translation>Breite des Bandes, mm</translation>
+    </message>
+    <message>
+        <source>between the belt&apos;s two runs there, mm</source>
+        <translation>zwischen den beiden Trumen dort, mm</translation>
+    </message>
+    <message>
+        <source>from the wheel&apos;s axle back to where the belt meets its pulleys, mm; more than the wheel&apos;s radius</source>
+        <translation>von der Achse der Scheibe zurück bis zu den Umlenkrollen, mm; mehr als der Radius der Scheibe</translation>
+    </message>
+    <message>
+        <source>thickness of the arms on both sides of the wheel, along its axle, mm; 0: none are looked at</source>
+        <translation>Dicke der Arme zu beiden Seiten der Scheibe, längs ihrer Achse, mm; 0: keine werden betrachtet</translation>
+    </message>
+    <message>
+        <source>what presses the belt on the part. contact_wheel, and without the key: a wheel with the belt round it; free_belt: the belt itself, between two rollers; platen: a plate behind the belt (docs/free-belt.md); small_wheel: a contact_wheel in a fork, beside which the belt&apos;s two runs are looked at for collisions. Of a free_belt and a platen, the contact frame&apos;s origin lies on the face of the belt that touches nothing; wheel and compliance are then of no account</source>
+        <translation>was das Band auf das Werkstück drückt. contact_wheel, auch ohne den Schlüssel: ein Rad mit dem Band darum; free_belt: das Band selbst, zwischen zwei Rollen; platen: eine Platte hinter dem Band (docs/free-belt.md); small_wheel: ein Rad in einer Gabel, neben dem die beiden Trume des Bandes für Kollisionen betrachtet werden. Bei free_belt und platen liegt der Ursprung des Kontaktsystems auf der Fläche des Bandes, das nichts berührt; Rad und Nachgiebigkeit zählen dann nicht</translation>
     </message>
 </context>
 <context>
@@ -5143,6 +5155,26 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>the greatest lies below the least</source>
         <translation>der größte Wert liegt unter dem kleinsten</translation>
+    </message>
+    <message>
+        <source>Arms (0: none)</source>
+        <translation>Arme (0: keine)</translation>
+    </message>
+    <message>
+        <source>Axle to pulleys</source>
+        <translation>Achse bis Umlenkrollen</translation>
+    </message>
+    <message>
+        <source>Between the runs</source>
+        <translation>Zwischen den Trumen</translation>
+    </message>
+    <message>
+        <source>Fork, for collisions</source>
+        <translation>Gabel, für Kollisionen</translation>
+    </message>
+    <message>
+        <source>Small wheel in a fork</source>
+        <translation>Kleine Scheibe, Gabel</translation>
     </message>
 </context>
 <context>

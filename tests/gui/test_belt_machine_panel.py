@@ -112,6 +112,19 @@ press("OK")
 menu("Cell")
 assert set(made[-1]) == {"", "roller_before", "roller_behind"}
 press("Cancel")
+machine.Kind = "small_wheel"
+doc.recompute()
+menu("Belt machine")
+assert shown("WheelRadius") and shown("ForkLength") and not shown("RunLength")
+small = drawn()
+type_in("ForkLength", "30 mm")  # the wheel's radius is 60
+press("OK")
+assert Gui.Control.activeDialog() and "pulleys" in field("note").text(), field("note").text()
+type_in("ForkLength", "150 mm")
+press("OK")
+assert not Gui.Control.activeDialog()
+menu("Cell")
+press("Cancel")
 machine.Kind = "platen"
 doc.recompute()
 menu("Cell")

@@ -58,7 +58,7 @@ for name in ("BeltGrindingJob", "Stock", "BeltMachine", "RobotPath", "RasterPath
     view = doc.getObject(name).ViewObject
     view.Proxy.doubleClicked(view)
     look(name)
-for kind in ("free_belt", "platen"):
+for kind in ("free_belt", "platen", "small_wheel"):
     doc.BeltMachine.Kind = kind
     doc.BeltMachine.PlatenLayers = json.dumps(
         [{"thickness_mm": 12.345, "youngs_modulus_MPa": 2.3456, "poissons_ratio": 0.4567}])

@@ -15,7 +15,7 @@ from beltgrinding import cli, raster  # noqa: E402
 from beltgrinding.calibration import contacts  # noqa: E402
 from beltgrinding.contact import single_contact  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
+from beltgrinding.job import fork, load as jobs  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
@@ -77,6 +77,54 @@ def test_rollers_and_plate_are_among_the_bodies_that_may_collide(ground):
     assert ("platen" in bodies) == (ground.job["belt_machine"]["kind"] == "platen")
 
 
+def test_a_small_wheel_is_a_wheel_whose_belt_and_fork_may_collide():
+    job = plate_job()
+    job["belt_machine"]["kind"] = "small_wheel"
+    small, plain = beltgrinding.run(job), beltgrinding.run(plate_job())
+    assert np.array_equal(small.field.height, plain.field.height)
+    names = {name for pair in small.summary["clearances"] for name in pair["bodies"]}
+    assert {"wheel", "belt_before", "belt_behind", "fork"} <= names
+    # Without arms; the pulleys far apart, so that the runs come down on the plate as it is tilted under them.
+    wheel = small.job["belt_machine"]["wheel"]
+    flat = {"arm_thickness_mm": 0, "spread_mm": 2000, "length_mm": wheel["radius_mm"] + 1}
+    job["belt_machine"]["fork"] = flat
+    for pose in job["programs"][0]["poses"]:
+        turn = np.deg2rad(20.0) / 2.0  # about y, from the wheel that looks straight down
+        lifted = wheel["radius_mm"] * (1.0 - np.cos(2.0 * turn))  # so that it rests on the plate
+        pose.update(qw=0.0, qx=float(np.cos(turn)), qy=0.0, qz=float(np.sin(turn)), z_mm=lifted)
+    found = beltgrinding.run(job)
+    hit = {name for e in found.events if e["kind"] == "collision" for name in e["bodies"]}
+    assert hit & {"belt_before", "belt_behind"} and "fork" not in hit, hit
+    job["belt_machine"]["fork"] = {**flat, "spread_mm": 80, "length_mm": 150}
+    free = beltgrinding.run(job)
+    hit = {name for e in free.events if e["kind"] == "collision" for name in e["bodies"]}
+    assert not hit & {"belt_before", "belt_behind"}
+    assert np.array_equal(found.field.height, free.field.height)
+    for change, code in (
+        ({"length_mm": wheel["radius_mm"]}, "job.short_fork"),
+        ({"spread_mm": -1}, "base.below_minimum"),
+    ):
+        job["belt_machine"]["fork"] = change
+        with pytest.raises(InputError) as error:
+            jobs.validate(job)
+        assert error.value.code == code, error.value
+
+
+def test_the_runs_of_a_small_wheel_are_tangents_of_its_rim():
+    wheel = {"radius_mm": 20.0, "width_mm": 10.0}
+    for spread in (0.0, 40.0, 200.0):
+        part = {"length_mm": 100.0, "spread_mm": spread, "belt_thickness_mm": 1.0}
+        before, faces = fork.run({"wheel": wheel, "fork": part}, -1.0)
+        behind, others = fork.run({"wheel": wheel, "fork": part}, 1.0)
+        assert np.allclose(before * [-1, 1, 1], behind)
+        touch, far = behind[0, [0, 2]] + [0, 20], behind[1, [0, 2]] + [0, 20]
+        assert np.isclose(np.hypot(*touch), 20.0) and np.isclose(touch @ (far - touch), 0.0)
+        assert np.allclose(far, [0.5 * spread, -100.0])
+        for points, triangles in ((before, faces), (behind, others)):  # outwards: a positive volume
+            a, b, c = points[triangles].transpose(1, 0, 2)
+            assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0
+
+
 def test_a_part_that_reaches_into_a_roller_collides_with_it():
     job = belt_job()
     job["belt_machine"]["free_run"].update(length_mm=50, roller_radius_mm=10)
@@ -106,7 +154,7 @@ def test_the_command_line_runs_it_and_presses_at_a_pose(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("change", "code"),
     [
-        (lambda m: m.update(kind="small_wheel"), None),
+        (lambda m: m.update(kind="no_wheel"), None),
         (lambda m: m["free_run"].update(width_mm=0), None),
         (lambda m: m["free_run"].update(position_mm=100), "job.belt_position"),
         (lambda m: m["platen"].update(length_mm=201), "job.platen_length"),

@@ -255,6 +255,10 @@ ALONG = {  # keys that must come or go with a key
         f"heat.{name}": {"heat": HEAT} for name in jobs.schema()["properties"]["heat"]["properties"]
     },
     **{f"belt_machine.{key}": {"belt_machine": copy.deepcopy(BELT)} for key in BELT_KEYS},
+    **{
+        f"belt_machine.fork.{name}": {"belt_machine.kind": "small_wheel"}
+        for name in MACHINE["fork"]["properties"]
+    },
     "robot.preset": {"robot.model": {}},
     "programs.0.file": {"programs.0.poses": None},
     "programs.0.values": {"programs.0.poses": None, "programs.0.file": "pass.csv"},

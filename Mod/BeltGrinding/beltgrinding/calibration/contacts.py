@@ -27,7 +27,7 @@ ASSUMED = "wheel_rim"  # elasticity, unless a machine says another
 def of_machine(machine):
     """What a job's validated belt_machine says of the contact of its grinds: keys of a contact's file.
     Raises InputError where it has no pressure."""
-    if machines.kind(machine) != machines.WHEEL:
+    if not machines.wheel_presses(machine):
         raise InputError(
             "calibration.no_wheel",
             "calibration: contacts are solved of contact wheels only, and the job's belt machine is a {kind}; give "

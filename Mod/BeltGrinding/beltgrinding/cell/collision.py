@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base import frames, kept
 from ..engine import InputError, core
-from ..job import machine as machines, workpiece
+from ..job import fork, machine as machines, workpiece
 from ..job.bodies import PART, PLATE, ROLLERS, STOCK, WHEEL
 from ..job.poses import program_name
 from ..presets import robot as robots, robot_shape
@@ -100,7 +100,7 @@ def bodies(job, shape, warnings, context=None):
         grown = max(0.0, stock["offset_mm"])
         found.append({"name": STOCK, "frame": "part", "mesh": mesh, "margin": grown})
     machine = job["belt_machine"]
-    if machines.kind(machine) == machines.WHEEL:
+    if machines.wheel_presses(machine):
         disc = wheel_body(machine["wheel"], job["cell"]["wheel_inset_mm"])
         if disc is not None:
             found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
@@ -199,8 +199,19 @@ def wheel_body(wheel, inset):
 
 def machine_bodies(machine):
     """[(name, core.TriangleMesh in the contact frame)] of a job's free belt or platen: its rollers, with the belt round
-    their outer sides, and the plate behind the layers. Of a contact wheel none. The belt itself gives way.
+    their outer sides, and the plate behind the layers; of a small wheel the belt's runs and the fork. Of a contact wheel none. The belt itself gives way.
     """
+    if machines.kind(machine) == machines.SMALL_WHEEL:
+        found = [(name, fork.run(machine, side)) for name, side in zip(fork.NAMES, (-1.0, 1.0))]
+        held = fork.arms(machine)
+        if held:
+            points, faces = (np.concatenate(each) for each in zip(*held))
+            faces[len(held[0][1]) :] += len(held[0][0])
+            found.append((fork.ARMS, (points, faces)))
+        return [
+            (name, core.TriangleMesh(points.astype(np.float32), faces.astype(np.uint32)))
+            for name, (points, faces) in found
+        ]
     if machines.kind(machine) == machines.WHEEL:
         return []
     run = machine["free_run"]

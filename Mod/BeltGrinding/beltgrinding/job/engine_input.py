@@ -67,7 +67,7 @@ def wheel_growth(machine):
     force control and for a rigid tool.
     """
     compliance = machine["compliance"]
-    if machines.kind(machine) != machines.WHEEL:
+    if not machines.wheel_presses(machine):
         return 0.0
     if machine["control"] == "force" or compliance["model"] == "geometric":
         return 0.0
@@ -113,7 +113,7 @@ def engine_arguments(job):
     compliance is empty, and the options have a ``machine``."""
     machine = job["belt_machine"]
     wheel = {name[:-3]: value for name, value in machine["wheel"].items()}
-    wheel_presses = machines.kind(machine) == machines.WHEEL
+    wheel_presses = machines.wheel_presses(machine)
     if not wheel_presses:
         compliance = {}
     elif job["law"]["model"] == "geometric":

@@ -74,8 +74,7 @@ def validate(job, folder="."):
             "{key}: a solid stock needs exactly one of 'file' or 'brep'",
             key="stock",
         )
-    wheel = machine.kind(job["belt_machine"]) == machine.WHEEL
-    more = () if wheel else (*job_bodies.ROLLERS, job_bodies.PLATE)
+    more = job_bodies.OF_KIND.get(machine.kind(job["belt_machine"]), ())
     job_bodies.validate(job["cell"]["bodies"], more)
     robots.validate(job["robot"])
     lower, upper = job["inspection"]["tolerance_mm"]

@@ -1,9 +1,11 @@
-"""What kind of belt machine a job has: a contact wheel, a free belt, a platen."""
+"""What kind of belt machine a job has: a contact wheel, a free belt, a platen, a small wheel in a fork."""
 
 from ..base import schemas
 from ..engine import InputError
 
 WHEEL, FREE_BELT, PLATEN = "contact_wheel", "free_belt", "platen"
+SMALL_WHEEL = "small_wheel"
+WHEELS = (WHEEL, SMALL_WHEEL)  # a wheel presses the belt
 
 
 def kind(machine):
@@ -11,9 +13,19 @@ def kind(machine):
     return machine.get("kind", WHEEL)
 
 
+def wheel_presses(machine):
+    """Whether a wheel presses the belt of a job's ``belt_machine`` on the part."""
+    return kind(machine) in WHEELS
+
+
 def filled(machine, rules):
     """Puts the defaults of the parts that its kind needs into a validated ``belt_machine``; ``rules``: its schema."""
-    needed = {WHEEL: (), FREE_BELT: ("free_run",), PLATEN: ("free_run", "platen")}[kind(machine)]
+    needed = {
+        WHEEL: (),
+        SMALL_WHEEL: ("fork",),
+        FREE_BELT: ("free_run",),
+        PLATEN: ("free_run", "platen"),
+    }[kind(machine)]
     for name in needed:
         machine[name] = schemas.filled(machine.get(name, {}), rules["properties"][name])
 
@@ -21,8 +33,8 @@ def filled(machine, rules):
 def check(job):
     """Raises InputError for what the schema cannot say of a validated job's belt machine."""
     machine = job["belt_machine"]
-    if kind(machine) == WHEEL:
-        return
+    if wheel_presses(machine):
+        return check_run(machine)
     if job["law"]["model"] == "geometric":
         raise InputError(
             "job.belt_is_not_rigid",
@@ -34,8 +46,18 @@ def check(job):
 
 
 def check_run(machine):
-    """Raises InputError where the contact of a ``belt_machine`` with its defaults lies beside its rollers."""
-    if kind(machine) == WHEEL:
+    """Raises InputError where a ``belt_machine`` with its defaults cannot be: a contact beside its rollers, a fork that ends
+    within its wheel."""
+    if kind(machine) == SMALL_WHEEL:
+        radius, fork = machine["wheel"]["radius_mm"], machine["fork"]
+        if fork["length_mm"] <= radius:
+            raise InputError(
+                "job.short_fork",
+                "{key}: the belt's pulleys must lie farther from the axle than the wheel's radius of {radius:.4g} mm",
+                key="belt_machine.fork.length_mm",
+                radius=radius,
+            )
+    if wheel_presses(machine):
         return
     run = machine["free_run"]
     if not abs(run["position_mm"]) < 0.5 * run["length_mm"]:
@@ -57,9 +79,9 @@ def check_run(machine):
 
 
 def need_wheel(job, what):
-    """Raises InputError unless the job has a contact wheel. ``what``: a core.Fact, what knows no other kind."""
+    """Raises InputError unless a wheel presses the belt. ``what``: a core.Fact, what knows no other kind."""
     found = kind(job["belt_machine"])
-    if found != WHEEL:
+    if found not in WHEELS:
         raise InputError(
             "job.needs_wheel",
             "{what} with a contact wheel only; {key} is {kind}: grind it by `beltgrind run`, or set contact_wheel",

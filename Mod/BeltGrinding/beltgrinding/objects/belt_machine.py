@@ -1,7 +1,7 @@
 """The belt machine in the document: what presses the belt, the belt, control, the cell's frames, the robot."""
 
 from ..base import schemas
-from ..job.machine import FREE_BELT, PLATEN, WHEEL, check_run
+from ..job.machine import FREE_BELT, PLATEN, SMALL_WHEEL, WHEEL, WHEELS, check_run
 from .belt import Belt
 from .geometry import matrix, placement_to_job
 from .properties import Key, add_keys, check_limits, to_job
@@ -26,11 +26,18 @@ PLATEN_KEYS = (
     Key("LayerStiffness", "Float", "Platen", "belt_machine.platen.surface_stiffness_MPa_per_mm"),
     Key("PlateThickness", "Length", "Platen", "belt_machine.platen.plate_thickness_mm"),
 )
+FORK_KEYS = (
+    Key("ForkLength", "Length", "Fork", "belt_machine.fork.length_mm"),
+    Key("ForkSpread", "Length", "Fork", "belt_machine.fork.spread_mm"),
+    Key("ForkBeltThickness", "Length", "Fork", "belt_machine.fork.belt_thickness_mm"),
+    Key("ForkArmThickness", "Length", "Fork", "belt_machine.fork.arm_thickness_mm"),
+)
 # What a job has only of such a machine; a contact wheel's is that of earlier versions.
 KIND_KEYS = {
     WHEEL: (),
     FREE_BELT: (KIND, *RUN_KEYS),
     PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS),
+    SMALL_WHEEL: (KIND, *FORK_KEYS),
 }
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
@@ -78,7 +85,8 @@ KEYS = (
     Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),
     Key("FlipAngle", "Angle", "Robot", "robot.flip_deg"),
 )
-ALL_KEYS = (KIND, *RUN_KEYS, *PLATEN_KEYS, *KEYS)
+ALL_KEYS = (KIND, *RUN_KEYS, *PLATEN_KEYS, *FORK_KEYS, *KEYS)
+OF_KINDS = ("Free run", "Platen", "Fork", "Wheel", "Elasticity")  # groups that not all kinds use
 FRAMES = {
     "BaseFromWork": ("base_from_work", "tool in hand: the document's origin in the base frame"),
     "TcpFromContact": ("tcp_from_contact", "tool in hand: the contact frame in the tool frame"),
@@ -100,14 +108,14 @@ ROBOT_FRAMES = {
 
 def half_size(machine):
     """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
-    if machine.Kind == WHEEL:
+    if machine.Kind in WHEELS:
         return machine.WheelRadius.Value
     return 0.5 * machine.RunLength.Value
 
 
 def across(machine):
     """mm: the width of what presses."""
-    return (machine.WheelWidth if machine.Kind == WHEEL else machine.RunWidth).Value
+    return (machine.WheelWidth if machine.Kind in WHEELS else machine.RunWidth).Value
 
 
 class BeltMachine(Proxy):
@@ -150,12 +158,10 @@ class BeltMachine(Proxy):
     def arrange(self, obj):
         """Hides in the property editor what the kind does not use."""
         used = {key.name for key in KIND_KEYS[obj.Kind]}
-        if obj.Kind == WHEEL:
+        if obj.Kind in WHEELS:
             used |= {key.name for key in KEYS if key.group in ("Wheel", "Elasticity")}
-        for key in (*RUN_KEYS, *PLATEN_KEYS, *KEYS):
-            if key.group in ("Free run", "Platen", "Wheel", "Elasticity") and hasattr(
-                obj, key.name
-            ):
+        for key in ALL_KEYS:
+            if key.group in OF_KINDS and hasattr(obj, key.name):
                 obj.setEditorMode(key.name, 0 if key.name in used else 2)
 
     def to_job(self, obj):

@@ -6,7 +6,7 @@ import Mesh
 import Part
 
 from ..cell import collision
-from ..job import bodies as job_bodies, machine as machines
+from ..job import bodies as job_bodies
 from ..job.workpiece import MESH_SUFFIXES, read_design
 from .belt_machine import BODIES
 from .geometry import export_solid, geometry_digest, placement_from_job
@@ -17,8 +17,7 @@ JOB_FRAMES = {"base": "base", "tool": "tool", "contact": "wheel", "part": "part"
 def listed(machine):
     """(name in a job, frame in a job, object) of every body; the name is the label, made unique."""
     found, names = [], list(job_bodies.RESERVED)
-    if machine.Kind != machines.WHEEL:
-        names += [*job_bodies.ROLLERS, job_bodies.PLATE]
+    names += job_bodies.OF_KIND.get(machine.Kind, ())
     for prop, (frame, _) in BODIES.items():
         for obj in getattr(machine, prop):
             name, number = obj.Label, 2

@@ -110,8 +110,9 @@ def process(job, summary, words):
         shape += ", " + words("turned to a profile")
     elif wheel["crown_radius_mm"]:
         shape += ", " + words("crown radius {mm} mm", mm=words.figures(wheel["crown_radius_mm"]))
-    if machines.kind(machine) == machines.WHEEL:
-        rows.append((words("Contact wheel"), shape))
+    if machines.wheel_presses(machine):
+        small = machines.kind(machine) == machines.SMALL_WHEEL
+        rows.append((words("Small wheel") if small else words("Contact wheel"), shape))
         rows.append((words("Elasticity"), _elasticity(machine["compliance"], words)))
     else:
         rows += _belt(machine, words)

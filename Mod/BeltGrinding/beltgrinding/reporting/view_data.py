@@ -189,7 +189,7 @@ def _motions(result, chosen, packed, words):
 def _wheel(job, packed, words):
     """The wheel and its way over the work; None where the programs cannot be read any more, or of a machine without
     a wheel."""
-    if machines.kind(job["belt_machine"]) != machines.WHEEL:
+    if not machines.wheel_presses(job["belt_machine"]):
         return None
     try:
         paths = [tool_paths.tool_path(job, i, []) for i in range(len(job["programs"]))]

@@ -31,6 +31,7 @@ class BeltMachinePanel(Panel):
             machines.WHEEL: translate("BeltGrinding", "Contact wheel"),
             machines.FREE_BELT: translate("BeltGrinding", "Free belt"),
             machines.PLATEN: translate("BeltGrinding", "Platen"),
+            machines.SMALL_WHEEL: translate("BeltGrinding", "Small wheel in a fork"),
         }
         kind.add("Kind", translate("BeltGrinding", "Kind"), kinds)
         self.drawing = MachineDrawing(obj)
@@ -44,6 +45,11 @@ class BeltMachinePanel(Panel):
         self.layers = LayerRows(get_value(obj, LAYERS))
         self.layers.changed = self._layers_changed
         self.platen.layout_.addRow(self.layers)
+        self.fork = Form(obj, translate("BeltGrinding", "Fork, for collisions"))
+        self.fork.add("ForkLength", translate("BeltGrinding", "Axle to pulleys"))
+        self.fork.add("ForkSpread", translate("BeltGrinding", "Between the runs"))
+        self.fork.add("ForkBeltThickness", translate("BeltGrinding", "Belt's thickness"))
+        self.fork.add("ForkArmThickness", translate("BeltGrinding", "Arms (0: none)"))
         wheel = Form(obj, translate("BeltGrinding", "Contact wheel"))
         wheel.add("WheelRadius", translate("BeltGrinding", "Radius"))
         wheel.add("WheelWidth", translate("BeltGrinding", "Width"))
@@ -100,7 +106,7 @@ class BeltMachinePanel(Panel):
         belt.add("RobotStiffness", text, unit="N/mm")
         self.belt, self.wheel = belt, wheel
         self.body.addWidget(kind)
-        forms = (kind, wheel, self.run, self.platen, belt)
+        forms = (kind, wheel, self.fork, self.run, self.platen, belt)
         self.presets = PresetForm(obj, forms, self.hardness)
         self.body.addWidget(self.presets)
         for form in forms:
@@ -112,9 +118,10 @@ class BeltMachinePanel(Panel):
 
     def arrange(self):
         """Shows the fields that the kind, the elasticity and the control use."""
-        of_wheel = self.obj.Kind == machines.WHEEL
+        of_wheel = self.obj.Kind in machines.WHEELS
         self.wheel.setVisible(of_wheel)
         self.run.setVisible(not of_wheel)
+        self.fork.setVisible(self.obj.Kind == machines.SMALL_WHEEL)
         self.platen.setVisible(self.obj.Kind == machines.PLATEN)
         self.presets.show_kind(self.obj.Kind)
         if not self.layers.same(get_value(self.obj, LAYERS)):
@@ -161,10 +168,10 @@ class BeltMachinePanel(Panel):
     def check(self):
         if self.obj.BeltSpeed.Value <= 0:
             raise InputError("gui.belt_speed", "The belt speed must be positive.")
-        if self.obj.Kind == machines.WHEEL:
-            return self._check_wheel()
+        if self.obj.Kind in machines.WHEELS:
+            self._check_wheel()
         machine = {}
-        to_job(self.obj, KIND_KEYS[self.obj.Kind], machine)
+        to_job(self.obj, (*KIND_KEYS[self.obj.Kind], *machines.KEYS), machine)
         if self.obj.Kind == machines.PLATEN:
             machine["belt_machine"]["platen"]["layers"] = self.layers.values()
         machines.check_run(machine["belt_machine"])

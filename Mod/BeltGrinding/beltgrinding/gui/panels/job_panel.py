@@ -4,7 +4,7 @@ import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
 from ...objects import first_settings, job_data, sides
-from ...objects.belt_machine import WHEEL, BeltMachine
+from ...objects.belt_machine import WHEELS, BeltMachine
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
 from ..common.compat import QtGui, translate
@@ -133,7 +133,7 @@ class JobPanel(Panel):
         machine = job_data.child(self.obj, BeltMachine)
         if machine is not None:
             form = Form(machine, "")
-            of_wheel = machine.Kind == WHEEL
+            of_wheel = machine.Kind in WHEELS
             if of_wheel:
                 form.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
                 form.add("WheelWidth", translate("BeltGrinding", "Wheel width"))

@@ -124,9 +124,9 @@ class PresetForm(QtGui.QGroupBox):
     def show_kind(self, kind):
         """Shows the presets that a kind of belt machine has: a wheel's only of a contact wheel."""
         for widgets in (self.labels, self.boxes):
-            widgets["wheel"].setVisible(kind == belt_machine.WHEEL)
+            widgets["wheel"].setVisible(kind in belt_machine.WHEELS)
         self.hints["wheel"].setVisible(
-            kind == belt_machine.WHEEL and bool(self.hints["wheel"].text())
+            kind in belt_machine.WHEELS and bool(self.hints["wheel"].text())
         )
 
     def _add(self, kind, text, found):

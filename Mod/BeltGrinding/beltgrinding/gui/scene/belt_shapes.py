@@ -1,4 +1,4 @@
-"""Coin nodes of a free belt and of a platen: rollers, the belt round them, the plate and its layers.
+"""Coin nodes of a free belt, a platen and a fork: rollers, the belt round them, the plate and its layers; runs and arms.
 
 All are in the contact frame: its origin lies on the belt's outer face, x along the travel, z into the work. The
 belt is drawn as it runs when it touches nothing.
@@ -8,9 +8,10 @@ import math
 
 import numpy as np
 
+from ...job import fork
 from ...job.bodies import PLATE, ROLLERS
-from ...objects.belt_machine import PLATEN, PLATEN_KEYS
-from ...objects.properties import get_value
+from ...objects.belt_machine import KEYS, KIND_KEYS, PLATEN, PLATEN_KEYS
+from ...objects.properties import get_value, to_job
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
 LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
@@ -31,6 +32,20 @@ def parts(machine):
         found[PLATE] = separator(material(CORE), triangles(*plate, crease=0.0))
         for layer in layers:
             found[""].addChild(separator(material(RUBBER), triangles(*layer, crease=0.0)))
+    return found
+
+
+def fork_parts(machine):
+    """{name of the body in events: node} of what holds a small wheel in the document: the belt's runs, the arms."""
+    job = {"belt_machine": {}}
+    to_job(machine, (*KIND_KEYS[machine.Kind], *KEYS), job)
+    job = job["belt_machine"]
+    found = {}
+    for name, side in zip(fork.NAMES, (-1.0, 1.0)):
+        found[name] = separator(material(BELT), triangles(*fork.run(job, side), crease=0.0))
+    arms = [triangles(*arm, crease=0.0) for arm in fork.arms(job)]
+    if arms:
+        found[fork.ARMS] = separator(material(CORE), *arms)
     return found
 
 

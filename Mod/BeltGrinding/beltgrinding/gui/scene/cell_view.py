@@ -109,8 +109,13 @@ class CellView:
 
     def _pressing(self):
         """{name as events have it: node} of what presses on the part."""
-        if self.machine.Kind == belt_machine.WHEEL:
-            return {WHEEL: wheel(self.machine)}
+        if self.machine.Kind in belt_machine.WHEELS:
+            more = (
+                {}
+                if self.machine.Kind == belt_machine.WHEEL
+                else belt_shapes.fork_parts(self.machine)
+            )
+            return {WHEEL: wheel(self.machine), **more}
         return belt_shapes.parts(self.machine)
 
     def tint(self, names):

@@ -63,7 +63,7 @@ class Sight:
         if machine is not None:
             # A belt's rollers lie beside the work, not above it: half a width away is where it is seen from.
             wide = belt_machine.across(machine)
-            wheel = machine.Kind == belt_machine.WHEEL
+            wheel = machine.Kind in belt_machine.WHEELS
             centre = contact[:3, 3] + (machine.WheelRadius.Value if wheel else 0.5 * wide) * away
             ends = [centre + share * wide * axis for share in WHEEL_AXIS]
             places += ends

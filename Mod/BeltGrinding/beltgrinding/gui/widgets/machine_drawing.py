@@ -14,6 +14,7 @@ EDGE = 6.0  # pixels round the drawing
 BELT, RUBBER, METAL = "#7a4026", "#3a3f47", "#9aa1ab"
 THICKEST = 0.5  # of the height that layers may take, so that the rest is seen
 ARROW = 5.0  # pixels
+SMALL = 0.6  # of the size that a wheel has, so that its runs are seen
 
 
 class MachineDrawing(QtGui.QWidget):
@@ -32,7 +33,7 @@ class MachineDrawing(QtGui.QWidget):
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
         try:
-            (self._wheel if self.machine.Kind == machines.WHEEL else self._belt)(painter)
+            (self._wheel if self.machine.Kind in machines.WHEELS else self._belt)(painter)
         finally:
             painter.end()
 
@@ -43,6 +44,11 @@ class MachineDrawing(QtGui.QWidget):
         middle = QtCore.QPointF(0.27 * self.width(), self.height() - EDGE - radius * scale)
         rim = min(self.machine.RimThickness.Value, radius) if self._has_rim() else 0.0
         outer = radius * scale
+        if self.machine.Kind == machines.SMALL_WHEEL:
+            scale *= SMALL
+            outer *= SMALL
+            middle.setY(middle.y() - (1.0 / SMALL - 1.0) * outer)
+            self._runs(painter, middle, outer, scale)
         self._disc(painter, middle, outer, BELT)
         self._disc(painter, middle, outer - 2.5, RUBBER if rim else METAL)
         self._disc(painter, middle, max(outer - max(rim * scale, 2.5), 0.0), METAL)
@@ -54,6 +60,28 @@ class MachineDrawing(QtGui.QWidget):
         if rim:
             lines.append(translate("BeltGrinding", "rim {} mm").format(f"{rim:g}"))
         self._texts(painter, middle.x() + outer + 8, middle.y() - 14, lines)
+
+    def _runs(self, painter, middle, radius, scale):
+        """The belt's two runs, as far as the drawing goes."""
+        machine = self.machine
+        x, y = 0.5 * machine.ForkSpread.Value * scale, machine.ForkLength.Value * scale
+        square = x * x + y * y
+        if square <= radius * radius:
+            return  # a fork that ends within its wheel, which the panel refuses
+        root = math.sqrt(square - radius * radius)
+        across, down = (
+            radius * (radius * x + root * y) / square,
+            radius * (radius * y - root * x) / square,
+        )
+        painter.save()
+        painter.setClipRect(self.rect().adjusted(0, 0, 0, -3))
+        painter.setPen(QtGui.QPen(readable(BELT), 2.5))
+        for side in (-1.0, 1.0):
+            painter.drawLine(
+                QtCore.QPointF(middle.x() + side * across, middle.y() + down),
+                QtCore.QPointF(middle.x() + side * x, middle.y() + y),
+            )
+        painter.restore()
 
     def _has_rim(self):
         return self.machine.Compliance in (

@@ -1,0 +1,52 @@
+"""A small wheel in a fork: the belt's two runs beside the wheel and the arms that hold its axle, for collisions.
+
+All is in the contact frame: the wheel's centre lies at z = -R, x along the belt's travel, y along the axle.
+"""
+
+import math
+
+import numpy as np
+
+NAMES = ("belt_before", "belt_behind")
+ARMS = "fork"
+GAP = 1.0  # mm between wheel and arms
+ARM = 0.6  # of the wheel's radius: half of an arm's height
+
+
+def run(machine, side):
+    """(points (8, 3) mm, triangles (12, 3)) of the belt that comes to the wheel (``side`` -1) or leaves it (1), straight
+    from where it leaves the rim to where it meets its pulley. ``machine``: a job's belt_machine with its defaults.
+    """
+    wheel, fork = machine["wheel"], machine["fork"]
+    radius, half = wheel["radius_mm"], 0.5 * wheel["width_mm"]
+    far = np.array([0.5 * fork["spread_mm"], -fork["length_mm"]])  # from the axle, of the side 1
+    square = float(far @ far)
+    # The tangent's point on the rim, the outer one of the two.
+    share = radius / square
+    touch = share * (radius * far + math.sqrt(square - radius**2) * np.array([-far[1], far[0]]))
+    inwards = -fork["belt_thickness_mm"] / radius * touch
+    corners = [touch, far, far + inwards, touch + inwards]
+    points = [[side * x, y, z - radius] for y in (-half, half) for x, z in corners]
+    return np.array(points), _prism()[:, :: int(side)]  # mirrored, they turn the other way
+
+
+def arms(machine):
+    """[(points (8, 3) mm, triangles (12, 3))] of the two arms beside the wheel; none without a thickness."""
+    wheel, fork = machine["wheel"], machine["fork"]
+    radius, thick = wheel["radius_mm"], fork["arm_thickness_mm"]
+    if thick <= 0.0:
+        return []
+    tall, inner = ARM * radius, 0.5 * wheel["width_mm"] + GAP
+    section = [[-tall, tall], [tall, tall], [tall, -fork["length_mm"]], [-tall, -fork["length_mm"]]]
+    found = []
+    for ends in ((-inner - thick, -inner), (inner, inner + thick)):
+        points = [[x, y, z - radius] for y in ends for x, z in section]
+        found.append((np.array(points), _prism()))
+    return found
+
+
+def _prism():
+    """Triangles of a prism of four corners at one end and four at the other."""
+    sides = [[k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k] for k in range(4)]
+    quads = [[3, 2, 1, 0], [4, 5, 6, 7], *sides]
+    return np.array([t for a, b, c, d in quads for t in ([a, b, c], [a, c, d])])

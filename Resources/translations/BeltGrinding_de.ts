@@ -2179,18 +2179,6 @@
         <translation>Kraftregelung</translation>
     </message>
     <message>
-        <source>Force: {:.1f} N (commanded: {:.1f} N)
-Highest pressure: {:.3f} MPa (darkest)
-Contact: {:.0f} mm² of {:.1f} x {:.1f} mm
-Wheel: {:+.3f} mm beyond its pose
-x to the right along the belt, y upwards along the axis</source>
-        <translation>Kraft: {:.1f} N (Sollwert: {:.1f} N)
-Höchster Druck: {:.3f} MPa (am dunkelsten)
-Kontakt: {:.0f} mm² bei {:.1f} x {:.1f} mm
-Scheibe: {:+.3f} mm über ihre Pose hinaus
-x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
-    </message>
-    <message>
         <source>Frames</source>
         <translation>Koordinatensysteme</translation>
     </message>
@@ -5175,6 +5163,18 @@ im Mittel {} abgetragen</translation>
     <message>
         <source>Small wheel in a fork</source>
         <translation>Kleine Scheibe, Gabel</translation>
+    </message>
+    <message>
+        <source>Force: {:.1f} N (commanded: {:.1f} N)
+Highest pressure: {:.3f} MPa (darkest)
+Contact: {:.0f} mm² of {:.1f} x {:.1f} mm
+{}: {:+.3f} mm beyond its pose
+x to the right along the belt, y upwards along the axis</source>
+        <translation>Kraft: {:.1f} N (Sollwert: {:.1f} N)
+Höchster Druck: {:.3f} MPa (am dunkelsten)
+Kontakt: {:.0f} mm² bei {:.1f} x {:.1f} mm
+{}: {:+.3f} mm über ihre Pose hinaus
+x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     </message>
 </context>
 <context>

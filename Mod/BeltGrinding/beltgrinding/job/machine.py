@@ -84,7 +84,7 @@ def need_wheel(job, what):
     if found not in WHEELS:
         raise InputError(
             "job.needs_wheel",
-            "{what} with a contact wheel only; {key} is {kind}: grind it by `beltgrind run`, or set contact_wheel",
+            "{what} with a contact wheel only; {key} is {kind}: set contact_wheel, or take a robot program of your own",
             what=what,
             key="belt_machine.kind",
             kind=found,

@@ -6,6 +6,7 @@ import numpy as np
 from ...contact import single_contact as contact
 from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs
+from ...objects.belt_machine import WHEELS
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
@@ -44,6 +45,10 @@ class ContactPanel:
         self.paths = job_data.children(job, RobotPath)
         self.folder = job_inputs.scratch_folder()
         self.data = job_inputs.to_data(job, self.folder.name)
+        wheel = self.data["belt_machine"].get("kind", WHEELS[0]) in WHEELS
+        self.pressing = (
+            translate("BeltGrinding", "Wheel") if wheel else translate("BeltGrinding", "Belt")
+        )
         self.task = None
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
@@ -120,7 +125,7 @@ class ContactPanel:
             translate(
                 "BeltGrinding",
                 "Force: {:.1f} N (commanded: {:.1f} N)\nHighest pressure: {:.3f} MPa (darkest)\n"
-                "Contact: {:.0f} mm² of {:.1f} x {:.1f} mm\nWheel: {:+.3f} mm beyond its pose\n"
+                "Contact: {:.0f} mm² of {:.1f} x {:.1f} mm\n{}: {:+.3f} mm beyond its pose\n"
                 "x to the right along the belt, y upwards along the axis",
             ).format(
                 result["force"],
@@ -129,6 +134,7 @@ class ContactPanel:
                 result["contact_area"],
                 np.ptp(result["x"]),
                 np.ptp(result["y"]),
+                self.pressing,
                 result["approach"],
             )
         )

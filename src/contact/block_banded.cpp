@@ -8,68 +8,100 @@ namespace beltgrinding {
 namespace {
 
 using Four = double __attribute__((vector_size(32)));
+using Eight = double __attribute__((vector_size(64)));
 constexpr int kFour = 4;
 constexpr int kStrip = 4;  // registers of a column that are summed at a time
 constexpr int kPair = 2;   // columns that share what is loaded
 
-/// to[rows, columns] -= L[rows, :] L[columns, :]', `pairs` columns of one strip of `fours` times
-/// four rows; both have the outer stride `height`.
-template <int fours, int pairs>
+/// to[rows, columns] -= L[rows, :] L[columns, :]', `pairs` columns of one strip of so many
+/// `Vector`s of rows; both have the outer stride `height`.
+template <class Vector, int vectors, int pairs>
 [[gnu::always_inline]] inline void subtract_strip(const double* l, std::ptrdiff_t height, int depth,
                                                   int row, int column, double* to,
                                                   std::ptrdiff_t to_height) {
-    Four sum[pairs][fours] = {};
+    constexpr int kLanes = sizeof(Vector) / sizeof(double);
+    Vector sum[pairs][vectors] = {};
     for (int k = 0; k < depth; ++k) {
         const double* from = l + k * height;
-        Four values[fours];
-        for (int f = 0; f < fours; ++f)
-            std::memcpy(&values[f], from + row + f * kFour, sizeof(Four));
+        Vector values[vectors];
+        for (int v = 0; v < vectors; ++v)
+            std::memcpy(&values[v], from + row + v * kLanes, sizeof(Vector));
         for (int p = 0; p < pairs; ++p)
-            for (int f = 0; f < fours; ++f) sum[p][f] += values[f] * from[column + p];
+            for (int v = 0; v < vectors; ++v) sum[p][v] += values[v] * from[column + p];
     }
     for (int p = 0; p < pairs; ++p) {
         double* at = to + (column + p) * to_height + row;
-        for (int f = 0; f < fours; ++f) {
-            Four old;
-            std::memcpy(&old, at + f * kFour, sizeof(Four));
-            old -= sum[p][f];
-            std::memcpy(at + f * kFour, &old, sizeof(Four));
+        for (int v = 0; v < vectors; ++v) {
+            Vector old;
+            std::memcpy(&old, at + v * kLanes, sizeof(Vector));
+            old -= sum[p][v];
+            std::memcpy(at + v * kLanes, &old, sizeof(Vector));
         }
     }
 }
 
-template <int pairs>
+/// `strip` vectors of rows at a time, then one, then single registers of four.
+template <class Vector, int strip, int pairs>
 [[gnu::always_inline]] inline void subtract_columns(const double* l, std::ptrdiff_t height,
                                                     int depth, int first_row, int rows, int column,
                                                     double* to, std::ptrdiff_t to_height) {
+    constexpr int kLanes = sizeof(Vector) / sizeof(double);
     int row = first_row;
-    for (; row + kStrip * kFour <= rows; row += kStrip * kFour)
-        subtract_strip<kStrip, pairs>(l, height, depth, row, column, to, to_height);
+    for (; row + strip * kLanes <= rows; row += strip * kLanes)
+        subtract_strip<Vector, strip, pairs>(l, height, depth, row, column, to, to_height);
+    for (; row + kLanes <= rows; row += kLanes)
+        subtract_strip<Vector, 1, pairs>(l, height, depth, row, column, to, to_height);
     for (; row < rows; row += kFour)
-        subtract_strip<1, pairs>(l, height, depth, row, column, to, to_height);
+        subtract_strip<Four, 1, pairs>(l, height, depth, row, column, to, to_height);
 }
 
 /// The lower triangle of to -= L L', for the columns from `first` to `end`; rows are padded to a
 /// multiple of four.
+template <class Vector, int strip>
+[[gnu::always_inline]] inline void subtract_triangle(const double* l, std::ptrdiff_t height,
+                                                     int depth, int rows, int first, int end,
+                                                     double* to, std::ptrdiff_t to_height) {
+    int column = first;
+    for (; column + kPair <= end; column += kPair)
+        subtract_columns<Vector, strip, kPair>(l, height, depth, column / kFour * kFour, rows,
+                                               column, to, to_height);
+    for (; column < end; ++column)
+        subtract_columns<Vector, strip, 1>(l, height, depth, column / kFour * kFour, rows, column,
+                                           to, to_height);
+}
+
 // GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
 // the loader chooses between them.
 #if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
+#define BELTGRINDING_AVX
+#endif
+
+#ifdef BELTGRINDING_AVX
+__attribute__((target("avx512f"))) void subtract_square_512(const double* l, std::ptrdiff_t height,
+                                                            int depth, int rows, int first, int end,
+                                                            double* to, std::ptrdiff_t to_height) {
+    subtract_triangle<Eight, kStrip>(l, height, depth, rows, first, end, to, to_height);
+}
+
 __attribute__((target_clones("avx2", "default")))
 #endif
+void subtract_square_256(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
+                         int end, double* to, std::ptrdiff_t to_height) {
+    subtract_triangle<Four, kStrip>(l, height, depth, rows, first, end, to, to_height);
+}
+
 void subtract_square(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
                      int end, double* to, std::ptrdiff_t to_height) {
-    int column = first;
-    for (; column + kPair <= end; column += kPair)
-        subtract_columns<kPair>(l, height, depth, column / kFour * kFour, rows, column, to,
-                                to_height);
-    for (; column < end; ++column)
-        subtract_columns<1>(l, height, depth, column / kFour * kFour, rows, column, to, to_height);
+#ifdef BELTGRINDING_AVX
+    if (__builtin_cpu_supports("avx512f"))
+        return subtract_square_512(l, height, depth, rows, first, end, to, to_height);
+#endif
+    subtract_square_256(l, height, depth, rows, first, end, to, to_height);
 }
 
 /// Cholesky's factor of the first `columns` rows of a panel, and what that makes of the rows below.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#ifdef BELTGRINDING_AVX
 __attribute__((target_clones("avx2", "default")))
 #endif
 bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows) {

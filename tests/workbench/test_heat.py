@@ -142,3 +142,25 @@ def test_a_rigid_tool_has_no_heat():
     result = beltgrinding.run(job)
     assert result.field.heat is None and "heat" not in result.verdict
     assert any("no temperatures" in str(warning) for warning in result.summary["warnings"])
+
+
+def test_a_study_of_its_properties_tells_the_temperatures(tmp_path):
+    job = plate_job()
+    job["heat"] = {**STEEL, "burn_temperature_C": 30.0}
+    vary = [{"key": "heat.conductivity_W_mK", "values": [7, 15, 60]}]
+    grid = {"method": "grid"}
+    found = beltgrinding.study({"job": job, "vary": vary, "design": grid}, tmp_path, workers=0)
+    hottest = [float(value) for value in found.table["heat.worst.temperature_C"]]
+    assert hottest[0] > hottest[1] > hottest[2] > 20.0
+    assert all(a < float(b) for a, b in zip(hottest, found.table["heat.worst.greatest_C"]))
+    assert all(float(value) > 0.0 for value in found.table["heat.burnt_share"])
+    plain = beltgrinding.study(
+        {
+            "job": plate_job(),
+            "vary": [{"key": "belt_machine.force_N", "values": [20, 30]}],
+            "design": grid,
+        },
+        tmp_path / "plain",
+        workers=0,
+    )
+    assert not [name for name in plain.table.columns if name.startswith("heat")]

@@ -37,6 +37,8 @@ USUAL = """
     unresolved_motions
     events_in_all
 """.split()
+OF_HEAT = ("heat.worst.temperature_C", "heat.worst.greatest_C", "heat.burnt_share")
+OF_FINISH = ("finish.Ra_um.mean", "finish.Ra_um.p95", "finish.Ra_um.max", "finish.crossed_share")
 OF_ZONES = ("verdict", "in_share", "above_share", "below_share")
 LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "inputs", "models")
 REST = "rest"  # the zone of all that lies in none
@@ -64,9 +66,10 @@ def of_result(result):
 
 
 def usual(job):
-    """Names of the columns of a table, for a validated job: ``USUAL``, and what its zones have."""
+    """Names of the columns of a table, for a validated job: ``USUAL``, and what its heat, its finish and its zones have."""
     zones = [zone["name"] for zone in job["inspection"]["zones"]]
-    return [*USUAL, *(f"zones.{zone}.{name}" for zone in zones for name in OF_ZONES)]
+    more = (*(OF_HEAT if "heat" in job else ()), *(OF_FINISH if "finish" in job else ()))
+    return [*USUAL, *more, *(f"zones.{zone}.{name}" for zone in zones for name in OF_ZONES)]
 
 
 def _flat(held, before=""):

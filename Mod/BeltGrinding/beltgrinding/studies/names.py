@@ -24,6 +24,13 @@ NAMES = {
     "belt.remaining_cut": "cut left in the belt",
     "lost_volume_mm3": "volume not removed for want of contact, mm³",
     "events_in_all": "events",
+    "heat.worst.temperature_C": "greatest temperature, °C",
+    "heat.worst.greatest_C": "greatest temperature, at most, °C",
+    "heat.burnt_share": "burnt area, share",
+    "finish.Ra_um.mean": "mean Ra, µm",
+    "finish.Ra_um.p95": "Ra, 95th percentile, µm",
+    "finish.Ra_um.max": "greatest Ra, µm",
+    "finish.crossed_share": "area with crossed scratches, share",
 }
 OF_ZONE = {
     "verdict": "zone {zone}",

@@ -33,7 +33,7 @@ def drawn():
 def walk(freecad):
     def run(body):
         body = PREPARE + body + '\nPath("walked.json").write_text(json.dumps(walked()))\n'
-        freecad.run(body, window=True)
+        freecad.run(body, window=True, fresh=True)  # a picture shows what was open before
         release, names = json.loads((freecad.folder / "walked.json").read_text())
         pictures.check(release, names)
 
@@ -85,6 +85,23 @@ doc.redo()
 assert machine.Kind == "platen" and json.loads(machine.PlatenLayers)[0]["youngs_modulus_MPa"] == 2.0
 menu("Belt machine")
 assert field("layerModulus1").text() == "2"
+press("Cancel")
+
+# Layers that were written by hand and are none: the panel opens, the cell is drawn, OK puts what it shows.
+for text in ("[{", '[{"thickness_mm": 5}]', "[1]"):
+    machine.PlatenLayers = text
+    menu("Cell")
+    press("Cancel")
+    menu("Belt machine")
+    assert not shown("layerModulus1")
+    press("OK")
+    assert not machine.PlatenLayers, text
+# So is a fork that ends within its wheel.
+machine.Kind, machine.ForkLength = "small_wheel", 10
+menu("Cell")
+press("Cancel")
+menu("Belt machine")
+assert drawn()
 press("Cancel")
 """
     )

@@ -102,6 +102,18 @@ press("OK")
 assert heat() is None
 doc.undo()
 assert heat()["friction"] == [0.3, 0.6]
+
+# What was written by hand and is none is told, and stays until something is chosen.
+for text in ('{"friction": [0.3', '{"conductivity_W_mK": 15}', '[1]'):
+    job.Heat = text
+    edit()
+    assert field("thermalPreset").currentText() == "not computed" and field("heatNote").text(), text
+    press("OK")
+    assert job.Heat == text
+edit()
+choose_in("thermalPreset", "Carbon steel")
+press("OK")
+assert heat()["conductivity_W_mK"] == 53
 """,
         window=True,
     )

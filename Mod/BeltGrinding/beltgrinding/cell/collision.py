@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from ..base import frames, kept
+from ..base.solids import box
 from ..engine import InputError, core
 from ..job import fork, machine as machines, workpiece
 from ..job.bodies import PART, PLATE, ROLLERS, STOCK, WHEEL
@@ -199,7 +200,8 @@ def wheel_body(wheel, inset):
 
 def machine_bodies(machine):
     """[(name, core.TriangleMesh in the contact frame)] of a job's free belt or platen: its rollers, with the belt round
-    their outer sides, and the plate behind the layers; of a small wheel the belt's runs and the fork. Of a contact wheel none. The belt itself gives way.
+    their outer sides, and the plate behind the layers; of a small wheel the belt's runs and the fork. Of a contact wheel
+    none. The belt itself gives way.
     """
     if machines.kind(machine) == machines.SMALL_WHEEL:
         found = [(name, fork.run(machine, side)) for name, side in zip(fork.NAMES, (-1.0, 1.0))]
@@ -208,10 +210,7 @@ def machine_bodies(machine):
             points, faces = (np.concatenate(each) for each in zip(*held))
             faces[len(held[0][1]) :] += len(held[0][0])
             found.append((fork.ARMS, (points, faces)))
-        return [
-            (name, core.TriangleMesh(points.astype(np.float32), faces.astype(np.uint32)))
-            for name, (points, faces) in found
-        ]
+        return [(name, _mesh(*solid)) for name, solid in found]
     if machines.kind(machine) == machines.WHEEL:
         return []
     run = machine["free_run"]
@@ -231,15 +230,12 @@ def machine_bodies(machine):
         behind = run["thickness_mm"] + sum(layer["thickness_mm"] for layer in platen["layers"])
         low = [-0.5 * platen["length_mm"], -half, -behind - platen["plate_thickness_mm"]]
         high = [0.5 * platen["length_mm"], half, -behind]
-        found.append((PLATE, _box(low, high)))
+        found.append((PLATE, _mesh(*box(low, high))))
     return found
 
 
-def _box(low, high):
-    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
-    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-    triangles = [[a, b, c] for a, b, c, _ in quads] + [[a, c, d] for a, _, c, d in quads]
-    return core.TriangleMesh(corners.astype(np.float32), np.array(triangles, dtype=np.uint32))
+def _mesh(points, faces):
+    return core.TriangleMesh(points.astype(np.float32), faces.astype(np.uint32))
 
 
 def _chord_angle(radius):

@@ -7,10 +7,17 @@ import math
 
 import numpy as np
 
+from ..base.solids import prism
+
 NAMES = ("belt_before", "belt_behind")
 ARMS = "fork"
 GAP = 1.0  # mm between wheel and arms
 ARM = 0.6  # of the wheel's radius: half of an arm's height
+
+
+def holds(machine):
+    """Whether the belt's pulleys lie outside of the wheel, so that there are runs."""
+    return machine["fork"]["length_mm"] > machine["wheel"]["radius_mm"]
 
 
 def run(machine, side):
@@ -27,7 +34,7 @@ def run(machine, side):
     inwards = -fork["belt_thickness_mm"] / radius * touch
     corners = [touch, far, far + inwards, touch + inwards]
     points = [[side * x, y, z - radius] for y in (-half, half) for x, z in corners]
-    return np.array(points), _prism()[:, :: int(side)]  # mirrored, they turn the other way
+    return np.array(points), prism()[:, :: int(side)]  # mirrored, they turn the other way
 
 
 def arms(machine):
@@ -41,12 +48,5 @@ def arms(machine):
     found = []
     for ends in ((-inner - thick, -inner), (inner, inner + thick)):
         points = [[x, y, z - radius] for y in ends for x, z in section]
-        found.append((np.array(points), _prism()))
+        found.append((np.array(points), prism()))
     return found
-
-
-def _prism():
-    """Triangles of a prism of four corners at one end and four at the other."""
-    sides = [[k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k] for k in range(4)]
-    quads = [[3, 2, 1, 0], [4, 5, 6, 7], *sides]
-    return np.array([t for a, b, c, d in quads for t in ([a, b, c], [a, c, d])])

@@ -2,6 +2,7 @@
 
 from ..base import schemas
 from ..engine import InputError
+from . import fork
 
 WHEEL, FREE_BELT, PLATEN = "contact_wheel", "free_belt", "platen"
 SMALL_WHEEL = "small_wheel"
@@ -49,8 +50,8 @@ def check_run(machine):
     """Raises InputError where a ``belt_machine`` with its defaults cannot be: a contact beside its rollers, a fork that ends
     within its wheel."""
     if kind(machine) == SMALL_WHEEL:
-        radius, fork = machine["wheel"]["radius_mm"], machine["fork"]
-        if fork["length_mm"] <= radius:
+        radius = machine["wheel"]["radius_mm"]
+        if not fork.holds(machine):
             raise InputError(
                 "job.short_fork",
                 "{key}: the belt's pulleys must lie farther from the axle than the wheel's radius of {radius:.4g} mm",

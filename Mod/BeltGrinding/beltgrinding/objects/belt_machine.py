@@ -1,10 +1,11 @@
 """The belt machine in the document: what presses the belt, the belt, control, the cell's frames, the robot."""
 
 from ..base import schemas
+from ..engine import InputError
 from ..job.machine import FREE_BELT, PLATEN, SMALL_WHEEL, WHEEL, WHEELS, check_run
 from .belt import Belt
 from .geometry import matrix, placement_to_job
-from .properties import Key, add_keys, check_limits, to_job
+from .properties import Key, add_keys, check_limits, get_value, rule, to_job
 from .proxy import Proxy, checking, type_of
 
 KIND = Key("Kind", "Enumeration", "Machine", "belt_machine.kind")
@@ -106,6 +107,17 @@ ROBOT_FRAMES = {
 }
 
 
+LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
+
+
+def layers_of(machine):
+    """A platen's layers, as a job has them; none where what stands in the property is no such list, which ``execute`` tells."""
+    try:
+        return schemas.checked(get_value(machine, LAYERS), rule(LAYERS.key)[0], LAYERS.key)
+    except InputError:
+        return []
+
+
 def half_size(machine):
     """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
     if machine.Kind in WHEELS:
@@ -146,9 +158,9 @@ class BeltMachine(Proxy):
         with checking(obj):
             check_limits(obj, (*KIND_KEYS[obj.Kind], *KEYS))
             if obj.Kind != WHEEL:
-                rule = schemas.schema("job")["properties"]["belt_machine"]
+                rules = schemas.schema("job")["properties"]["belt_machine"]
                 given = self.to_job(obj)["belt_machine"]
-                check_run(schemas.checked(given, rule, "belt_machine"))
+                check_run(schemas.checked(given, rules, "belt_machine"))
 
     def onChanged(self, obj, name):
         """Called by FreeCAD: shows the properties of the kind that was chosen."""
@@ -177,8 +189,12 @@ class BeltMachine(Proxy):
         return job
 
     def robot(self, obj):
-        """The part of a job under 'robot'."""
-        return self.to_job(obj)["robot"]
+        """The part of a job under 'robot'; of nothing else, so that a cell is drawn whatever else is wrong."""
+        job = {}
+        to_job(obj, [key for key in KEYS if key.key.startswith("robot.")], job)
+        for name, (key, _) in ROBOT_FRAMES.items():
+            job["robot"][key] = placement_to_job(getattr(obj, name))
+        return job["robot"]
 
     def cell(self, obj):
         """The cell's frames as core.ToolPath takes them: 4 x 4 in mm, by name."""

@@ -3,8 +3,8 @@
 from ...engine import InputError
 from ...objects import belt_machine as machines
 from ...objects.belt import Belt
-from ...objects.belt_machine import KIND_KEYS, PLATEN_KEYS
-from ...objects.properties import get_value, set_value, to_job
+from ...objects.belt_machine import KIND_KEYS, LAYERS, layers_of
+from ...objects.properties import set_value, to_job
 from ...objects.proxy import type_of
 from ..common.compat import translate
 from ..widgets.form import SIGNED, Form
@@ -12,8 +12,6 @@ from ..widgets.layer_rows import LayerRows
 from ..widgets.machine_drawing import MachineDrawing
 from .panel import Panel
 from .preset_form import HardnessField, PresetForm
-
-LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
 
 
 def _belts(document):
@@ -42,7 +40,7 @@ class BeltMachinePanel(Panel):
         self.platen.add("PlateThickness", translate("BeltGrinding", "Plate's thickness"))
         text = translate("BeltGrinding", "Its back (0: same)")
         self.platen.add("LayerStiffness", text, unit="MPa/mm")
-        self.layers = LayerRows(get_value(obj, LAYERS))
+        self.layers = LayerRows(layers_of(obj))
         self.layers.changed = self._layers_changed
         self.platen.layout_.addRow(self.layers)
         self.fork = Form(obj, translate("BeltGrinding", "Fork, for collisions"))
@@ -124,8 +122,8 @@ class BeltMachinePanel(Panel):
         self.fork.setVisible(self.obj.Kind == machines.SMALL_WHEEL)
         self.platen.setVisible(self.obj.Kind == machines.PLATEN)
         self.presets.show_kind(self.obj.Kind)
-        if not self.layers.same(get_value(self.obj, LAYERS)):
-            self.layers.show_layers(get_value(self.obj, LAYERS))
+        if not self.layers.same(layers_of(self.obj)):
+            self.layers.show_layers(layers_of(self.obj))
         self.drawing.update()
         moving = {"ForceLag", "OvershootLimit", "BounceTime"}
         dynamics = {
@@ -165,13 +163,22 @@ class BeltMachinePanel(Panel):
             return  # told below the rows, and again by OK
         self.drawing.update()
 
+    def apply(self):
+        if self.obj.Kind != machines.PLATEN:
+            return
+        wanted = self.layers.values()
+        # What stood in the property may have been no list of layers.
+        if layers_of(self.obj) != wanted or (self.obj.PlatenLayers and not wanted):
+            set_value(self.obj, LAYERS, wanted)
+
     def check(self):
         if self.obj.BeltSpeed.Value <= 0:
             raise InputError("gui.belt_speed", "The belt speed must be positive.")
         if self.obj.Kind in machines.WHEELS:
             self._check_wheel()
         machine = {}
-        to_job(self.obj, (*KIND_KEYS[self.obj.Kind], *machines.KEYS), machine)
+        keys = (key for key in KIND_KEYS[self.obj.Kind] if key is not LAYERS)
+        to_job(self.obj, (*keys, *machines.KEYS), machine)
         if self.obj.Kind == machines.PLATEN:
             machine["belt_machine"]["platen"]["layers"] = self.layers.values()
         machines.check_run(machine["belt_machine"])

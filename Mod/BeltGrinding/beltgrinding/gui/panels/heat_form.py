@@ -3,7 +3,10 @@
 import copy
 import json
 
+from ...base import schemas
 from ...engine import InputError
+from ...objects.job_data import KEYS
+from ...objects.properties import get_value, rule
 from ...presets import library as presets
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
@@ -13,6 +16,7 @@ from ..widgets.rows import number, shown
 from ..widgets.steady import steady
 from .preset_form import short
 
+HEAT = next(key for key in KEYS if key.name == "Heat")
 PREFIX = "heat."
 
 
@@ -63,8 +67,17 @@ class HeatForm(QtGui.QGroupBox):
         self.told.setObjectName("heatNote")
         self.told.setWordWrap(True)
         self.rows.addRow(self.told)
-        self.values = json.loads(job.Heat) if job.Heat else None
-        self.show_values()
+        self.parts = [_part(preset) for preset in self.found]
+        try:
+            self.values = get_value(job, HEAT)
+            if self.values is not None:
+                self.values = schemas.checked(self.values, rule(HEAT.key)[0], HEAT.key)
+            self.show_values()
+        except InputError as error:  # written by hand; it stays until something is chosen here
+            self.values = None
+            self.show_values()
+            self.told.setText(error_text(error))
+            self.told.setStyleSheet(warning_style())
         self.box.currentIndexChanged.connect(self._chosen)
 
     def _entry(self, key, end):
@@ -91,8 +104,7 @@ class HeatForm(QtGui.QGroupBox):
 
     def _number_of(self, given):
         """The row of the preset whose values these are, else that of own ones."""
-        for k, preset in enumerate(self.found, 1):
-            of_it = _part(preset)
+        for k, of_it in enumerate(self.parts, 1):
             if all(given.get(key) == value for key, value in of_it.items() if key != "burn_source"):
                 return k
         return self.box.count() - 1
@@ -102,10 +114,10 @@ class HeatForm(QtGui.QGroupBox):
             self.values = None
         elif index <= len(self.found):
             start = (self.values or {}).get("start_temperature_C", 20.0)
-            self.values = {**_part(self.found[index - 1]), "start_temperature_C": start}
+            self.values = {**self.parts[index - 1], "start_temperature_C": start}
         elif self.values is None:
             # Something to begin with, which is then nobody's.
-            self.values = {**_part(self.found[0]), "material": "", "burn_source": ""}
+            self.values = {**self.parts[0], "material": "", "burn_source": ""}
             self.values.pop("burn_temperature_C")
         else:
             self.values = {**self.values, "material": "", "burn_source": ""}

@@ -8,13 +8,13 @@ import math
 
 import numpy as np
 
+from ...base.solids import box
 from ...job import fork
 from ...job.bodies import PLATE, ROLLERS
-from ...objects.belt_machine import KEYS, KIND_KEYS, PLATEN, PLATEN_KEYS
-from ...objects.properties import get_value, to_job
+from ...objects.belt_machine import KEYS, KIND_KEYS, PLATEN, layers_of
+from ...objects.properties import to_job
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
-LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
 TURN = 24  # chords of the belt round a roller
 LEAST = 0.004  # of the free length: a belt that is thinner is drawn so thick
 AXES = 0.15  # of the free length
@@ -41,7 +41,7 @@ def fork_parts(machine):
     to_job(machine, (*KIND_KEYS[machine.Kind], *KEYS), job)
     job = job["belt_machine"]
     found = {}
-    for name, side in zip(fork.NAMES, (-1.0, 1.0)):
+    for name, side in zip(fork.NAMES, (-1.0, 1.0) if fork.holds(job) else ()):
         found[name] = separator(material(BELT), triangles(*fork.run(job, side), crease=0.0))
     arms = [triangles(*arm, crease=0.0) for arm in fork.arms(job)]
     if arms:
@@ -101,7 +101,7 @@ def band(inside, outside, half):
 def platen(machine):
     """((points, triangles) of the plate, [the same of each layer on it])."""
     half, long = 0.5 * machine.RunWidth.Value, 0.5 * machine.PlatenLength.Value
-    layers = get_value(machine, LAYERS)
+    layers = layers_of(machine)
     at = -machine.RunThickness.Value - sum(layer["thickness_mm"] for layer in layers)
     plate = box([-long, -half, at - machine.PlateThickness.Value], [long, half, at])
     found = []
@@ -109,10 +109,3 @@ def platen(machine):
         found.append(box([-long, -half, at], [long, half, at + layer["thickness_mm"]]))
         at += layer["thickness_mm"]
     return plate, found
-
-
-def box(low, high):
-    """(points (8, 3), triangles (12, 3)) between two corners."""
-    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
-    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-    return corners, np.array([t for a, b, c, d in quads for t in ([a, b, c], [a, c, d])])

@@ -3,12 +3,9 @@
 import math
 
 from ...objects import belt_machine as machines
-from ...objects.belt_machine import PLATEN_KEYS
-from ...objects.properties import get_value
 from ..common.compat import QtCore, QtGui, translate
 from ..common.theme import readable, theme
 
-LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
 HEIGHT = 132  # pixels
 EDGE = 6.0  # pixels round the drawing
 BELT, RUBBER, METAL = "#7a4026", "#3a3f47", "#9aa1ab"
@@ -123,7 +120,7 @@ class MachineDrawing(QtGui.QWidget):
     def _plate(self, painter, at, scale, top, room):
         machine = self.machine
         half = 0.5 * machine.PlatenLength.Value * scale
-        layers = [layer["thickness_mm"] * scale for layer in get_value(machine, LAYERS)]
+        layers = [layer["thickness_mm"] * scale for layer in machines.layers_of(machine)]
         whole = sum(layers)
         # Thin layers must be seen, and thick ones leave room for the plate.
         layers = [max(one, 2.0) * min(1.0, THICKEST * room / max(whole, 1e-9)) for one in layers]

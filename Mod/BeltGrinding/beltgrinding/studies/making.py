@@ -338,7 +338,7 @@ class _Work:
 
         def workers(count):
             self.workers = count
-            self.tell()
+            self.tell(now=True)
 
         cluster.run(where, tasks, blob, self.take, self.context, workers)
 
@@ -369,12 +369,12 @@ class _Work:
         self.context.report(len(self.records) / self.count)
         self.tell()
 
-    def tell(self):
-        """Calls ``told``, not too often."""
-        now = time.monotonic()
-        if self.told is None or (now - self.last < TOLD_S and self.open):
+    def tell(self, now=False):
+        """Calls ``told``, not too often unless ``now``."""
+        time_s = time.monotonic()
+        if self.told is None or (time_s - self.last < TOLD_S and self.open and not now):
             return
-        self.last = now
+        self.last = time_s
         self.told(self.progress())
 
     def progress(self):

@@ -1148,24 +1148,12 @@
         <translation>Länge der Bahn, über die die Kraft auf ihren vollen Wert wächst und am Ende fällt, mm; 0: bis der ganze Kontakt auf der Fläche ist</translation>
     </message>
     <message>
-        <source>of the wheel along a pass, degrees per mm</source>
-        <translation>des Rads längs einer Bahn, Grad je mm</translation>
-    </message>
-    <message>
-        <source>of the wheel between neighbouring poses of a pass</source>
-        <translation>des Rads zwischen benachbarten Posen einer Bahn</translation>
-    </message>
-    <message>
         <source>run_on: how far outside the border the wheel comes down, mm; 0: half the contact&apos;s length</source>
         <translation>run_on: wie weit außerhalb des Rands das Rad aufsetzt, mm; 0: die halbe Länge des Kontakts</translation>
     </message>
     <message>
         <source>turn of the wheel along a pass, degrees per mm: faster turns of up to edge_turn_deg are spread along it, at others it ends</source>
         <translation>Drehung des Rads längs einer Bahn, Grad je mm: schnellere Drehungen bis edge_turn_deg werden über sie verteilt, an anderen endet sie</translation>
-    </message>
-    <message>
-        <source>removed while the wheel comes down and lifts off, percent, by force and time; -1: not known</source>
-        <translation>abgetragen, während das Rad aufsetzt und abhebt, Prozent, nach Kraft und Zeit; -1: nicht bekannt</translation>
     </message>
     <message>
         <source>line from which on motions are left out before each pose; 0: none</source>
@@ -1186,10 +1174,6 @@
     <message>
         <source>of the area, where it fits and no pass lies, percent</source>
         <translation>der Fläche, wo sie passt und keine Bahn liegt, Prozent</translation>
-    </message>
-    <message>
-        <source>of the area, where the wheel does not fit and no pass lies, percent</source>
-        <translation>der Fläche, wo die Scheibe nicht passt und keine Bahn liegt, Prozent</translation>
     </message>
     <message>
         <source>of the corners: 1 no room, 2 no pass</source>
@@ -1662,6 +1646,22 @@
     <message>
         <source>what presses the belt on the part. contact_wheel, and without the key: a wheel with the belt round it; free_belt: the belt itself, between two rollers; platen: a plate behind the belt (docs/free-belt.md); small_wheel: a contact_wheel in a fork, beside which the belt&apos;s two runs are looked at for collisions. Of a free_belt and a platen, the contact frame&apos;s origin lies on the face of the belt that touches nothing; wheel and compliance are then of no account</source>
         <translation>was das Band auf das Werkstück drückt. contact_wheel, auch ohne den Schlüssel: ein Rad mit dem Band darum; free_belt: das Band selbst, zwischen zwei Rollen; platen: eine Platte hinter dem Band (docs/free-belt.md); small_wheel: ein Rad in einer Gabel, neben dem die beiden Trume des Bandes für Kollisionen betrachtet werden. Bei free_belt und platen liegt der Ursprung des Kontaktsystems auf der Fläche des Bandes, das nichts berührt; Rad und Nachgiebigkeit zählen dann nicht</translation>
+    </message>
+    <message>
+        <source>of the area, where there is no room and no pass lies, percent</source>
+        <translation>der Fläche, wo kein Platz ist und keine Bahn liegt, in Prozent</translation>
+    </message>
+    <message>
+        <source>of the tool along a pass, degrees per mm</source>
+        <translation>des Werkzeugs längs einer Bahn, Grad je mm</translation>
+    </message>
+    <message>
+        <source>of the tool between neighbouring poses of a pass</source>
+        <translation>des Werkzeugs zwischen benachbarten Posen einer Bahn</translation>
+    </message>
+    <message>
+        <source>removed on the way down to the passes and off them, percent, by force and time; -1: not known</source>
+        <translation>des Abtrags, auf dem Weg hinab zu den Bahnen und von ihnen weg, in Prozent, nach Kraft und Zeit; -1: nicht bekannt</translation>
     </message>
 </context>
 <context>
@@ -4049,10 +4049,6 @@ im Mittel {} abgetragen</translation>
         <translation>Scheibe im Teil</translation>
     </message>
     <message>
-        <source>the wheel does not fit</source>
-        <translation>die Scheibe passt nicht</translation>
-    </message>
-    <message>
         <source>without a pass</source>
         <translation>ohne Bahn</translation>
     </message>
@@ -5175,6 +5171,10 @@ Höchster Druck: {:.3f} MPa (am dunkelsten)
 Kontakt: {:.0f} mm² bei {:.1f} x {:.1f} mm
 {}: {:+.3f} mm über ihre Pose hinaus
 x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
+    </message>
+    <message>
+        <source>there is no room</source>
+        <translation>kein Platz ist</translation>
     </message>
 </context>
 <context>

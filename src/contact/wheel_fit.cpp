@@ -65,6 +65,28 @@ class Cells {
     std::vector<std::size_t> start_, index_;
 };
 
+/// At each frame the greatest `depth(frame, number of a point)` of all points that may lie in `box`
+/// (of the contact frame); 0 or more.
+template <class Depth>
+std::vector<double> deepest(const std::vector<Frame>& work_from_contact,
+                            const std::vector<Vec3>& point, const Box& box,
+                            const RunContext& context, Depth&& depth) {
+    std::vector<double> found(work_from_contact.size(), 0.0);
+    if (point.empty()) return found;
+    const Cells cells(point);
+    parallel_blocks(found.size(), kPoseBlock, context, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Frame& frame = work_from_contact[i];
+            Box around;
+            for (int corner = 0; corner < 8; ++corner)
+                around.extend(frame * box.corner(static_cast<Box::CornerType>(corner)));
+            cells.in(around,
+                     [&](std::size_t k) { found[i] = std::max(found[i], depth(frame, k)); });
+        }
+    });
+    return found;
+}
+
 }  // namespace
 
 std::vector<double> wheel_fit(const ContactWheel& wheel,
@@ -74,33 +96,40 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
     wheel.validate();
     if (point.size() != normal.size())
         throw InputError("contact.wheel_fit", "wheel_fit needs a normal for every point");
-    std::vector<double> depth(work_from_contact.size(), 0.0);
-    if (point.empty()) return depth;
-    const Cells cells(point);
-    parallel_blocks(depth.size(), kPoseBlock, context, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Frame& frame = work_from_contact[i];
-            const Vec3 x = frame.linear().col(0), y = frame.linear().col(1),
-                       z = frame.linear().col(2);
-            const Vec3 centre = frame.translation() - wheel.radius * z;
-            Box box;  // of the wheel, or of its half that faces the work
-            for (const double a : {-1.0, 1.0})
-                for (const double b : {-0.5, 0.5})
-                    for (const double c : {whole ? -1.0 : 0.0, 1.0})
-                        box.extend(centre + a * wheel.radius * x + b * wheel.width * y +
-                                   c * wheel.radius * z);
-            cells.in(box, [&](std::size_t k) {
-                const Vec3 d = point[k] - centre;
-                const double along = d.dot(y), down = d.dot(z);
-                if (std::abs(along) > 0.5 * wheel.width || (down <= 0 && !whole)) return;
-                const Vec3 radial = d - along * y;
-                const double room = radial.norm() - (wheel.radius - wheel.drop(along));
-                if (room >= -depth[i] || (!whole && normal[k].dot(radial) >= 0)) return;
-                depth[i] = -room;
-            });
-        }
+    // In the contact frame: the wheel, or its half that faces the work.
+    const double far = whole ? -2.0 * wheel.radius : -wheel.radius;
+    const Box box(Vec3(-wheel.radius, -0.5 * wheel.width, far),
+                  Vec3(wheel.radius, 0.5 * wheel.width, 0.0));
+    return deepest(work_from_contact, point, box, context, [&](const Frame& frame, std::size_t k) {
+        const Vec3 y = frame.linear().col(1), z = frame.linear().col(2);
+        const Vec3 d = point[k] - (frame.translation() - wheel.radius * z);
+        const double along = d.dot(y), down = d.dot(z);
+        if (std::abs(along) > 0.5 * wheel.width || (down <= 0 && !whole)) return 0.0;
+        const Vec3 radial = d - along * y;
+        if (!whole && normal[k].dot(radial) >= 0) return 0.0;
+        return wheel.radius - wheel.drop(along) - radial.norm();
     });
-    return depth;
+}
+
+std::vector<double> run_fit(const FlatRun& run, const std::vector<Frame>& work_from_contact,
+                            const std::vector<Vec3>& point, const RunContext& context) {
+    run.validate();
+    const Box box(Vec3(run.middle - 0.5 * run.length, -0.5 * run.width, -run.behind),
+                  Vec3(run.middle + 0.5 * run.length, 0.5 * run.width, 0.0));
+    return deepest(work_from_contact, point, box, context, [&](const Frame& frame, std::size_t k) {
+        const Vec3 at = frame.linear().transpose() * (point[k] - frame.translation());
+        return box.contains(at) ? -at.z() : 0.0;
+    });
+}
+
+void FlatRun::validate() const {
+    for (const double size : {length, width, behind}) {
+        if (!std::isfinite(size) || size <= 0.0)
+            throw InputError("contact.flat_run",
+                             "belt: its length, its width and the room behind it must be positive");
+    }
+    if (!std::isfinite(middle))
+        throw InputError("contact.flat_run_middle", "belt: its middle is no number");
 }
 
 }  // namespace beltgrinding

@@ -4,9 +4,11 @@
 
 #include "beltgrinding/contact_factory.h"
 #include "contact/displaced.h"
+#include "contact/press_belt.h"
 #include "contact/regression.h"
 #include "contact/single_contact.h"
 #include "dict.h"
+#include "simulation_settings.h"
 
 namespace beltgrinding::python {
 
@@ -182,6 +184,40 @@ void bind_contact(py::module_& m) {
         "nx), where the rubber has moved to, and beyond the side faces at -y and +y: beside (2, "
         "nx) "
         "MPa, up to reach (2, nx) mm).");
+    m.def(
+        "press_belt",
+        [](const py::dict& machine, double first, double second, double angle,
+           std::optional<double> force, std::optional<double> approach, double tolerance) {
+            if (force.has_value() == approach.has_value()) {
+                throw InputError("call.force_or_approach",
+                                 "contact: give either a force or an approach");
+            }
+            PressedBelt pressed;
+            pressed.machine = machine_from(machine);
+            pressed.first = first;
+            pressed.second = second;
+            pressed.angle = angle;
+            pressed.force_control = force.has_value();
+            pressed.force = force.value_or(0.0);
+            pressed.approach = approach.value_or(0.0);
+            pressed.tolerance = tolerance;
+            SingleContactResult result;
+            {
+                const py::gil_scoped_release release;
+                result = press(pressed);
+            }
+            py::dict d = contact_to_dict(result.grid, result.solution);
+            d["gap"] = cells(result.grid, result.gap);
+            d["coverage"] = cells(result.grid, result.coverage);
+            return d;
+        },
+        py::arg("machine"), py::arg("first"), py::arg("second"), py::arg("angle") = 0.0,
+        py::arg("force") = py::none(), py::arg("approach") = py::none(),
+        py::arg("tolerance") = 1e-3,
+        "A free belt or a platen (the option machine of simulate) on a part with the curvatures "
+        "first, 1/mm, positive: convex, along the direction at angle (rad) to the belt's travel, "
+        "and second, square to it: as single_contact, gap and coverage (ny, nx); x along the "
+        "belt.");
 }
 
 }  // namespace beltgrinding::python

@@ -93,6 +93,17 @@ py::dict raster(const Doubles& points, const Doubles& normals, const Indices& tr
     return result;
 }
 
+std::vector<Frame> poses_from(const Doubles& frames) {
+    if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
+        throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
+    std::vector<Frame> poses(static_cast<std::size_t>(frames.shape(0)));
+    using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i), "frame",
+                              Fact{"call.pose", "pose {pose}: ", {{"pose", i + 1}}});
+    return poses;
+}
+
 }  // namespace
 
 void bind_toolpath(py::module_& m) {
@@ -110,13 +121,7 @@ void bind_toolpath(py::module_& m) {
         [](const py::dict& wheel, const Doubles& frames, const Doubles& points,
            const Doubles& normals, const RunContext* context, bool whole) {
             const ContactWheel shape = wheel_from(wheel);
-            if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
-                throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
-            std::vector<Frame> poses(static_cast<std::size_t>(frames.shape(0)));
-            using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-            for (std::size_t i = 0; i < poses.size(); ++i)
-                poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i), "frame",
-                                      Fact{"call.pose", "pose {pose}: ", {{"pose", i + 1}}});
+            const std::vector<Frame> poses = poses_from(frames);
             const auto point = vectors(points, "points"), normal = vectors(normals, "normals");
             std::vector<double> depth;
             {
@@ -130,6 +135,24 @@ void bind_toolpath(py::module_& m) {
         py::arg("context") = nullptr, py::arg("whole") = false,
         "How deep the undeformed wheel, or with whole=False its half that faces the work, reaches "
         "into a surface at each pose, mm (n,).");
+    m.def(
+        "run_fit",
+        [](double length, double middle, double width, double behind, const Doubles& frames,
+           const Doubles& points, const RunContext* context) {
+            const FlatRun run{length, middle, width, behind};
+            const std::vector<Frame> poses = poses_from(frames);
+            const auto point = vectors(points, "points");
+            std::vector<double> depth;
+            {
+                const py::gil_scoped_release release;
+                depth = run_fit(run, poses, point, context != nullptr ? *context : RunContext());
+            }
+            return own(std::move(depth));
+        },
+        py::arg("length"), py::arg("middle"), py::arg("width"), py::arg("behind"),
+        py::arg("work_from_contact"), py::arg("points"), py::arg("context") = nullptr,
+        "How deep points reach through a flat belt, which touches nothing, into the `behind` mm "
+        "that lie behind it at each pose, mm (n,).");
 }
 
 }  // namespace beltgrinding::python

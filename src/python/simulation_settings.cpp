@@ -38,6 +38,36 @@ void take_heat(const py::dict& given, HeatRequest& heat) {
     refuse_rest(d, "heat");
 }
 
+Range range_from(const std::array<double, 2>& ends) {
+    return {ends[0], ends[1]};
+}
+
+void take_finish(const py::dict& given, FinishRequest& finish) {
+    if (given.empty()) return;
+    py::dict d = copy_of(given);
+    const auto take_range = [&d](const char* key, Range& range) {
+        range = range_from(take(d, key, std::array<double, 2>{range.low, range.high}));
+    };
+    finish.wanted = true;
+    finish.before = take(d, "before", finish.before);
+    finish.rest = take(d, "rest", finish.rest);
+    finish.roughness = take(d, "roughness", finish.roughness);
+    finish.pressure_exponent = take(d, "pressure_exponent", finish.pressure_exponent);
+    finish.speed_exponent = take(d, "speed_exponent", finish.speed_exponent);
+    finish.feed_exponent = take(d, "feed_exponent", finish.feed_exponent);
+    finish.cut_exponent = take(d, "cut_exponent", finish.cut_exponent);
+    finish.reference_pressure = take(d, "reference_pressure", finish.reference_pressure);
+    finish.reference_speed = take(d, "reference_speed", finish.reference_speed);
+    finish.reference_feed = take(d, "reference_feed", finish.reference_feed);
+    take_range("pressure", finish.pressure);
+    take_range("speed", finish.speed);
+    take_range("feed", finish.feed);
+    take_range("cut", finish.cut);
+    refuse_rest(d, "finish");
+}
+
+}  // namespace
+
 BeltMachine machine_from(const py::dict& given) {
     BeltMachine machine;
     py::dict d = copy_of(given);
@@ -77,36 +107,6 @@ BeltMachine machine_from(const py::dict& given) {
     refuse_rest(d, "machine");
     return machine;
 }
-
-Range range_from(const std::array<double, 2>& ends) {
-    return {ends[0], ends[1]};
-}
-
-void take_finish(const py::dict& given, FinishRequest& finish) {
-    if (given.empty()) return;
-    py::dict d = copy_of(given);
-    const auto take_range = [&d](const char* key, Range& range) {
-        range = range_from(take(d, key, std::array<double, 2>{range.low, range.high}));
-    };
-    finish.wanted = true;
-    finish.before = take(d, "before", finish.before);
-    finish.rest = take(d, "rest", finish.rest);
-    finish.roughness = take(d, "roughness", finish.roughness);
-    finish.pressure_exponent = take(d, "pressure_exponent", finish.pressure_exponent);
-    finish.speed_exponent = take(d, "speed_exponent", finish.speed_exponent);
-    finish.feed_exponent = take(d, "feed_exponent", finish.feed_exponent);
-    finish.cut_exponent = take(d, "cut_exponent", finish.cut_exponent);
-    finish.reference_pressure = take(d, "reference_pressure", finish.reference_pressure);
-    finish.reference_speed = take(d, "reference_speed", finish.reference_speed);
-    finish.reference_feed = take(d, "reference_feed", finish.reference_feed);
-    take_range("pressure", finish.pressure);
-    take_range("speed", finish.speed);
-    take_range("feed", finish.feed);
-    take_range("cut", finish.cut);
-    refuse_rest(d, "finish");
-}
-
-}  // namespace
 
 std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
     py::dict d = copy_of(given);

@@ -14,6 +14,7 @@ namespace beltgrinding::python {
 std::unique_ptr<RemovalLaw> law_from(const py::dict& given);
 BeltWear wear_from(const py::dict& given);
 BeltState belt_from(const py::dict& given);
+BeltMachine machine_from(const py::dict& given);
 /// Of the belt, where that is pressed itself; else of the wheel.
 std::unique_ptr<ContactModel> contact_from(const py::dict& compliance,
                                            const ProcessSettings& process);

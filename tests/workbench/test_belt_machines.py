@@ -11,11 +11,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrindi
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import beltgrinding  # noqa: E402
-from beltgrinding import cli, raster  # noqa: E402
+from beltgrinding import cli  # noqa: E402
 from beltgrinding.calibration import contacts  # noqa: E402
 from beltgrinding.contact import single_contact  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
 from beltgrinding.job import fork, load as jobs  # noqa: E402
+from beltgrinding.raster import proposal  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
@@ -180,7 +181,7 @@ def test_a_belt_is_not_rigid():
 def test_what_knows_wheels_only_says_so():
     job = jobs.validate(belt_job())
     with pytest.raises(InputError, match="free_belt") as error:
-        raster.raster(job, {"faces": job["design"]["faces"]})
+        proposal.propose(job)
     assert error.value.code == "job.needs_wheel"
     with pytest.raises(InputError) as error:
         single_contact.rim(job)

@@ -192,13 +192,16 @@ def test_places_tell_what_is_ground_and_why_not(wall):
 
 
 def test_the_touch_of_a_leaned_wheel_is_its_lowest_point():
-    from beltgrinding.raster.clearing import _about_x, _shift
+    from beltgrinding.raster import tool
+    from beltgrinding.raster.clearing import _about_x
 
-    flat = np.array([[-5.0, 20.0], [5.0, 20.0]])
-    assert _shift(flat, math.radians(10)) == pytest.approx([0, 5, 0])
-    assert _shift(flat, -math.radians(10)) == pytest.approx([0, -5, 0])
+    job = job_of("none")
+    wheel = job["belt_machine"]["wheel"]
+    assert tool.of(job).shift(math.radians(10)) == pytest.approx([0, 5, 0])
+    assert tool.of(job).shift(-math.radians(10)) == pytest.approx([0, -5, 0])
+    # A profile, as finely as it is to be seen: a crown of 60 mm.
     y = np.linspace(-5, 5, 2001)
-    crowned = np.stack([y, 20.0 - (60.0 - np.sqrt(60.0**2 - y**2))], axis=1)
+    wheel["profile_mm"] = np.column_stack([y, 60.0 - np.sqrt(60.0**2 - y**2)]).tolist()
     lean = math.radians(3)
-    assert _shift(crowned, lean)[1] == pytest.approx(60 * math.sin(lean), abs=0.01)
+    assert tool.of(job).shift(lean)[1] == pytest.approx(60 * math.sin(lean), abs=0.01)
     assert _about_x(lean) @ [0, 1, 0] == pytest.approx([0, math.cos(lean), math.sin(lean)])

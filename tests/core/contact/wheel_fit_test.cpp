@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "beltgrinding/error.h"
+
 namespace beltgrinding {
 namespace {
 
@@ -66,6 +68,38 @@ TEST(WheelFit, HeedsWidthAndCrown) {
     ContactWheel crowned = wheel_of(40, 32);
     crowned.crown_radius = 25;
     EXPECT_NEAR(wheel_fit(crowned, pose, cloud.point, cloud.normal)[0], 0.0, 1e-9);
+}
+
+TEST(RunFit, CountsWhatReachesThroughTheFlatBelt) {
+    // Pressing down: x stays, y and z are turned round; behind the belt is above it.
+    FlatRun run;
+    run.length = 100.0;
+    run.middle = 10.0;
+    run.width = 30.0;
+    run.behind = 40.0;
+    const auto depth = [&](const Vec3& point) {
+        return run_fit(run, {pressing_down()}, {point, Vec3(0, 0, -5)})[0];
+    };
+    EXPECT_EQ(depth({0, 0, -1}), 0.0);
+    EXPECT_NEAR(depth({0, 14, 3}), 3.0, 1e-12);
+    EXPECT_EQ(depth({0, 16, 3}), 0.0);  // beside it
+    EXPECT_NEAR(depth({59, 0, 7}), 7.0, 1e-12);
+    EXPECT_EQ(depth({-41, 0, 7}), 0.0);  // beyond its roller
+    EXPECT_NEAR(depth({0, 0, 39}), 39.0, 1e-12);
+    EXPECT_EQ(depth({0, 0, 41}), 0.0);  // above the belt that runs back
+    run.width = -1.0;
+    EXPECT_THROW(run_fit(run, {}, {}), InputError);
+}
+
+TEST(RunFit, TurnsWithThePose) {
+    FlatRun run;
+    Frame frame = pressing_down();
+    frame.linear() = frame.linear() * Eigen::AngleAxisd(0.1, Vec3::UnitX()).toRotationMatrix();
+    frame.translation() = Vec3(0, 0, 1);
+    const Vec3 point(0, 10, 4);
+    const Vec3 at = frame.inverse() * point;
+    ASSERT_LT(at.z(), 0.0);
+    EXPECT_NEAR(run_fit(run, {frame}, {point})[0], -at.z(), 1e-12);
 }
 
 }  // namespace

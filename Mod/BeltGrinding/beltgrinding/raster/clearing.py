@@ -13,14 +13,12 @@ import numpy as np
 
 from ..cell import collision
 from ..engine import InputError, core
-from ..job import engine_input
-from . import passes
+from . import passes, tool as tools
 
 PART_SAMPLES = 400_000  # at most, of the part and of all bodies
 CHORD = 0.2  # of the length on which the wheel stands fit_mm deep in a plane: from sample to sample
 NEAR = 0.2  # mm, of the same for a fit of 0
 STEP = 2.5  # degrees from lean to lean
-CHECKS = 8.0  # of the wheel's radius: that way from place to place that is looked at, along a pass
 LEFT_OUT = 4.0  # leans by the limit, that a place left out is as bad as
 CHANGE = 0.5  # of the same: a change of the lean from place to place, times its share of the limit
 CUT = 25.0  # the same, for a pass that ends, or begins, besides its border
@@ -32,9 +30,9 @@ MARGIN = 0.5  # of fit_mm, that a leaned wheel keeps
 class Clearing:
     """Looks whether the wheel of a validated job fits the part, and leans it where it does not."""
 
-    def __init__(self, job, shape, settings, warnings, context):
-        """``settings``: validated. ``blind`` is true where the part cannot be sampled: then nothing is known, and
-        everything fits. Raises InputError, Cancelled."""
+    def __init__(self, job, shape, settings, warnings, context, advance=0.0):
+        """``settings``: validated; ``advance``: as ``tool.of`` takes it. ``blind`` is true where the part cannot be
+        sampled: then nothing is known, and everything fits. Raises InputError, Cancelled."""
         self.settings, self.context = settings, context
         self.fit = settings["fit_mm"]
         most = settings["max_tilt_deg"] if settings["where_it_collides"] == "tilt" else 0.0
@@ -42,7 +40,7 @@ class Clearing:
         steps = np.linspace(0.0, math.radians(most), count + 1)[1:]
         self.leans = np.concatenate([[0.0], np.column_stack([steps, -steps]).ravel()])
         self._turns = np.array([_about_x(lean) for lean in self.leans])
-        self._mount(job)
+        self._mount(job, advance)
         try:
             self._points = self._solid(job, shape, warnings)
             self.blind = False
@@ -51,7 +49,8 @@ class Clearing:
             warnings.append(
                 core.Fact(
                     "raster.blind",
-                    "whether the wheel fits is not known: the part cannot be sampled ({reason})",
+                    "whether {tool} fits is not known: the part cannot be sampled ({reason})",
+                    tool=self.tool.name,
                     reason=error,
                 )
             )
@@ -62,16 +61,13 @@ class Clearing:
         found._mount(job)
         return found
 
-    def _mount(self, job):
-        self.wheel = engine_input.engine_arguments(job)[0]
-        profile = collision.wheel_profile(job["belt_machine"]["wheel"])
-        self._shifts = np.array([_shift(profile, lean) for lean in self.leans])
-        self._check = self.wheel["radius"] / CHECKS
+    def _mount(self, job, advance=0.0):
+        self.tool = tools.of(job, advance)
+        self._shifts = np.array([self.tool.shift(lean) for lean in self.leans])
 
     def _solid(self, job, shape, warnings):
         """Points (n, 3) of the part and of bodies that are fixed to it."""
-        chord = 2.0 * math.sqrt(2.0 * self.wheel["radius"] * max(self.fit, NEAR))
-        wanted = CHORD * min(chord, self.wheel["width"])
+        wanted = CHORD * min(self.tool.chord(max(self.fit, NEAR)), self.tool.width)
         area = sum(shape.face_area(face) for face in range(shape.face_count))
         spacing = max(wanted, math.sqrt(area / PART_SAMPLES))
         part, _ = core.sample_faces(shape, [], spacing, context=self.context)
@@ -90,9 +86,7 @@ class Clearing:
         (n, 4, 4)."""
         if self.blind or not len(frames):
             return np.zeros(len(frames))
-        return np.asarray(
-            core.wheel_fit(self.wheel, frames, self._points, self._points, self.context, True)
-        )
+        return self.tool.depth(frames, self._points, self.context)
 
     def fits_upright(self, frames):
         """(n,) bool: the wheel fits as it stands, or is not asked to."""
@@ -117,7 +111,7 @@ class Clearing:
         """
         if self.blind or self.settings["where_it_collides"] == "warn":
             return levels
-        fine = [[finer(piece, self._check) for piece in pieces] for pieces in levels]
+        fine = [[finer(piece, self.tool.check) for piece in pieces] for pieces in levels]
         flat = [one for pieces in fine for one in pieces]
         depths = self._by_piece(flat, 0)
         wrong = [k for k, depth in enumerate(depths) if (depth > self.fit).any()]
@@ -175,7 +169,7 @@ class Clearing:
         for k in moves:
             a, b = contacts[k], contacts[k + 1]
             way = np.linalg.norm(b[:3, 3] - a[:3, 3])
-            count = min(max(math.ceil(way / self._check), 1), MOST_ON_WAY)
+            count = min(max(math.ceil(way / self.tool.check), 1), MOST_ON_WAY)
             frames.append(passes.between(a, b, np.arange(1, count + 1) / count))
             owner += [k + 1] * count
         if not frames:
@@ -256,14 +250,6 @@ class Clearing:
 def _about_x(angle):
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
-def _shift(profile, lean):
-    """From the leaned contact frame's origin to the point of the wheel's profile (n, 2; y, radius) that lies deepest
-    in the work, in that frame, mm."""
-    y, drop = profile[:, 0], np.interp(0.0, profile[:, 0], profile[:, 1]) - profile[:, 1]
-    k = int(np.argmax(y * math.sin(lean) - drop * math.cos(lean)))
-    return np.array([0.0, y[k], -drop[k]])
 
 
 def _in_work(job, body):

@@ -7,12 +7,13 @@ import numpy as np
 from ..engine import InputError, core
 from ..job import engine_input
 from ..job.workpiece import apply_stock
-from . import around, path_check
+from . import around, path_check, tool
 
 SAMPLES = 6_000  # on the faces, about
 ACROSS = 4.0  # of them across the contact's width, if that is finer
 MOST_SAMPLES = 40_000
 STEP = 0.3  # of the contact's length: from step to step of the simulation
+BELT_STEPS, BELT_CELLS, BELT_TURN = 150, 10, 0.3  # of a belt: steps, cells across it; rad a step
 AS_EVEN = 0.1  # of the residual: so near the best, the quickest is taken
 ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the faces are longest
 ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
@@ -91,17 +92,24 @@ def _judged(job, shape, faces, area, settings, path, context):
     if not options["force_control"]:  # the stock decides what comes off
         apply_stock(field, job["stock"], [], context)
     before = field.height.astype(float)
-    step = STEP * max(path["contact_length_mm"], spacing)
+    step, pressing = STEP * max(path["contact_length_mm"], spacing), tool.of(job)
+    turn = 2.0 * step / pressing.radius
+    if pressing.belt:  # a step costs a hundred of a wheel's
+        step, turn = max(step, sum(p["length_mm"] for p in path["passes"]) / BELT_STEPS), BELT_TURN
+        coarse = pressing.width / BELT_CELLS
+        options["contact_spacing"] = max(options["contact_spacing"], coarse)
     options.update(
         force=settings["force_N"] or options["force"],
         max_travel=max(step, options["max_travel"]),
-        max_angle=max(2.0 * step / wheel["radius"], options["max_angle"]),
+        max_angle=max(turn, options["max_angle"]),
         must_touch=False,
         shifted_laws=[],
         trace=True,
     )
     names = "feeds", "forces", "rapid", "lines", "zones"
-    tool_path = core.ToolPath(frames=path["contacts"], **{name: path[name] for name in names})
+    some = _sparse(path, step) if pressing.belt else slice(None)
+    given = {name: path[name][some] for name in names}
+    tool_path = core.ToolPath(frames=path["contacts"][some], **given)
     core.simulate(field, tool_path, wheel, compliance, law, options, context)
     removed, weight = before - field.height, field.areas.astype(float)
     removed[~np.isfinite(removed)] = 0.0
@@ -115,3 +123,14 @@ def _judged(job, shape, faces, area, settings, path, context):
         "no_room": path["no_room"],
         "poses": len(path["frames"]),
     }
+
+
+def _sparse(path, step):
+    """Numbers of a path's poses, of each pass those that are ``step`` mm apart, about, and its ends."""
+    wanted = np.ones(len(path["contacts"]), dtype=bool)
+    for one in path["passes"]:
+        inner = np.arange(one["first"] + 1, one["last"])
+        way = np.diff(path["contacts"][one["first"] : one["last"] + 1, :3, 3], axis=0)
+        steps = np.floor(np.cumsum(np.linalg.norm(way, axis=1)) / step).astype(int)
+        wanted[inner] = steps[:-1] > np.concatenate([[0], steps[:-2]]) if len(inner) else []
+    return np.flatnonzero(wanted)

@@ -19,8 +19,8 @@ COLOURS = {
 }
 WORDS = {
     reachable.GROUND: "ground by a pass",
-    reachable.NO_ROOM: "left out: the wheel would stand in the part",
-    reachable.NO_PASS: "the wheel fits, no pass touches it",
+    reachable.NO_ROOM: "left out: no room",
+    reachable.NO_PASS: "has room, no pass touches it",
     reachable.NOT_WANTED: "not in the region",
 }
 PASS, BEGIN = (22, 62, 122), (12, 140, 60)  # RGB of passes, and of where they begin

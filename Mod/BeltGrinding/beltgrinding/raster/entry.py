@@ -11,10 +11,8 @@ import math
 import numpy as np
 
 from ..engine import InputError, core
-from ..job import engine_input
 
 SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for room
-CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
 OWN = 0.05  # mm that it may reach deeper into the faces that are ground
 TRIES = 1.0, 0.5  # of the way beyond the border
 INSIDE = 0.1  # of half the contact's length: a ramp that begins on the border
@@ -26,11 +24,12 @@ class Entry:
     """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
     control."""
 
-    def __init__(self, job, shape, faces, settings, context, length):
-        """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes. Raises InputError, Cancelled."""
+    def __init__(self, job, shape, faces, settings, context, length, tool):
+        """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes; ``tool``: of
+        ``tool.of``. Raises InputError, Cancelled."""
         self.settings, self.context = settings, context
         machine = job["belt_machine"]
-        self.wheel = engine_input.engine_arguments(job)[0]
+        self.tool = tool
         under_force = machine["control"] == "force"
         self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
         self._half = 0.5 * length if settings["entry"] != "direct" else 0.0
@@ -78,8 +77,7 @@ class Entry:
             out[:, :3, 3] += lead[left, None] * outwards[left]
             fits = self._depth(out, self._own) <= here[left] + OWN
             fits &= clearing.fits_upright(out)
-            # In a plane the wheel stands over the border by four times what it is let down here.
-            down = CLEAR * lead[left] ** 2 / (2.0 * self.wheel["radius"])
+            down = self.tool.over_border(lead[left])
             out[:, :3, 3] += down[:, None] * out[:, :3, 2]
             fits &= self._depth(out, self._others, whole=True) <= 0.0
             found[left[fits]] = lead[left[fits]]
@@ -89,7 +87,9 @@ class Entry:
         points, normals = samples
         if not len(points) or not len(frames):
             return np.zeros(len(frames))
-        return np.array(core.wheel_fit(self.wheel, frames, points, normals, self.context, whole))
+        if whole:
+            return self.tool.depth(frames, points, self.context)
+        return self.tool.depth_before(frames, points, normals, self.context)
 
     def ramp(self, lead=0.0):
         """mm over which the force grows from where the wheel comes down, ``lead`` mm outside the border: to

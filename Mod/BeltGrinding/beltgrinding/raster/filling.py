@@ -36,7 +36,7 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
             if passes.length(piece["points"]) >= max(settings["min_length_mm"], 1e-9)
         ]
         touched = [
-            reachable.touched(points, [clearing.frames(piece)], clearing.wheel, extents)
+            reachable.touched(points, [clearing.frames(piece)], clearing.tool, extents)
             for piece in pieces
         ]
         some, missed = _best(touched, areas, enough, MOST - len(found))

@@ -7,7 +7,7 @@ import numpy as np
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job import contact_extents, engine_input
-from . import passes
+from . import passes, tool as tools
 from .sheets import curvature_along_and_across
 
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
@@ -20,6 +20,8 @@ LONG = 0.8  # of the places have one that is shorter
 MOST_CELLS = 100  # across the wheel
 MOST_OF_GAPS = 0.98  # of the cells of a contact have a smaller one
 COVERED = 0.5  # of a cell that is on the faces
+BELT_TOLERANCE = 1e-3  # of a belt's pressure
+DEEPER = 1.5  # times the allowance: so deep position control presses
 
 
 def contact_width(job, settings, surfaces, warnings):
@@ -63,6 +65,42 @@ def contact_width(job, settings, surfaces, warnings):
         return width_on({"shape": "plane"})
 
 
+def belt_extents(job, settings, surfaces, warnings):
+    """dict(length_mm: along the pass, width_mm: across it, gap_mm: from the flat belt to the part at the contact's edge,
+    advance_mm: that the belt gives way) of the contact of a job's free belt or platen on a part with the median curvatures
+    of the faces along and across the passes; under position control, of one as deep as the allowance. On a plane it is all
+    of the belt between its rollers, or of the platen.
+    """
+    options = engine_input.engine_arguments(job)[3]
+    along, across, areas = map(np.concatenate, zip(*map(curvature_along_and_across, surfaces)))
+    bends = [weighted_quantile(curvature, areas, 0.5) for curvature in (along, across)]
+    pressed = {"force": settings["force_N"] or options["force"]}
+    if not options["force_control"]:
+        pressed = {"approach": DEEPER * max(job["stock"].get("allowance_mm", 0.0), 0.1)}
+    angle = -math.radians(settings["belt_angle_deg"])
+    found = core.press_belt(options["machine"], *bends, angle, tolerance=BELT_TOLERANCE, **pressed)
+    length, width = contact_extents.extents(found, angle)
+    if not found["converged"] or not width > 0.0:
+        # The belt as it is: the contacts along the passes are looked at besides.
+        warnings.append(
+            core.Fact(
+                "raster.belt_contact_unknown",
+                "the contact's width is that of the belt: on the faces' curvatures of {along:.3g} and {across:.3g} "
+                "per mm its contact cannot be found",
+                along=bends[0],
+                across=bends[1],
+            )
+        )
+        length = width = tools.of(job).width
+        return {"length_mm": length, "width_mm": width, "gap_mm": None, "advance_mm": 0.0}
+    return {
+        "length_mm": length,
+        "width_mm": width,
+        "gap_mm": _outermost_gap(found),
+        "advance_mm": max(float(found["approach"]), 0.0) if options["force_control"] else 0.0,
+    }
+
+
 def plane_extents(job, settings):
     """(mm along the pass, mm across it) of the contact on a plane, of the job's wheel under the force. Under
     position control, the wheel's chord at the depth of the allowance, and a little more, and its width.
@@ -86,18 +124,22 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     ``levels``: the passes, lists of dict(points, normals, tangents (n, 3)); ``plain``: mm, of its width, about.
     Returns dict(width_mm: across the pass, that of all but the narrowest share ``NARROW``; length_mm: along it, of
     all but the longest; gap_mm: how far from the undeformed wheel, placed on the design, the outermost of the faces
-    are that it touches, of all but the share with the least; widths, lengths (k,) mm), or None where fewer than ``FEWEST`` places have a contact that is
-    whole on the faces. Raises InputError, Cancelled.
+    are that it touches, of all but the share with the least; widths, lengths (k,) mm; beyond: share of the places whose
+    contacts are not whole on the faces), or None where fewer than ``FEWEST`` places have one that is. Of a belt, which is
+    often wider than the faces, those that are not whole count instead then, by their median. Raises InputError, Cancelled.
     """
     if not any(levels):
         return None
     wheel, compliance, _, options = engine_input.engine_arguments(job)
+    tool = tools.of(job)
     frames = _places(levels, settings)
     area = sum(shape.face_area(face) for face in faces)
     spacing = max(plain / ACROSS, math.sqrt(area / SAMPLES))
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
     force = settings["force_N"] or options["force"]
-    fine = min(options["contact_spacing"], max(plain / ACROSS, wheel["width"] / MOST_CELLS))
+    fine = min(options["contact_spacing"], max(plain / ACROSS, tool.width / MOST_CELLS))
+    if tool.belt:  # whose contacts cost a hundred times as much
+        fine = options["contact_spacing"]
     options = {**options, "force": force, "contact_spacing": fine, "must_touch": False}
     path = core.ToolPath(
         frames=frames,
@@ -108,22 +150,28 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
         zones=np.full(len(frames), -1.0),
     )
     angle = -math.radians(settings["belt_angle_deg"])
-    sizes, gaps = [], []
+    whole, cut_off = [], []
     poses = list(range(len(frames)))
     for found in core.contacts_at(field, path, poses, wheel, compliance, options, context):
-        if found is not None and _whole(found):
-            sizes.append(contact_extents.extents(found, angle))
-            gaps.append(_outermost_gap(found))
-    if len(sizes) < FEWEST:
+        if found is None or not found["pressure"].max(initial=0.0) > 0.0:
+            continue
+        some = whole if _whole(found) else cut_off
+        some.append((*contact_extents.extents(found, angle), _outermost_gap(found)))
+    beyond = len(cut_off) / max(len(whole) + len(cut_off), 1)
+    narrow, long, counted = NARROW, LONG, whole
+    if tool.belt and len(whole) < FEWEST:
+        narrow, long, counted = 0.5, 0.5, cut_off
+    if len(counted) < FEWEST:
         return None
-    lengths, widths = np.array(sizes).T
-    even = np.ones(len(sizes))
+    lengths, widths, gaps = np.array(counted).T
+    even = np.ones(len(counted))
     return {
-        "width_mm": weighted_quantile(widths, even, NARROW),
-        "length_mm": weighted_quantile(lengths, even, LONG),
-        "gap_mm": weighted_quantile(np.array(gaps), even, NARROW),
+        "width_mm": weighted_quantile(widths, even, narrow),
+        "length_mm": weighted_quantile(lengths, even, long),
+        "gap_mm": weighted_quantile(gaps, even, narrow),
         "widths": widths,
         "lengths": lengths,
+        "beyond": beyond,
     }
 
 

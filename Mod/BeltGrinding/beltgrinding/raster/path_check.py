@@ -131,7 +131,7 @@ def _problems(found, settings, fast):
         problems.append(
             core.Fact(
                 "raster.turns_too_fast",
-                "between {count} pairs of poses in contact, first at pose {pose}, the wheel turns faster than "
+                "between {count} pairs of poses in contact, first at pose {pose}, the tool turns faster than "
                 "asked: by up to {turn:.1f} degrees from pose to pose",
                 count=found["fast_turns"],
                 pose=int(fast[0]) + 2,
@@ -160,7 +160,7 @@ def _problems(found, settings, fast):
         problems.append(
             core.Fact(
                 "raster.plunges",
-                "about {share:.0f} % of the removal happens while the wheel comes down and lifts off (by force "
+                "about {share:.0f} % of the removal happens on the way down to the passes and off them (by force "
                 "and time); lower touch_force_share, or approach faster",
                 share=100.0 * share,
             )

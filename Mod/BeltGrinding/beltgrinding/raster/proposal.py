@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
+from ..job import machine as machines
 from ..job.workpiece import apply_stock, make_field, read_design
 from .clearing import Clearing
 from .passes import contact_frames
@@ -45,6 +46,7 @@ def propose(job, context=None):
     feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what is to come off, area_mm2, ground_share: of it, that
     the passes touch, length_mm of them, notes: list of Fact). Raises InputError, Cancelled.
     """
+    machines.need_wheel(job, core.Fact("raster.first_settings", "first settings are proposed"))
     context = context or core.RunContext()
     job, notes = copy.copy(job), []
     shape = read_design(job["design"], context)

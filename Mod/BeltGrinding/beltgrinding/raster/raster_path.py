@@ -14,10 +14,20 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, machine as machines, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import around, direction, filling, footprint, passes, path_check, reachable, region
+from . import (
+    around,
+    direction,
+    filling,
+    footprint,
+    passes,
+    path_check,
+    reachable,
+    region,
+    tool as tools,
+)
 from .clearing import Clearing
 from .entry import Entry
-from .footprint import contact_width, plane_extents
+from .footprint import belt_extents, contact_width, plane_extents
 from .sheets import surfaces
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
@@ -61,14 +71,13 @@ def raster(job, settings, context=None):
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
     work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
     mm how deep the undeformed wheel reaches into the part, cuts, beside, stuck (as ``passes.assemble``),
-    step_over_mm, contact_width_mm (None if the step-over was given), contact_length_mm, footprint (as
+    step_over_mm, contact_width_mm (None if the step-over was given), usual_width_mm (on a plane), contact_length_mm, footprint (as
     ``footprint.solved``, and plain_mm, the width on a cylinder), area_mm2, no_room (bool: the wheel fits nowhere, and
     the passes lie as if it did), along, direction: the way that they go, tried (as ``direction.best``), places (as
     ``reachable.look``), reachable (as ``reachable.told``), check (as ``path_check.check``), warnings). Raises
     InputError, Cancelled.
     """
     settings = validate(settings)
-    machines.need_wheel(job, core.Fact("raster.passes", "passes are laid"))
     context = context or core.RunContext()
     shape = read_design(job["design"], context)
     chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)
@@ -87,7 +96,7 @@ def raster(job, settings, context=None):
     _tell_ways(clearing, result, warnings)
     result["fit"] = _fit(clearing, settings, result, warnings)
     result["places"] = _places(job, shape, faces, settings, result, levels, clearing, context)
-    result["reachable"] = reachable.told(result["places"], settings, warnings)
+    result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
     result["check"] = path_check.check(job, settings, result, context)
     warnings += result["check"]["problems"]
     _repeat(result, settings["repeats"], clearing, warnings)
@@ -104,8 +113,9 @@ def _repeat(result, count, clearing, warnings):
         warnings.append(
             core.Fact(
                 "raster.way_back_blocked",
-                "from the end of the passes straight back to their beginning the wheel goes through the part; lead the "
+                "from the end of the passes straight back to their beginning {tool} goes through the part; lead the "
                 "robot there by hand, or enlarge clearance_mm",
+                tool=clearing.tool.name,
             )
         )
     poses, once = len(result["frames"]), result["passes"]
@@ -138,15 +148,21 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
     cell = passes.cell_of(job)
     lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
     step_over, seen = settings["step_over_mm"], {"width_mm": None}
+    belt, advance = None, 0.0
+    if not machines.wheel_presses(job["belt_machine"]):
+        belt = belt_extents(job, settings, sheets, warnings)
+        seen, advance = {"width_mm": None, "gap_mm": belt["gap_mm"]}, belt["advance_mm"]
     if step_over == 0:
-        plain = contact_width(job, settings, sheets, warnings)
-        seen = {"width_mm": plain, "plain_mm": plain, "length_mm": None}
+        plain = belt["width_mm"] if belt else contact_width(job, settings, sheets, warnings)
+        seen = {**seen, "width_mm": plain, "plain_mm": plain, "length_mm": None}
         if settings["footprint"] == "solved":
             # Where the contact is looked at, passes as the plain width wants them are near enough.
             about = settings["step_over_share"] * plain
             first = _lines(sheets, settings, about, spacing, lever, [], context)
             along = footprint.solved(job, shape, faces, first, settings, plain, context)
             seen = {**seen, **(along or {})}
+            if along and belt:
+                _tell_beyond(along["beyond"], warnings)
         step_over = settings["step_over_share"] * seen["width_mm"]
     finer = _finer(area, step_over)
     if not settings["sampling_mm"] and spacing > finer:
@@ -164,16 +180,22 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
                 "raster.no_pass_in_region",
                 "no pass comes near the region; lower step_over_mm, or enlarge region_mm",
             )
-    length = seen.get("length_mm") or plane_extents(job, settings)[0]
-    entry = Entry(job, shape, faces, settings, context, length)
-    clearing = Clearing(job, shape, settings, warnings, context)
+    length, usual = seen.get("length_mm"), (None, None)
+    if belt:
+        usual = belt["length_mm"], belt["width_mm"]
+    elif not length or seen["width_mm"] is None:
+        usual = plane_extents(job, settings)
+    length = length or usual[0]
+    clearing = Clearing(job, shape, settings, warnings, context, advance)
+    entry = Entry(job, shape, faces, settings, context, length, clearing.tool)
     cleared = clearing.cleared(levels)
     result = passes.assemble(cleared, settings, cell, entry, clearing)
     no_room = not result["passes"] and any(levels)
     if no_room:
-        clearing = Clearing(job, shape, {**settings, "where_it_collides": "warn"}, [], context)
+        warned = {**settings, "where_it_collides": "warn"}
+        clearing = Clearing(job, shape, warned, [], context, advance)
         result = passes.assemble(levels, settings, cell, entry, clearing)
-        _tell_no_room(result, warnings)
+        _tell_no_room(result, clearing.tool, warnings)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
@@ -182,6 +204,7 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
     result.update(
         step_over_mm=float(step_over),
         contact_width_mm=seen["width_mm"],
+        usual_width_mm=usual[1],
         contact_length_mm=length,
         footprint=seen,
         area_mm2=area,
@@ -194,11 +217,23 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
             return found if wanted is None else region.restricted(found, *wanted)
 
         places = _places(job, shape, faces, settings, result, levels, clearing, context)
-        extents = _extents(job, settings, result)
+        extents = _extents(settings, result)
         added = filling.more(levels_of, places, clearing, settings, step_over, extents)
         if added:
             result.update(passes.assemble(cleared + added, settings, cell, entry, clearing))
     return result, levels, clearing
+
+
+def _tell_beyond(share, warnings):
+    if share > 0.5:
+        warnings.append(
+            core.Fact(
+                "raster.belt_beyond_faces",
+                "at {share:.0f} % of the places the belt's contact goes on over the border of the faces: the passes lie "
+                "by what of it is on them",
+                share=100.0 * share,
+            )
+        )
 
 
 def _tell_open_rings(levels, warnings):
@@ -240,16 +275,16 @@ def _places(job, shape, faces, settings, result, levels, clearing, context):
         contacts,
         clearing,
         settings,
-        _extents(job, settings, result),
+        _extents(settings, result),
         _wanted(settings, result["contact_width_mm"] or result["step_over_mm"]),
         context,
     )
 
 
-def _extents(job, settings, result):
+def _extents(settings, result):
     """(mm along, mm across the belt's travel, mm of the gap at its edge or None) of the contact."""
     along = result["contact_length_mm"]
-    across = result["contact_width_mm"] or plane_extents(job, settings)[1]
+    across = result["contact_width_mm"] or result["usual_width_mm"]
     turn = abs(math.sin(math.radians(settings["belt_angle_deg"])))
     gap = result["footprint"].get("gap_mm")
     return (along, across, gap) if turn < math.sqrt(0.5) else (across, along, gap)
@@ -260,7 +295,7 @@ def _tell_ends(result, settings, warnings):
         warnings.append(
             core.Fact(
                 "raster.passes_end",
-                "at {count} places a pass ends, where the wheel would turn by more than {rate:.4g} degrees per "
+                "at {count} places a pass ends, where the tool would turn by more than {rate:.4g} degrees per "
                 "mm or go back in contact; what lies there may stay without a pass",
                 count=result["cuts"],
                 rate=settings["max_turn_deg_per_mm"],
@@ -367,9 +402,10 @@ def _fit(clearing, settings, result, warnings):
         warnings.append(
             core.Fact(
                 "raster.wheel_does_not_fit",
-                "the wheel does not fit the part at {count} poses: at worst its undeformed rim "
-                "reaches {depth:.2f} mm into it at pose {pose}; take a smaller or narrower "
-                "wheel, or another direction",
+                "{tool} does not fit the part at {count} poses: undeformed, it reaches at worst {depth:.2f} mm into "
+                "it, at pose {pose}; take {smaller}, or another direction",
+                tool=clearing.tool.name,
+                smaller=clearing.tool.smaller,
                 count=len(tight),
                 depth=fit[worst],
                 pose=worst + 1,
@@ -384,9 +420,10 @@ def _tell_ways(clearing, result, warnings):
         warnings.append(
             core.Fact(
                 "raster.ways_blocked",
-                "off the passes the wheel goes through the part: on {ways} straight rapid ways, first to pose {pose}, "
-                "and {stuck} ends of passes have no room above them; lead the robot there by hand, or take a smaller "
-                "wheel",
+                "off the passes {tool} goes through the part: on {ways} straight rapid ways, first to pose {pose}, "
+                "and {stuck} ends of passes have no room above them; lead the robot there by hand, or take {smaller}",
+                tool=clearing.tool.name,
+                smaller=clearing.tool.smaller,
                 ways=len(blocked),
                 pose=blocked[0] + 1 if blocked else 0,
                 stuck=result["stuck"],
@@ -394,13 +431,15 @@ def _tell_ways(clearing, result, warnings):
         )
 
 
-def _tell_no_room(result, warnings):
+def _tell_no_room(result, tool, warnings):
     if result["passes"]:
         warnings.append(
             core.Fact(
                 "raster.no_room",
-                "the wheel fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
-                "with it; take a smaller or narrower wheel, or another direction",
+                "{tool} fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
+                "with it; take {smaller}, or another direction",
+                tool=tool.name,
+                smaller=tool.smaller,
             )
         )
 

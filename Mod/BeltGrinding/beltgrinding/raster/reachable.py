@@ -60,7 +60,7 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
     angle = math.radians(settings["belt_angle_deg"])
     fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
     state = np.where(fits, NO_PASS, NO_ROOM)
-    state[touched(points, contacts, clearing.wheel, extents)] = GROUND
+    state[touched(points, contacts, clearing.tool, extents)] = GROUND
     counted = areas
     if wanted is not None:
         outside = nearest_distance(points, np.array(wanted[0], dtype=float)) > wanted[1]
@@ -119,15 +119,13 @@ def nearest_distance(points, others):
     return np.linalg.norm(points - others[nearest(points, others)], axis=1)
 
 
-def touched(points, contacts, wheel, extents):
-    """(n,) bool: over which the wheel stands, at one of its poses or between two, no higher than over the edge of a
-    contact of these extents (as ``look`` has them)."""
-    length, width = max(extents[0], LEAST_CONTACT), min(extents[1], wheel["width"])
-    drop = _drop(wheel)
-    on_plane = max(length**2 / (8.0 * wheel["radius"]), float(np.interp(0.5 * width, *drop)))
-    gap = on_plane if extents[2] is None else extents[2]
+def touched(points, contacts, tool, extents):
+    """(n,) bool: over which the wheel or the belt (of ``tool.of``) stands, at one of its poses or between two, no higher than
+    over the edge of a contact of these extents (as ``look`` has them)."""
+    length = max(extents[0], LEAST_CONTACT)
+    gap = tool.edge_gap(length, extents[1]) if extents[2] is None else extents[2]
     found = np.zeros(len(points), dtype=bool)
-    reach = wheel["width"] + length
+    reach = tool.width + length
     for poses in contacts:
         fine = _between(poses, BETWEEN * length)
         for k in range(0, len(fine), BLOCK):
@@ -136,31 +134,8 @@ def touched(points, contacts, wheel, extents):
             radius = np.linalg.norm(some[:, :3, 3] - middle, axis=1).max() + reach
             near = np.flatnonzero(~found & (((points - middle) ** 2).sum(axis=1) <= radius**2))
             if len(near):
-                found[near] = _under(points[near], some, wheel, drop, gap)
+                found[near] = tool.under(points[near], some, length, gap)
     return found
-
-
-def _drop(wheel):
-    """y mm -> how much smaller the wheel's radius is there, mm."""
-    crown, half = wheel["crown_radius"], 0.5 * wheel["width"]
-    y = np.linspace(-half, half, 65)
-    turned = np.array(wheel["profile"], dtype=float).reshape(-1, 2)
-    drop = np.interp(y, turned[:, 0], turned[:, 1]) if len(turned) else np.zeros(len(y))
-    if crown > 0.0:
-        drop = drop + crown - np.sqrt(np.maximum(crown**2 - y**2, 0.0))
-    return y, drop
-
-
-def _under(points, frames, wheel, drop, gap):
-    """(n,) bool of points (n, 3) that lie no farther than ``gap`` from the wheel at one of its frames."""
-    z, y = frames[:, :3, 2], frames[:, :3, 1]
-    centres = frames[:, :3, 3] - wheel["radius"] * z
-    way = points[:, None] - centres[None]
-    beside = np.einsum("nkx,kx->nk", way, y)
-    radial = np.sqrt(np.maximum((way**2).sum(axis=2) - beside**2, 0.0))
-    off = radial - wheel["radius"] + np.interp(beside, *drop)
-    down = np.einsum("nkx,kx->nk", way, z) > 0.0
-    return ((abs(beside) <= 0.5 * wheel["width"]) & (abs(off) <= gap) & down).any(axis=1)
 
 
 def _between(frames, spacing):
@@ -173,7 +148,7 @@ def _between(frames, spacing):
     return np.concatenate([found, frames[-1:]])
 
 
-def told(seen, settings, warnings):
+def told(seen, tool, settings, warnings):
     """Adds what ``look`` found to the list of warnings. Returns dict(share, faces: {face from 1: share} of the faces
     that the wheel does not get to all of, left_out, no_pass: of the area)."""
     areas = seen["counted"]
@@ -182,6 +157,8 @@ def told(seen, settings, warnings):
     no_pass = _share(seen["state"] == NO_PASS, areas)
     if share < WHOLE:
         words = {
+            "tool": tool.name,
+            "smaller": tool.smaller,
             "share": 100.0 * share,
             "fit": settings["fit_mm"],
             "faces": ", ".join(f"Face{k} {100.0 * v:.0f} %" for k, v in list(lacking.items())[:8]),
@@ -190,9 +167,9 @@ def told(seen, settings, warnings):
             warnings.append(
                 core.Fact(
                     "raster.not_reachable_leaned",
-                    "the wheel gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
-                    "{fit:.3g} mm deep in the part, leaned by up to {tilt:.3g} degrees, too; allow more, take a "
-                    "smaller or narrower wheel, or leave it to another tool",
+                    "{tool} gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
+                    "{fit:.3g} mm deep in the part, leaned by up to {tilt:.3g} degrees, too; allow more, take "
+                    "{smaller}, or leave it to another tool",
                     tilt=settings["max_tilt_deg"],
                     **words,
                 )
@@ -201,9 +178,8 @@ def told(seen, settings, warnings):
             warnings.append(
                 core.Fact(
                     "raster.not_reachable",
-                    "the wheel gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
-                    "{fit:.3g} mm deep in the part; let it lean, take a smaller or narrower wheel, or leave it to "
-                    "another tool",
+                    "{tool} gets to {share:.0f} % of the area only ({faces}): elsewhere it would stand more than "
+                    "{fit:.3g} mm deep in the part; let it lean, take {smaller}, or leave it to another tool",
                     **words,
                 )
             )
@@ -211,8 +187,9 @@ def told(seen, settings, warnings):
             warnings.append(
                 core.Fact(
                     "raster.another_way",
-                    "with its belt in other directions the wheel would get to {share:.0f} % of the area: try "
+                    "with the belt in other directions {tool} would get to {share:.0f} % of the area: try "
                     "another belt angle, or passes along another direction",
+                    tool=tool.name,
                     share=100.0 * seen["another_way"],
                 )
             )
@@ -220,7 +197,8 @@ def told(seen, settings, warnings):
         warnings.append(
             core.Fact(
                 "raster.no_pass_there",
-                "{share:.1f} % of the area, to which the wheel would get, no pass touches",
+                "{share:.1f} % of the area, to which {tool} would get, no pass touches",
+                tool=tool.name,
                 share=100.0 * no_pass,
             )
         )

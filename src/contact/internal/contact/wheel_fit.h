@@ -19,4 +19,21 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
                               const std::vector<Vec3>& point, const std::vector<Vec3>& normal,
                               const RunContext& context = {}, bool whole = false);
 
+/// The belt of a free run or a platen as it touches nothing: a rectangle in the contact frame's
+/// plane z = 0, its length along x.
+struct FlatRun {
+    double length = 200.0;  ///< mm, from roller to roller
+    double middle = 0.0;    ///< mm along x, where its middle lies
+    double width = 50.0;    ///< mm
+    double behind = 50.0;   ///< mm behind it that are the machine's: up to the belt that runs back
+
+    /// Throws InputError for sizes that are none.
+    void validate() const;
+};
+
+/// How deep a surface (`point`, mm) reaches through a flat belt into what lies behind it at each
+/// pose, mm along z; 0 where it only touches. Throws InputError, Cancelled.
+std::vector<double> run_fit(const FlatRun& run, const std::vector<Frame>& work_from_contact,
+                            const std::vector<Vec3>& point, const RunContext& context = {});
+
 }  // namespace beltgrinding

@@ -1,0 +1,170 @@
+"""What presses the belt, as it is undeformed: whether it fits the part, and what lies under it. A wheel, or the flat
+belt of a free run or a platen with its rollers.
+
+Frames are work_from_contact (n, 4, 4), lengths mm.
+"""
+
+import math
+
+import numpy as np
+
+from ..cell import collision
+from ..engine import core
+from ..job import engine_input, machine as machines
+
+CHECKS = 8.0  # of a wheel's radius, or a belt's width: that way from place to place that is looked at, along a pass
+CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
+OFF = 0.05  # mm, that a belt must, which lies flat
+LEAST_BEHIND = 5.0  # mm behind a belt on rollers of no size
+
+
+def of(job, advance=0.0):
+    """The tool of a validated job; ``advance``: mm that a belt gives way, by which its rollers come nearer to the part."""
+    return Wheel(job) if machines.wheel_presses(job["belt_machine"]) else Belt(job, advance)
+
+
+class Wheel:
+    """A contact wheel."""
+
+    belt = False
+
+    def __init__(self, job):
+        self.shape = engine_input.engine_arguments(job)[0]
+        self.radius, self.width = self.shape["radius"], self.shape["width"]
+        self.check = self.radius / CHECKS
+        profile = collision.wheel_profile(job["belt_machine"]["wheel"])
+        self._across = profile[:, 0]
+        self._back = np.interp(0.0, profile[:, 0], profile[:, 1]) - profile[:, 1]
+        self._drop = _drop(self.shape)
+
+    @property
+    def name(self):
+        """Fact: what it is, as a subject."""
+        return core.Fact("raster.the_wheel", "the wheel")
+
+    @property
+    def smaller(self):
+        """Fact: what to take where it does not fit."""
+        return core.Fact("raster.a_smaller_wheel", "a smaller or narrower wheel")
+
+    def chord(self, depth):
+        """mm on which it stands ``depth`` deep in a plane."""
+        return 2.0 * math.sqrt(2.0 * self.radius * depth)
+
+    def over_border(self, lead):
+        """mm (n,) by which it must stand off other faces, ``lead`` (n,) beyond a border: a share of how high it stands
+        over that."""
+        return CLEAR * lead**2 / (2.0 * self.radius)
+
+    def shift(self, lean):
+        """From the leaned contact frame's origin to the point that lies deepest in the work, in that frame (3,)."""
+        k = int(np.argmax(self._across * math.sin(lean) - self._back * math.cos(lean)))
+        return np.array([0.0, self._across[k], -self._back[k]])
+
+    def depth(self, frames, points, context=None):
+        """mm (n,) that points (k, 3) stand in it."""
+        return np.asarray(core.wheel_fit(self.shape, frames, points, points, context, True))
+
+    def depth_before(self, frames, points, normals, context=None):
+        """mm (n,) that a surface of points with normals (k, 3) stands in the half of it that faces the work."""
+        return np.asarray(core.wheel_fit(self.shape, frames, points, normals, context, False))
+
+    def edge_gap(self, length, width):
+        """mm from it to a plane at the edge of a contact of ``length`` and ``width`` on that."""
+        across = float(np.interp(0.5 * min(width, self.width), *self._drop))
+        return max(length**2 / (8.0 * self.radius), across)
+
+    def under(self, points, frames, length, gap):
+        """(k,) bool of points (k, 3) that lie no farther than ``gap`` from it at one of its frames."""
+        z, y = frames[:, :3, 2], frames[:, :3, 1]
+        way = points[:, None] - (frames[:, :3, 3] - self.radius * z)[None]
+        beside = np.einsum("nkx,kx->nk", way, y)
+        radial = np.sqrt(np.maximum((way**2).sum(axis=2) - beside**2, 0.0))
+        off = radial - self.radius + np.interp(beside, *self._drop)
+        down = np.einsum("nkx,kx->nk", way, z) > 0.0
+        return ((abs(beside) <= 0.5 * self.width) & (abs(off) <= gap) & down).any(axis=1)
+
+
+def _drop(wheel):
+    """(y mm, how much smaller the wheel's radius is there, mm), finely."""
+    crown, half = wheel["crown_radius"], 0.5 * wheel["width"]
+    y = np.linspace(-half, half, 65)
+    turned = np.array(wheel["profile"], dtype=float).reshape(-1, 2)
+    drop = np.interp(y, turned[:, 0], turned[:, 1]) if len(turned) else np.zeros(len(y))
+    if crown > 0.0:
+        drop = drop + crown - np.sqrt(np.maximum(crown**2 - y**2, 0.0))
+    return y, drop
+
+
+class Belt:
+    """The flat belt between its rollers, as it touches nothing. What of the part reaches through it beside the contact
+    bears the belt there, as a wall beside a wheel would."""
+
+    belt = True
+    radius = math.inf
+
+    def __init__(self, job, advance):
+        machine = job["belt_machine"]
+        run = machine["free_run"]
+        self.width, self.length = float(run["width_mm"]), float(run["length_mm"])
+        self.check = self.width / CHECKS
+        self._middle = -float(run["position_mm"])
+        radius, thickness = float(run["roller_radius_mm"]), float(run["thickness_mm"])
+        # Up to the belt that runs back.
+        self._behind = max(2.0 * (radius + thickness), LEAST_BEHIND)
+        self._roller = None
+        if radius > 0.0:
+            self._roller = {"radius": radius, "width": self.width}  # a cylinder
+            self._rollers = [
+                np.array([self._middle + 0.5 * side * self.length, 0.0, advance - thickness])
+                for side in (-1.0, 1.0)
+            ]
+
+    @property
+    def name(self):
+        """Fact: what it is, as a subject."""
+        return core.Fact("raster.the_belt", "the belt")
+
+    @property
+    def smaller(self):
+        """Fact: what to take where it does not fit."""
+        return core.Fact("raster.a_smaller_belt", "a narrower belt, or rollers that are nearer")
+
+    def chord(self, depth):
+        """mm on which it stands ``depth`` deep in a plane: all."""
+        return self.length
+
+    def over_border(self, lead):
+        """mm (n,) by which it must stand off other faces, ``lead`` (n,) beyond a border."""
+        return np.full(len(lead), OFF)
+
+    def shift(self, lean):
+        """From the leaned contact frame's origin to the point that lies deepest in the work, in that frame (3,)."""
+        return np.array([0.0, math.copysign(0.5 * self.width, lean) if lean else 0.0, 0.0])
+
+    def depth(self, frames, points, context=None):
+        """mm (n,) that points (k, 3) stand in it, or in its rollers."""
+        size = self.length, self._middle, self.width, self._behind
+        found = np.asarray(core.run_fit(*size, frames, points, context))
+        for place in self._rollers if self._roller else ():
+            moved = frames.copy()
+            moved[:, :3, 3] += frames[:, :3, :3] @ place
+            met = core.wheel_fit(self._roller, moved, points, points, context, True)
+            found = np.maximum(found, met)
+        return found
+
+    def depth_before(self, frames, points, normals, context=None):
+        """mm (n,) that a surface of points (k, 3) stands in it, whatever its normals."""
+        return self.depth(frames, points, context)
+
+    def edge_gap(self, length, width):
+        """mm from it to a plane: none, on which it lies."""
+        return OFF
+
+    def under(self, points, frames, length, gap):
+        """(k,) bool of points (k, 3) that lie no farther than ``gap`` from it at one of its frames, on ``length`` mm
+        along it."""
+        way = points[:, None] - frames[:, :3, 3][None]
+        x, y, z = (abs(np.einsum("nkx,kx->nk", way, frames[:, :3, k])) for k in range(3))
+        along = x <= 0.5 * min(length, self.length)
+        return (along & (y <= 0.5 * self.width) & (z <= max(gap, OFF))).any(axis=1)

@@ -5176,6 +5176,114 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <source>there is no room</source>
         <translation>kein Platz ist</translation>
     </message>
+    <message>
+        <source>Crossed from, °</source>
+        <translation>Gekreuzt ab, °</translation>
+    </message>
+    <message>
+        <source>Direction of the scratches: = or ⊥ (or T) with a direction, such as = 1 0 0; X or M crossed; C or R with a centre, such as C 10 0 5</source>
+        <translation>Richtung der Schleifspuren: = oder ⊥ (oder T) mit einer Richtung, etwa = 1 0 0; X oder M gekreuzt; C oder R mit einem Mittelpunkt, etwa C 10 0 5</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>Oberflächengüte</translation>
+    </message>
+    <message>
+        <source>Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more. The job must compute the finish</source>
+        <translation>Größte Rauheit, etwa 0,8; 0,8 T16%: Bis zu 16 % der Fläche dürfen mehr haben. Der Auftrag muss die Oberflächengüte berechnen</translation>
+    </message>
+    <message>
+        <source>Grit</source>
+        <translation>Körnung</translation>
+    </message>
+    <message>
+        <source>Lay</source>
+        <translation>Rillenrichtung</translation>
+    </message>
+    <message>
+        <source>Left by a pass, share</source>
+        <translation>Rest je Überschliff, Anteil</translation>
+    </message>
+    <message>
+        <source>Measured roughness</source>
+        <translation>Gemessene Rauheit</translation>
+    </message>
+    <message>
+        <source>Measured: {}</source>
+        <translation>Gemessen: {}</translation>
+    </message>
+    <message>
+        <source>Measurements</source>
+        <translation>Messungen</translation>
+    </message>
+    <message>
+        <source>Ra before grinding, µm</source>
+        <translation>Ra vor dem Schleifen, µm</translation>
+    </message>
+    <message>
+        <source>Ra, µm</source>
+        <translation>Ra, µm</translation>
+    </message>
+    <message>
+        <source>Read...</source>
+        <translation>Lesen...</translation>
+    </message>
+    <message>
+        <source>Roughness and lay</source>
+        <translation>Rauheit und Rillenrichtung</translation>
+    </message>
+    <message>
+        <source>The file that beltgrind calibrate-finish wrote</source>
+        <translation>Die Datei, die beltgrind calibrate-finish schrieb</translation>
+    </message>
+    <message>
+        <source>What a pass leaves of the roughness before is not known: each counts as measured.</source>
+        <translation>Was ein Überschliff von der Rauheit davor lässt, ist nicht bekannt: Jeder zählt wie gemessen.</translation>
+    </message>
+    <message>
+        <source>Without measurements there is the direction of the scratches, and no roughness: fit them by beltgrind calibrate-finish.</source>
+        <translation>Ohne Messungen gibt es die Richtung der Schleifspuren und keine Rauheit: sie mit beltgrind calibrate-finish anpassen.</translation>
+    </message>
+    <message>
+        <source>as measured</source>
+        <translation>wie gemessen</translation>
+    </message>
+    <message>
+        <source>computed</source>
+        <translation>berechnet</translation>
+    </message>
+    <message>
+        <source>empty: not known</source>
+        <translation>leer: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>empty: what the measurements tell</source>
+        <translation>leer: was die Messungen sagen</translation>
+    </message>
+    <message>
+        <source>grit</source>
+        <translation>Körnung</translation>
+    </message>
+    <message>
+        <source>lay alone</source>
+        <translation>Rillenrichtung allein</translation>
+    </message>
+    <message>
+        <source>must be 0 or more, and less than 1</source>
+        <translation>muss 0 oder mehr und kleiner als 1 sein</translation>
+    </message>
+    <message>
+        <source>of a fresh belt&apos;s cut</source>
+        <translation>vom Abtrag eines frischen Bandes</translation>
+    </message>
+    <message>
+        <source>roughness and lay</source>
+        <translation>Rauheit und Rillenrichtung</translation>
+    </message>
+    <message>
+        <source>the measurements need the belt&apos;s grit</source>
+        <translation>die Messungen brauchen die Körnung des Bandes</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

@@ -145,6 +145,31 @@ picture("heat-blade")
     )
 
 
+def test_the_blades_finish(walk):
+    walk(
+        """
+from support import synthetic_finish
+menu("Example: compressor blade")
+job = FreeCAD.ActiveDocument.BeltGrindingJob
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+settle()
+field("foldFinish").click()
+field("finishChoice", QtGui.QComboBox).setCurrentIndex(1)
+Path("roughness.json").write_text(json.dumps(synthetic_finish.model()))
+QtGui.QFileDialog.getOpenFileName = staticmethod(lambda *_: ("roughness.json", ""))
+field("readFinishModel").click()
+type_in("initial_Ra_um", "1.6")
+press("OK")
+doc = ground((-0.5, 2, -0.6))
+assert 0.2 < doc.Deviation.MeanRoughness < 1.2 and doc.Deviation.GreatestRoughness < 1.7
+colours = field("ColourBy", QtGui.QComboBox)
+colours.setCurrentIndex(colours.findText("Roughness"))
+settle()
+picture("finish-blade")
+"""
+    )
+
+
 def test_the_readme_shows_an_animation():
     kept = pictures.IMAGES / "tap.gif"
     assert "docs/images/tap.gif" in (pictures.ROOT / "README.md").read_text()

@@ -71,6 +71,11 @@ settle()
 field("foldHeat").click()
 field("thermalPreset", QtGui.QComboBox).setCurrentIndex(5)
 look("heat")
+job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+settle()
+field("foldFinish").click()
+field("finishChoice", QtGui.QComboBox).setCurrentIndex(1)
+look("finish")
 for program in programs:
     view = program.ViewObject
     view.Proxy.doubleClicked(view)

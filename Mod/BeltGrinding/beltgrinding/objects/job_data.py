@@ -99,7 +99,7 @@ def set_zones(job, found):
 
     rule = schemas.schema("job")["properties"]["inspection"]["properties"]["zones"]
     found = schemas.checked(list(found), rule, "zones")
-    tolerances.check_zones(found, design(job)[1])
+    tolerances.check_zones(found, design(job)[1], bool(job.Finish))
     job.Zones = json.dumps(found) if found else ""
 
 

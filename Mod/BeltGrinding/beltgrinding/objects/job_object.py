@@ -77,4 +77,4 @@ class BeltGrindingJob(Proxy):
                 object=obj.Label,
                 key="ToleranceLower",
             )
-        tolerances.check_zones(zones(obj), design(obj)[1])
+        tolerances.check_zones(zones(obj), design(obj)[1], bool(obj.Finish))

@@ -12,6 +12,7 @@ from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from ..widgets.fold import Fold
 from ..widgets.form import NUMBERS, QUANTITIES, Form
+from .finish_form import FinishForm
 from .heat_form import HeatForm
 from .law_forms import LawForms
 from .panel import Panel
@@ -83,6 +84,9 @@ class JobPanel(Panel):
         self._fold("foldLaw", self.law, self._law_text, title, new)
         self.heat = HeatForm(obj)
         self._fold("foldHeat", self.heat, self.heat.summary, folded=True)
+        # Not self.finish, which a panel ends with.
+        self.texture = FinishForm(obj)
+        self._fold("foldFinish", self.texture, self.texture.summary, folded=True)
         text = self.timing.rows["Timing"][1].currentText
         self._fold("foldTiming", self.timing, text, folded=new)
         self.sampling = sampling
@@ -367,6 +371,7 @@ class JobPanel(Panel):
             raise InputError("gui.spacing", "The sample spacing must not be negative.")
         check_tolerance(self.obj)
         self.heat.check()
+        self.texture.check()
         job_data.design(self.obj)
 
     def apply(self):

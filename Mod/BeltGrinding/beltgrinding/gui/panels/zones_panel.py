@@ -1,5 +1,7 @@
 """Task panel of a job's tolerance zones: a table, whose chosen zone's faces are tinted."""
 
+import math
+
 import FreeCADGui as Gui
 
 from ...engine import InputError
@@ -10,9 +12,14 @@ from ..scene.face_tint import FaceTint
 from .job_panel import FaceGate
 from .panel import Panel
 
-NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK = range(7)
+COLUMNS = 9
+NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK, RA, LAY = range(COLUMNS)
 LIMITS = ((LOWER, UPPER, "tolerance_mm"), (THIN, THICK, "thickness_mm"))
 HEIGHT = 180  # pixels
+ACCEPTANCES = ("Tmax", "T16%")
+LAYS = {"=": "lay_direction", "⊥": "lay_direction", "C": "lay_centre_mm", "R": "lay_centre_mm"}
+WITHOUT = ("X", "M", "P")  # lays that refer to nothing; P is refused, with the reason
+TYPED = {"T": "⊥"}  # what a keyboard has in its place
 
 
 class ZonesPanel(Panel):
@@ -40,7 +47,7 @@ class ZonesPanel(Panel):
         self.changed()
 
     def _table(self):
-        table = QtGui.QTableWidget(0, 7)
+        table = QtGui.QTableWidget(0, COLUMNS)
         table.setObjectName("zones")
         titles = [
             translate("BeltGrinding", "Zone"),
@@ -50,6 +57,8 @@ class ZonesPanel(Panel):
             translate("BeltGrinding", "Edge radius"),
             translate("BeltGrinding", "Thinner by"),
             translate("BeltGrinding", "Thicker by"),
+            translate("BeltGrinding", "Ra, µm"),
+            translate("BeltGrinding", "Lay"),
         ]
         table.setHorizontalHeaderLabels(titles)
         tips = {
@@ -57,6 +66,16 @@ class ZonesPanel(Panel):
             EDGE: translate("BeltGrinding", "Only convex edges with a smaller radius; empty: all"),
             THIN: translate("BeltGrinding", "Lower limit of the thickness against the design's"),
             THICK: translate("BeltGrinding", "Upper limit of the thickness against the design's"),
+            RA: translate(
+                "BeltGrinding",
+                "Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more. The job must compute "
+                "the finish",
+            ),
+            LAY: translate(
+                "BeltGrinding",
+                "Direction of the scratches: = or ⊥ (or T) with a direction, such as = 1 0 0; X or M crossed; C or R "
+                "with a centre, such as C 10 0 5",
+            ),
         }
         for column, tip in tips.items():
             table.horizontalHeaderItem(column).setToolTip(tip)
@@ -93,7 +112,7 @@ class ZonesPanel(Panel):
         self.quiet = True
         self.table.setRowCount(len(zones))
         for i, zone in enumerate(zones):
-            texts = [""] * 7
+            texts = [""] * COLUMNS
             texts[NAME] = zone["name"]
             texts[FACES] = " ".join(map(str, zone.get("faces", [])))
             if "edge_radius_mm" in zone:
@@ -101,8 +120,12 @@ class ZonesPanel(Panel):
             for low, high, key in LIMITS:
                 if key in zone:
                     texts[low], texts[high] = (f"{value:g}" for value in zone[key])
+            finish = zone.get("finish", {})
+            texts[RA], texts[LAY] = _ra_text(finish), _lay_text(finish)
             for k, text in enumerate(texts):
                 item = QtGui.QTableWidgetItem(text)
+                if k == LAY:  # what of it no cell shows
+                    item.setData(QtCore.Qt.UserRole, finish.get("lay_tolerance_deg"))
                 if k > FACES:
                     item.setTextAlignment(int(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter))
                 self.table.setItem(i, k, item)
@@ -131,7 +154,42 @@ class ZonesPanel(Panel):
                 )
             if all(given):
                 zone[key] = [self._number(row, low), self._number(row, high)]
-        return zone
+        finish = self._finish(row)
+        return {**zone, "finish": finish} if finish else zone
+
+    def _finish(self, row):
+        """A zone's ``finish``; {} where the drawing calls for none."""
+        found, words = {}, self.text(row, RA).split()
+        if words:
+            found["Ra_max_um"] = self._number(row, RA, words[0])
+            if len(words) > 2 or (len(words) == 2 and words[1] not in ACCEPTANCES):
+                raise InputError(
+                    "gui.zone_acceptance",
+                    "{zone}: after the roughness, '{text}' is neither Tmax nor T16%.",
+                    zone=self.text(row, NAME),
+                    text=" ".join(words[1:]),
+                )
+            if len(words) == 2:
+                found["acceptance"] = words[1]
+        words = self.text(row, LAY).split()
+        if not words:
+            return found
+        symbol = TYPED.get(words[0], words[0])
+        count = 3 if symbol in LAYS else 0
+        if symbol not in (*LAYS, *WITHOUT) or len(words) != 1 + count:
+            raise InputError(
+                "gui.zone_lay",
+                "{zone}: '{text}' is no lay: write = 1 0 0 (or ⊥, with a direction), C 10 0 5 (or R, with a centre), X or M.",
+                zone=self.text(row, NAME),
+                text=self.text(row, LAY),
+            )
+        found["lay"] = symbol
+        if count:
+            found[LAYS[symbol]] = [self._number(row, LAY, word) for word in words[1:]]
+        tolerance = self.table.item(row, LAY).data(QtCore.Qt.UserRole)
+        if tolerance is not None:
+            found["lay_tolerance_deg"] = float(tolerance)
+        return found
 
     def _faces(self, row):
         words = self.text(row, FACES).replace(",", " ").replace("Face", " ").split()
@@ -143,18 +201,27 @@ class ZonesPanel(Panel):
             )
         return list(dict.fromkeys(int(word) for word in words))
 
-    def _number(self, row, column):
-        text = self.text(row, column).replace(",", ".")
+    def _number(self, row, column, text=None):
+        text = (self.text(row, column) if text is None else text).replace(",", ".")
         try:
             value = float(text[:-2] if text.endswith("mm") else text)
         except ValueError:
+            value = math.nan
+        if math.isfinite(value):
+            return value
+        if column in (RA, LAY):
             raise InputError(
-                "gui.no_length",
-                "{zone}: '{text}' is no number of millimetres.",
+                "gui.zone_no_number",
+                "{zone}: '{text}' is no number.",
                 zone=self.text(row, NAME),
                 text=text,
-            ) from None
-        return value
+            )
+        raise InputError(
+            "gui.no_length",
+            "{zone}: '{text}' is no number of millimetres.",
+            zone=self.text(row, NAME),
+            text=text,
+        )
 
     def zones(self):
         return [self.zone(row) for row in range(self.table.rowCount())]
@@ -218,15 +285,24 @@ class ZonesPanel(Panel):
         self.table.item(row, FACES).setText(" ".join(map(str, faces)))
 
     def _rows(self):
-        return [[self.text(row, k) for k in range(7)] for row in range(self.table.rowCount())]
+        # Last of each what no cell shows.
+        return [
+            [
+                *(self.text(row, k) for k in range(COLUMNS)),
+                self.table.item(row, LAY).data(QtCore.Qt.UserRole),
+            ]
+            for row in range(self.table.rowCount())
+        ]
 
     def _set_rows(self, rows, current):
         """Puts texts back as they are, sound or not."""
         self.fill([{"name": texts[NAME]} for texts in rows], current)
         self.quiet = True
         for i, texts in enumerate(rows):
-            for k, text in enumerate(texts):
+            for k, text in enumerate(texts[:COLUMNS]):
                 self.table.item(i, k).setText(text)
+            if len(texts) > COLUMNS:
+                self.table.item(i, LAY).setData(QtCore.Qt.UserRole, texts[COLUMNS])
         self.quiet = False
         self.changed()
 
@@ -256,3 +332,18 @@ class ZonesPanel(Panel):
     def close(self):
         Gui.Selection.removeSelectionGate()
         self.tint.close()
+
+
+def _ra_text(finish):
+    """What stands for a zone's limit of the roughness."""
+    if "Ra_max_um" not in finish:
+        return ""
+    accepted = finish.get("acceptance", ACCEPTANCES[0])
+    return f"{finish['Ra_max_um']:g}" + (f" {accepted}" if accepted != ACCEPTANCES[0] else "")
+
+
+def _lay_text(finish):
+    """What stands for a zone's lay."""
+    symbol = finish.get("lay", "")
+    numbers = finish.get(LAYS.get(symbol), [])
+    return " ".join([symbol, *(f"{value:g}" for value in numbers)])

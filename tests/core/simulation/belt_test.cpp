@@ -251,6 +251,18 @@ TEST(BeltSimulation, ABeltPressedThroughItsLayersIsCalledABelt) {
     for (const std::string& code : codes) EXPECT_EQ(code, "event.belt_over_compressed");
 }
 
+TEST(BeltSimulation, AForceThatItsLayersDoNotBearIsToldOfABelt) {
+    HeightField field = testing::plate(60.0, 60.0, 0.6, 0.2);
+    SimulationOptions o = platen();
+    o.process.force = 50000.0;
+    const ToolPath path({pressing_down(30, 29, 0.2, 40.0), pressing_down(30, 31, 0.2, 40.0)}, {});
+    const SimulationResult result = ground(field, path, o);
+    const auto codes = facts(result, "over_compressed");
+    ASSERT_FALSE(codes.empty());
+    EXPECT_EQ(codes.front(), "event.force_over_compresses_belt");
+    EXPECT_LT(result.steps.back().force, o.process.force);
+}
+
 TEST(BeltSimulation, ABeltThatBouncesIsCalledABelt) {
     // Light damping, quickly over a step down.
     HeightField field = testing::plate(30.0, 100.0, 1.0, 0.2);

@@ -134,7 +134,7 @@ def test_position_control_lays_passes_by_the_allowance(bent):
 def test_a_contact_that_goes_on_over_the_faces_border_is_told():
     found = raster_path.raster(job_of({"brep": plate()}, run={"width_mm": 90}), X)
     assert any(one.code == "raster.belt_beyond_faces" for one in found["warnings"])
-    assert len(found["passes"]) >= 1 and found["contact_width_mm"] <= 60.0 + 3.1  # whole cells
+    assert len(found["passes"]) >= 1 and found["contact_width_mm"] < 80.0  # whole cells of 9 mm
 
 
 def test_the_core_refuses_what_is_no_belt():

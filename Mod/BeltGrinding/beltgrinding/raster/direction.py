@@ -13,14 +13,15 @@ SAMPLES = 6_000  # on the faces, about
 ACROSS = 4.0  # of them across the contact's width, if that is finer
 MOST_SAMPLES = 40_000
 STEP = 0.3  # of the contact's length: from step to step of the simulation
-BELT_STEPS, BELT_CELLS, BELT_TURN = 150, 10, 0.3  # of a belt: steps, cells across it; rad a step
+BELT_STEPS, BELT_TURN = 150, 0.3  # of a belt; rad a step
 AS_EVEN = 0.1  # of the residual: so near the best, the quickest is taken
 ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the faces are longest
+BELT_ANGLES = (0.0, 90.0)  # of a belt, whose contacts take their time
 ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
 FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
 
 
-def candidates(field):
+def candidates(field, angles=ANGLES):
     """Settings of the ways that are tried, for a core.HeightField of the faces: list of dict(along, direction)."""
     points, weight = field.points, field.areas[:, None].astype(float)
     middle = (points * weight).sum(axis=0) / weight.sum()
@@ -37,7 +38,7 @@ def candidates(field):
             first = axes[:, -2] - (axes[:, -2] @ normal) * normal
         first /= np.linalg.norm(first)
         second = np.cross(normal, first)
-        turns = [math.radians(angle) for angle in ANGLES]
+        turns = [math.radians(angle) for angle in angles]
         directions = [math.cos(a) * first + math.sin(a) * second for a in turns]
     else:  # round about: along its axes
         directions = list(axes.T[::-1])
@@ -58,7 +59,8 @@ def best(job, shape, faces, settings, lay, context=None):
     context = context or core.RunContext()
     area = sum(shape.face_area(face) for face in faces)
     coarse, _ = core.sample_faces(shape, list(faces), math.sqrt(area / SAMPLES), context=context)
-    tried, ways, first = [], candidates(coarse), None
+    angles = BELT_ANGLES if tool.of(job).belt else ANGLES
+    tried, ways, first = [], candidates(coarse, angles), None
     if settings["order"] == "helix":
         ways = [{"along": "rings"}]
     for way in ways:
@@ -96,8 +98,7 @@ def _judged(job, shape, faces, area, settings, path, context):
     turn = 2.0 * step / pressing.radius
     if pressing.belt:  # a step costs a hundred of a wheel's
         step, turn = max(step, sum(p["length_mm"] for p in path["passes"]) / BELT_STEPS), BELT_TURN
-        coarse = pressing.width / BELT_CELLS
-        options["contact_spacing"] = max(options["contact_spacing"], coarse)
+        options.update(pressing.coarse(options))
     options.update(
         force=settings["force_N"] or options["force"],
         max_travel=max(step, options["max_travel"]),

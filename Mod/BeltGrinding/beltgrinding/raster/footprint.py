@@ -12,6 +12,7 @@ from .sheets import curvature_along_and_across
 
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 PLACES = 50  # along the passes, at which the contact is solved
+BELT_PLACES = 16  # of a belt
 FEWEST = 8  # of them that have a whole contact: from fewer nothing is said
 ACROSS = 30  # samples across the contact
 SAMPLES = 100_000  # on the faces, at most
@@ -132,15 +133,15 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
         return None
     wheel, compliance, _, options = engine_input.engine_arguments(job)
     tool = tools.of(job)
-    frames = _places(levels, settings)
+    frames = _places(levels, settings, BELT_PLACES if tool.belt else PLACES)
     area = sum(shape.face_area(face) for face in faces)
     spacing = max(plain / ACROSS, math.sqrt(area / SAMPLES))
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
-    force = settings["force_N"] or options["force"]
-    fine = min(options["contact_spacing"], max(plain / ACROSS, tool.width / MOST_CELLS))
-    if tool.belt:  # whose contacts cost a hundred times as much
-        fine = options["contact_spacing"]
+    force, given = settings["force_N"] or options["force"], options["contact_spacing"]
+    fine = min(given, max(plain / ACROSS, tool.width / MOST_CELLS))
     options = {**options, "force": force, "contact_spacing": fine, "must_touch": False}
+    if tool.belt:
+        options.update(tool.coarse(options | {"contact_spacing": given}))
     path = core.ToolPath(
         frames=frames,
         feeds=np.ones(len(frames)),
@@ -175,8 +176,8 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     }
 
 
-def _places(levels, settings):
-    """work_from_contact (k, 4, 4), evenly along all passes."""
+def _places(levels, settings, count):
+    """work_from_contact (count, 4, 4), evenly along all passes."""
     angle = math.radians(settings["belt_angle_deg"])
     pieces = [piece for pieces in levels for piece in pieces]
     frames = [
@@ -185,7 +186,7 @@ def _places(levels, settings):
     ]
     ends = np.cumsum([0.0, *(passes.length(piece["points"]) for piece in pieces)])
     found = []
-    for place in (np.arange(PLACES) + 0.5) / PLACES * ends[-1]:
+    for place in (np.arange(count) + 0.5) / count * ends[-1]:
         k = min(int(np.searchsorted(ends, place, side="right")) - 1, len(pieces) - 1)
         steps = np.linalg.norm(np.diff(pieces[k]["points"], axis=0), axis=1)
         s = np.concatenate([[0.0], np.cumsum(steps)])

@@ -15,6 +15,10 @@ from ..job import engine_input, machine as machines
 CHECKS = 8.0  # of a wheel's radius, or a belt's width: that way from place to place that is looked at, along a pass
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
 OFF = 0.05  # mm, that a belt must, which lies flat
+COARSE_CELLS, COARSE_TOLERANCE = (
+    10,
+    1e-2,
+)  # across a belt; of its pressure: to look at many contacts
 LEAST_BEHIND = 5.0  # mm behind a belt on rollers of no size
 
 
@@ -129,6 +133,14 @@ class Belt:
     def smaller(self):
         """Fact: what to take where it does not fit."""
         return core.Fact("raster.a_smaller_belt", "a narrower belt, or rollers that are nearer")
+
+    def coarse(self, options):
+        """What of a simulation's ``options`` is enough to look at many contacts, each of which costs a hundred of a
+        wheel's."""
+        return {
+            "contact_spacing": max(options["contact_spacing"], self.width / COARSE_CELLS),
+            "contact_tolerance": max(options["contact_tolerance"], COARSE_TOLERANCE),
+        }
 
     def chord(self, depth):
         """mm on which it stands ``depth`` deep in a plane: all."""

@@ -145,11 +145,12 @@ bool outlined(const Spot& a, const Spot& b, const Vec3f& side, const View& view)
     if (a.triangle == b.triangle && a.facing) return false;
     if (!a.met() || !b.met()) return a.met() != b.met();
     if (a.normal.dot(b.normal) < kCreaseCosine) return true;
+    const float leap = std::abs(a.depth - b.depth) / view.step;
+    if (leap <= kDepthJump) return false;
     const auto slope = [&](const Spot& s) {  // depth gained on the way to the neighbour, at most
         const float facing = std::max(-s.normal.dot(view.into), kLeastFacing);
         return std::abs(s.normal.dot(side)) / facing;
     };
-    const float leap = std::abs(a.depth - b.depth) / view.step;
     return leap > kDepthJump + 2.0F * std::max(slope(a), slope(b));
 }
 
@@ -219,14 +220,29 @@ struct Renderer::Scene {
     View view_of(const Camera& camera, std::size_t width, std::size_t height) const;
     /// Made when first asked for: many a picture needs none.
     const SightLines& lines() const;
+    /// The triangles as they are drawn, made when first asked for.
+    const std::vector<Rasteriser::Mesh>& meshes() const;
 
     Spare<Rasteriser> rasterisers;
     Spare<Band> bands;
 
   private:
-    mutable std::once_flag asked;
+    mutable std::once_flag asked, asked_meshes;
     mutable std::optional<SightLines> made;
+    mutable std::vector<std::vector<Box>> boxes;
+    mutable std::vector<Rasteriser::Mesh> drawn;
 };
+
+const std::vector<Rasteriser::Mesh>& Renderer::Scene::meshes() const {
+    std::call_once(asked_meshes, [this] {
+        boxes.reserve(surfaces.size());
+        for (const ColouredSurface& one : surfaces) {
+            boxes.push_back(boxes_of(one.vertices, one.triangles));
+            drawn.push_back({one.vertices, one.triangles, boxes.back()});
+        }
+    });
+    return drawn;
+}
 
 const SightLines& Renderer::Scene::lines() const {
     std::call_once(asked, [this] {
@@ -357,11 +373,8 @@ Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t he
     Picture picture{width, height, std::vector<std::uint8_t>(3 * width * height),
                     std::vector<float>(width * height)};
     const std::size_t columns = view.grid.columns;
-    std::vector<Rasteriser::Mesh> meshes;
-    for (const ColouredSurface& one : scene_->surfaces)
-        meshes.push_back({one.vertices, one.triangles});
     std::unique_ptr<Rasteriser> rasteriser = scene_->rasterisers.take();
-    rasteriser->lay_out(meshes, view.grid, kRowsOfTask * kRays, context);
+    rasteriser->lay_out(scene_->meshes(), view.grid, kRowsOfTask * kRays, context);
     parallel_blocks(height, kRowsOfTask, context, [&](std::size_t begin, std::size_t end) {
         std::unique_ptr<Band> band = scene_->bands.take();
         band->hits.resize((kRowsOfTask * kRays + 1) * columns);

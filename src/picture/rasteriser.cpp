@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "base/large_memory.h"
@@ -10,8 +11,11 @@
 namespace beltgrinding {
 namespace {
 
-constexpr std::size_t kVerticesOfTask = 1U << 15U;
-constexpr std::size_t kTrianglesOfTask = 1U << 16U;
+constexpr std::size_t kVerticesOfBlock = 64;  // that are projected or passed over together
+constexpr std::size_t kBlocksOfTask = 1U << 9U;
+constexpr std::size_t kChunksOfTask = 1U << 8U;
+constexpr double kBeside =
+    1e-5;                        // of places in the picture, and in rays: far beyond their rounding
 constexpr float kNarrow = 4.0F;  // columns, up to which all rays of a row are tried
 
 /// A triangle's edge, seen from its third corner's side: a ray's signed distance from it, times
@@ -55,6 +59,18 @@ std::uint32_t number_of(std::span<const std::uint32_t> first, std::uint32_t tria
 
 }  // namespace
 
+std::vector<Box> boxes_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    std::vector<Box> boxes((triangles.size() + kTrianglesOfBox - 1) / kTrianglesOfBox);
+    parallel_blocks(boxes.size(), kChunksOfTask, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t past = std::min((b + 1) * kTrianglesOfBox, triangles.size());
+            for (std::size_t i = b * kTrianglesOfBox; i < past; ++i)
+                for (const std::uint32_t v : triangles[i]) boxes[b].extend(vertices[v]);
+        }
+    });
+    return boxes;
+}
+
 void Rasteriser::lay_out(std::span<const Mesh> meshes, const RayGrid& grid, std::uint32_t band,
                          const RunContext& context) {
     grid_ = grid;
@@ -67,8 +83,34 @@ void Rasteriser::lay_out(std::span<const Mesh> meshes, const RayGrid& grid, std:
         meshes_.push_back(mesh.triangles);
         first_.push_back(first_.back() + static_cast<std::uint32_t>(mesh.triangles.size()));
     }
+    choose(meshes);
     project(meshes, context);
     sort_into_bands(context);
+}
+
+bool Rasteriser::beside(const Box& box) const {
+    const Vec3 middle = box.center() - grid_.corner, half = 0.5 * box.sizes();
+    const auto outside = [&](const Vec3& axis, double last) {
+        const double at = middle.dot(axis), reach = half.dot(axis.cwiseAbs());
+        const double pad = 1.0 + kBeside * (std::abs(at) + reach);
+        return at + reach + pad < 0.0 || at - reach - pad > last;
+    };
+    return outside(grid_.right / grid_.right.squaredNorm(), grid_.columns - 1) ||
+           outside(grid_.down / grid_.down.squaredNorm(), grid_.rows - 1);
+}
+
+void Rasteriser::choose(std::span<const Mesh> meshes) {
+    chunks_.clear();
+    for (std::uint32_t k = 0; k < meshes.size(); ++k) {
+        const std::size_t count = meshes[k].triangles.size();
+        for (std::size_t begin = 0; begin < count; begin += kTrianglesOfBox) {
+            const std::span<const Box> boxes = meshes[k].boxes;
+            if (!boxes.empty() && beside(boxes[begin / kTrianglesOfBox])) continue;
+            chunks_.push_back(
+                {k, static_cast<std::uint32_t>(begin),
+                 static_cast<std::uint32_t>(std::min(begin + kTrianglesOfBox, count))});
+        }
+    }
 }
 
 void Rasteriser::project(std::span<const Mesh> meshes, const RunContext& context) {
@@ -78,57 +120,84 @@ void Rasteriser::project(std::span<const Mesh> meshes, const RunContext& context
         count += mesh.vertices.size();
     }
     resize_large(corners_, count);
+    mark_corners(meshes, count, context);
     const Vec3 right = grid_.right / grid_.right.squaredNorm();
     const Vec3 down = grid_.down / grid_.down.squaredNorm();
-    for (std::size_t k = 0; k < meshes.size(); ++k) {
-        const std::span<const Vec3> vertices = meshes[k].vertices;
-        Corner* to = corners_.data() + first_corner_[k];
-        parallel_blocks(
-            vertices.size(), kVerticesOfTask, context, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) {
-                    const Vec3 p = vertices[i] - grid_.corner;
-                    to[i] = {static_cast<float>(p.dot(right)), static_cast<float>(p.dot(down)),
-                             static_cast<float>(p.dot(grid_.into))};
+    parallel_blocks(asked_.size(), kBlocksOfTask, context, [&](std::size_t begin, std::size_t end) {
+        std::size_t k = 0;
+        for (std::size_t block = begin; block < end; ++block) {
+            if (asked_[block] == 0) continue;
+            const std::size_t past = std::min((block + 1) * kVerticesOfBlock, count);
+            for (std::size_t i = block * kVerticesOfBlock; i < past; ++i) {
+                while (i >= first_corner_[k] + meshes[k].vertices.size()) ++k;
+                const Vec3 p = meshes[k].vertices[i - first_corner_[k]] - grid_.corner;
+                corners_[i] = {static_cast<float>(p.dot(right)), static_cast<float>(p.dot(down)),
+                               static_cast<float>(p.dot(grid_.into))};
+            }
+        }
+    });
+}
+
+void Rasteriser::mark_corners(std::span<const Mesh> meshes, std::size_t count,
+                              const RunContext& context) {
+    std::size_t all = 0;
+    for (const Mesh& mesh : meshes)
+        all += (mesh.triangles.size() + kTrianglesOfBox - 1) / kTrianglesOfBox;
+    const std::size_t blocks = (count + kVerticesOfBlock - 1) / kVerticesOfBlock;
+    asked_.assign(blocks, chunks_.size() == all ? 1 : 0);
+    if (chunks_.size() == all) return;
+    parallel_blocks(
+        chunks_.size(), kChunksOfTask, context, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = begin; c < end; ++c) {
+                const Chunk& chunk = chunks_[c];
+                for (std::uint32_t i = chunk.begin; i < chunk.end; ++i) {
+                    for (const std::uint32_t v : meshes_[chunk.mesh][i]) {
+                        const std::size_t block =
+                            (first_corner_[chunk.mesh] + v) / kVerticesOfBlock;
+                        std::atomic_ref(asked_[block]).store(1, std::memory_order_relaxed);
+                    }
                 }
-            });
-    }
+            }
+        });
 }
 
 void Rasteriser::sort_into_bands(const RunContext& context) {
-    const std::size_t count = first_.back();
-    const std::size_t tasks = (count + kTrianglesOfTask - 1) / kTrianglesOfTask;
-    resize_large(reached_, count);
+    const std::size_t tasks = (chunks_.size() + kChunksOfTask - 1) / kChunksOfTask;
+    resize_large(reached_, chunks_.size() * kTrianglesOfBox);
     std::vector<std::size_t> counted(tasks * bands_, 0);  // by task and band
     const auto last_column = static_cast<float>(grid_.columns - 1);
     const auto last_row = static_cast<float>(grid_.rows - 1);
     const auto nearest = static_cast<float>(-grid_.start);
-    parallel_blocks(count, kTrianglesOfTask, context, [&](std::size_t begin, std::size_t end) {
-        std::size_t* found = counted.data() + begin / kTrianglesOfTask * bands_;
-        std::uint32_t mesh = number_of(first_, static_cast<std::uint32_t>(begin));
-        for (std::size_t i = begin; i < end; ++i) {
-            while (i >= first_[mesh + 1]) ++mesh;
-            const Triangle& t = meshes_[mesh][i - first_[mesh]];
-            const Corner* corners = corners_.data() + first_corner_[mesh];
-            const Corner &a = corners[t[0]], &b = corners[t[1]], &c = corners[t[2]];
-            const float left = std::max(std::min({a.x, b.x, c.x}), 0.0F);
-            const float right = std::min(std::max({a.x, b.x, c.x}), last_column);
-            const float top = std::max(std::min({a.y, b.y, c.y}), 0.0F);
-            const float bottom = std::min(std::max({a.y, b.y, c.y}), last_row);
-            // Of dense samples many lie between two rays.
-            if (!(std::ceil(left) <= std::floor(right)) ||
-                !(std::ceil(top) <= std::floor(bottom)) ||
-                std::max({a.depth, b.depth, c.depth}) < nearest) {
-                reached_[i] = {0, 0};
-                continue;
+    const auto bands_of = [&](const Corner& a, const Corner& b, const Corner& c) {
+        const float left = std::max(std::min({a.x, b.x, c.x}), 0.0F);
+        const float right = std::min(std::max({a.x, b.x, c.x}), last_column);
+        const float top = std::max(std::min({a.y, b.y, c.y}), 0.0F);
+        const float bottom = std::min(std::max({a.y, b.y, c.y}), last_row);
+        // Of dense samples many lie between two rays.
+        if (!(std::ceil(left) <= std::floor(right)) || !(std::ceil(top) <= std::floor(bottom)) ||
+            std::max({a.depth, b.depth, c.depth}) < nearest)
+            return Bands{0, 0};
+        const auto upper = static_cast<std::uint32_t>(std::ceil(top));
+        const auto lower = static_cast<std::uint32_t>(std::floor(bottom));
+        const std::uint32_t from = upper == 0 ? 0 : (upper - 1) / band_;
+        const std::uint32_t to = std::min(lower / band_, bands_ - 1) + 1;
+        return Bands{static_cast<std::uint16_t>(from), static_cast<std::uint16_t>(to)};
+    };
+    parallel_blocks(
+        chunks_.size(), kChunksOfTask, context, [&](std::size_t begin, std::size_t end) {
+            std::size_t* found = counted.data() + begin / kChunksOfTask * bands_;
+            for (std::size_t c = begin; c < end; ++c) {
+                const Chunk& chunk = chunks_[c];
+                const Corner* corners = corners_.data() + first_corner_[chunk.mesh];
+                Bands* reached = reached_.data() + c * kTrianglesOfBox;
+                for (std::uint32_t i = chunk.begin; i < chunk.end; ++i) {
+                    const Triangle& t = meshes_[chunk.mesh][i];
+                    const Bands bands = bands_of(corners[t[0]], corners[t[1]], corners[t[2]]);
+                    *reached++ = bands;
+                    for (std::uint32_t b = bands.from; b < bands.to; ++b) ++found[b];
+                }
             }
-            const auto upper = static_cast<std::uint32_t>(std::ceil(top));
-            const auto lower = static_cast<std::uint32_t>(std::floor(bottom));
-            const std::uint32_t from = upper == 0 ? 0 : (upper - 1) / band_;
-            const std::uint32_t to = std::min(lower / band_, bands_ - 1) + 1;
-            reached_[i] = {static_cast<std::uint16_t>(from), static_cast<std::uint16_t>(to)};
-            for (std::uint32_t b_ = from; b_ < to; ++b_) ++found[b_];
-        }
-    });
+        });
     begin_.resize(bands_ + 1);
     std::size_t so_far = 0;
     for (std::uint32_t b = 0; b < bands_; ++b) {
@@ -141,13 +210,18 @@ void Rasteriser::sort_into_bands(const RunContext& context) {
     }
     begin_[bands_] = so_far;
     resize_large(order_, so_far);
-    parallel_blocks(count, kTrianglesOfTask, context, [&](std::size_t begin, std::size_t end) {
-        std::size_t* next = counted.data() + begin / kTrianglesOfTask * bands_;
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::uint32_t b = reached_[i].from; b < reached_[i].to; ++b)
-                order_[next[b]++] = static_cast<std::uint32_t>(i);
-        }
-    });
+    parallel_blocks(chunks_.size(), kChunksOfTask, context,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::size_t* next = counted.data() + begin / kChunksOfTask * bands_;
+                        for (std::size_t c = begin; c < end; ++c) {
+                            const Chunk& chunk = chunks_[c];
+                            const Bands* reached = reached_.data() + c * kTrianglesOfBox;
+                            for (std::uint32_t i = chunk.begin; i < chunk.end; ++i, ++reached) {
+                                for (std::uint32_t b = reached->from; b < reached->to; ++b)
+                                    order_[next[b]++] = first_[chunk.mesh] + i;
+                            }
+                        }
+                    });
 }
 
 void Rasteriser::rasterise(std::uint32_t b, std::span<RayHit> hits) const {

@@ -13,6 +13,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr double kLeastEdge = 1e-9;    // mm
 constexpr double kLeastGrowth = 1.02;  // of the cubes' edge, from one try to the next
 
 /// Numbers keys in the order in which they come: an open-addressed table.
@@ -85,17 +86,17 @@ Clusters clusters(std::span<const Vec3> points, std::span<const Vec3f> normals,
 }  // namespace
 
 ThinnedSamples thinned(std::span<const Vec3> points, std::span<const Vec3f> normals,
-                       std::span<const std::uint32_t> groups, std::size_t most, double edge,
+                       std::span<const std::uint32_t> groups, std::size_t most,
                        std::span<const std::uint32_t> keep) {
     if (normals.size() != points.size() || groups.size() != points.size())
         throw InputError("thinning.counts", "thinning: one normal and one group a point");
-    if (!(edge > 0.0) || most == 0)
-        throw InputError("thinning.size",
-                         "thinning: cubes have an edge, and at least one sample stays");
+    if (most == 0) throw InputError("thinning.size", "thinning: at least one sample stays");
     Box extents;
     for (const Vec3& p : points) extents.extend(p);
+    const double diagonal = points.empty() ? 0.0 : extents.diagonal().norm();
+    double edge = std::max(diagonal / std::sqrt(static_cast<double>(points.size())), kLeastEdge);
     Clusters found = clusters(points, normals, groups, extents, edge);
-    while (found.count > most && edge <= extents.diagonal().norm()) {  // beyond, nothing changes
+    while (found.count > most && edge <= diagonal) {  // beyond, nothing changes
         edge *=
             std::max(kLeastGrowth,
                      std::pow(static_cast<double>(found.count) / static_cast<double>(most), 0.5));

@@ -28,26 +28,23 @@ void bind_thinning(py::module_& m) {
     m.def(
         "thinned",
         [](const Array<double>& points, const Array<float>& normals,
-           const Array<std::uint32_t>& groups, std::size_t most, double edge,
-           const Array<std::uint32_t>& keep) {
+           const Array<std::uint32_t>& groups, std::size_t most, const Array<std::uint32_t>& keep) {
             const auto places = rows_of<Vec3, double>(points, "points");
             const auto facing = rows_of<Vec3f, float>(normals, "normals");
             ThinnedSamples thin;
             {
                 const py::gil_scoped_release release;
-                thin = thinned(places, facing, span_of(groups), most, edge, span_of(keep));
+                thin = thinned(places, facing, span_of(groups), most, span_of(keep));
             }
             return std::pair(own(std::move(thin.chosen)), own(std::move(thin.place)));
         },
-        py::arg("points"), py::arg("normals"), py::arg("groups"), py::arg("most"), py::arg("edge"),
-        py::arg("keep"),
+        py::arg("points"), py::arg("normals"), py::arg("groups"), py::arg("most"), py::arg("keep"),
         "(chosen (k,), place (n,)) uint32: samples that stay, ascending, about most of them, and "
         "which of "
         "them stands for each of points (n, 3) mm with normals (n, 3): of those in a cube that "
         "belong "
         "to one of groups (n,) and face the same way the one nearest to their middle, or one of "
-        "keep. "
-        "The cubes have edges of edge mm at first.");
+        "keep.");
     m.def(
         "replaced",
         [](const Array<std::uint32_t>& triangles, const Array<std::uint32_t>& place) {

@@ -229,12 +229,11 @@ def test_samples_are_thinned_as_one_by_one(groups, most):
 def test_thinning_refuses_what_does_not_fit():
     points, groups = np.eye(3), np.zeros(3)
     for code, wrong in [
-        ("thinning.counts", (points, points[:2], groups, 1, 1.0, [])),
-        ("thinning.counts", (points, points, groups[:2], 1, 1.0, [])),
-        ("thinning.size", (points, points, groups, 0, 1.0, [])),
-        ("thinning.size", (points, points, groups, 1, float("nan"), [])),
-        ("thinning.keep", (points, points, groups, 1, 1.0, [3])),
-        ("call.thinning_rows", (points[:, :2], points, groups, 1, 1.0, [])),
+        ("thinning.counts", (points, points[:2], groups, 1, [])),
+        ("thinning.counts", (points, points, groups[:2], 1, [])),
+        ("thinning.size", (points, points, groups, 0, [])),
+        ("thinning.keep", (points, points, groups, 1, [3])),
+        ("call.thinning_rows", (points[:, :2], points, groups, 1, [])),
     ]:
         with pytest.raises(InputError) as error:
             core.thinned(*wrong)
@@ -242,7 +241,7 @@ def test_thinning_refuses_what_does_not_fit():
     with pytest.raises(InputError) as error:
         core.replaced(np.array([[0, 1, 3]]), np.arange(3))
     assert error.value.code == "thinning.corner"
-    chosen, place = core.thinned(points, points, np.arange(3), 1, 1.0, [])  # as few as the groups allow
+    chosen, place = core.thinned(points, points, np.arange(3), 1, [])  # as few as the groups allow
     assert chosen.tolist() == place.tolist() == [0, 1, 2]
 
 

@@ -95,8 +95,7 @@ def thinned(points, normals, groups, most, keep=()):
     count = len(points)
     if count <= most:
         return np.arange(count), np.arange(count)
-    edge = max(float(np.linalg.norm(np.ptp(points, axis=0))) / count**0.5, 1e-9)
-    return core.thinned(points, normals, groups, most, edge, np.asarray(keep, dtype=np.uint32))
+    return core.thinned(points, normals, groups, most, np.asarray(keep, dtype=np.uint32))
 
 
 def proper_edges(edges):

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/lanes.h"
 #include "base/large_memory.h"
 #include "base/parallel.h"
 
@@ -15,7 +16,9 @@ constexpr std::size_t kVerticesOfBlock = 64;  // that are projected or passed ov
 constexpr std::size_t kBlocksOfTask = 1U << 9U;
 constexpr std::size_t kChunksOfTask = 1U << 8U;
 constexpr double kBeside =
-    1e-5;                        // of places in the picture, and in rays: far beyond their rounding
+    1e-5;  // of places in the picture, and in rays: far beyond their rounding
+constexpr std::size_t kAtOnce = 4;  // columns
+using Lanes = double __attribute__((vector_size(8 * kAtOnce)));
 constexpr float kNarrow = 4.0F;  // columns, up to which all rays of a row are tried
 
 /// A triangle's edge, seen from its third corner's side: a ray's signed distance from it, times
@@ -23,7 +26,7 @@ constexpr float kNarrow = 4.0F;  // columns, up to which all rays of a row are t
 /// a ray, to the bit, and no ray slips through between them.
 class Edge {
   public:
-    Edge(double px, double py, double qx, double qy) {
+    BELTGRINDING_INLINE Edge(double px, double py, double qx, double qy) {
         const bool turned = qx < px || (qx == px && qy < py);
         x_ = turned ? qx : px;
         y_ = turned ? qy : py;
@@ -34,9 +37,9 @@ class Edge {
     void turn() { sign_ = -sign_; }
     /// Readies it for a row.
     void at_row(double y) { row_ = dx_ * (y - y_); }
-    double at(double x) const { return sign_ * (row_ - dy_ * (x - x_)); }
+    BELTGRINDING_INLINE Lanes at(const Lanes& x) const { return sign_ * (row_ - dy_ * (x - x_)); }
     /// Narrows the row's columns [from, to] to about those on the inner side.
-    void narrow(double& from, double& to) const {
+    BELTGRINDING_INLINE void narrow(double& from, double& to) const {
         const double slope = sign_ * dy_;
         if (slope == 0.0) return;
         const double x = x_ + row_ / dy_;
@@ -51,7 +54,38 @@ class Edge {
     double x_, y_, dx_, dy_, sign_, row_ = 0.0;
 };
 
-std::uint32_t number_of(std::span<const std::uint32_t> first, std::uint32_t triangle) {
+/// What is the same of a triangle in all its rows.
+struct Plane {
+    std::uint32_t triangle;
+    double depth, to_b, to_c;  // of its first corner; what the others are farther
+    float nearest;             // what lies before is not met
+};
+
+/// Draws the columns [from, to] of a row, kAtOnce of them together.
+BELTGRINDING_INLINE void draw_row(const std::array<Edge, 3>& edges, double from, double to,
+                                  const Plane& plane, RayHit* row) {
+    for (double x = from; x <= to; x += kAtOnce) {
+        const Lanes columns = x + Lanes{0.0, 1.0, 2.0, 3.0};
+        const Lanes wa = edges[0].at(columns), wb = edges[1].at(columns), wc = edges[2].at(columns);
+        const Lanes whole = wa + wb + wc;
+        const auto inside =
+            (wa >= 0.0) & (wb >= 0.0) & (wc >= 0.0) & (whole > 0.0) & (columns <= to);
+        if ((inside[0] | inside[1] | inside[2] | inside[3]) == 0) continue;
+        const Lanes u = wb / whole, v = wc / whole;
+        const Lanes depth = plane.depth + u * plane.to_b + v * plane.to_c;
+        RayHit* hit = row + static_cast<std::size_t>(x);
+        for (std::size_t k = 0; k < kAtOnce; ++k) {
+            if (inside[k] == 0) continue;
+            const auto there = static_cast<float>(depth[k]);
+            if (there < hit[k].depth && there >= plane.nearest)
+                hit[k] = {there, plane.triangle, static_cast<float>(u[k]),
+                          static_cast<float>(v[k])};
+        }
+    }
+}
+
+BELTGRINDING_INLINE std::uint32_t number_of(std::span<const std::uint32_t> first,
+                                            std::uint32_t triangle) {
     std::uint32_t mesh = 0;
     while (triangle >= first[mesh + 1]) ++mesh;
     return mesh;
@@ -224,13 +258,8 @@ void Rasteriser::sort_into_bands(const RunContext& context) {
                     });
 }
 
-void Rasteriser::rasterise(std::uint32_t b, std::span<RayHit> hits) const {
-    std::fill(hits.begin(), hits.end(), RayHit{});
-    for (std::size_t k = begin_[b]; k < begin_[b + 1]; ++k) draw(order_[k], b * band_, hits);
-}
-
-void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
-                      std::span<RayHit> hits) const {
+BELTGRINDING_INLINE void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
+                                          std::span<RayHit> hits) const {
     const std::uint32_t mesh = number_of(first_, triangle);
     const Triangle& t = meshes_[mesh][triangle - first_[mesh]];
     const Corner* corners = corners_.data() + first_corner_[mesh];
@@ -252,6 +281,7 @@ void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
     const float bottom = std::floor(std::min(std::max({a.y, b.y, c.y}), to_row));
     const double depth = a.depth, to_b = static_cast<double>(b.depth) - depth,
                  to_c = static_cast<double>(c.depth) - depth;
+    const auto nearest = static_cast<float>(-grid_.start);
     for (float y = top; y <= bottom; y += 1.0F) {
         double from = left, to = right;
         for (Edge& edge : edges) {
@@ -259,19 +289,14 @@ void Rasteriser::draw(std::uint32_t triangle, std::uint32_t first_row,
             if (right - left > kNarrow) edge.narrow(from, to);
         }
         if (!(from <= to)) continue;
-        RayHit* row = hits.data() + static_cast<std::size_t>(y - from_row) * grid_.columns;
-        const auto last = static_cast<std::uint32_t>(to);
-        for (auto x = static_cast<std::uint32_t>(std::ceil(from)); x <= last; ++x) {
-            const double wa = edges[0].at(x), wb = edges[1].at(x), wc = edges[2].at(x);
-            if (wa < 0.0 || wb < 0.0 || wc < 0.0) continue;
-            const double whole = wa + wb + wc;
-            if (!(whole > 0.0)) continue;
-            const double u = wb / whole, v = wc / whole;
-            const auto there = static_cast<float>(depth + u * to_b + v * to_c);
-            if (there < row[x].depth && there >= static_cast<float>(-grid_.start))
-                row[x] = {there, triangle, static_cast<float>(u), static_cast<float>(v)};
-        }
+        draw_row(edges, std::ceil(from), std::floor(to), {triangle, depth, to_b, to_c, nearest},
+                 hits.data() + static_cast<std::size_t>(y - from_row) * grid_.columns);
     }
+}
+
+BELTGRINDING_CLONES void Rasteriser::rasterise(std::uint32_t b, std::span<RayHit> hits) const {
+    std::fill(hits.begin(), hits.end(), RayHit{});
+    for (std::size_t k = begin_[b]; k < begin_[b + 1]; ++k) draw(order_[k], b * band_, hits);
 }
 
 }  // namespace beltgrinding

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "rasteriser.h"
@@ -88,7 +89,7 @@ class Shader {
   public:
     Shader(const std::vector<ColouredSurface>& surfaces, const View& view)
         : surfaces_(surfaces), view_(view) {}
-    Spot operator()(const RayHit& hit) {
+    BELTGRINDING_INLINE Spot operator()(const RayHit& hit) {
         Spot spot;
         if (!hit.met()) return spot;
         if (hit.triangle != triangle_) take(hit.triangle);
@@ -141,16 +142,22 @@ class Shader {
 };
 
 /// True if an outline runs between neighbouring rays, `side` (right or down) apart.
-bool outlined(const Spot& a, const Spot& b, const Vec3f& side, const View& view) {
+BELTGRINDING_INLINE bool outlined(const Spot& a, const Spot& b, const Vec3f& side,
+                                  const View& view) {
     if (a.triangle == b.triangle && a.facing) return false;
     if (!a.met() || !b.met()) return a.met() != b.met();
     if (a.normal.dot(b.normal) < kCreaseCosine) return true;
+    const float leap = std::abs(a.depth - b.depth) / view.step;
+    if (leap <= kDepthJump) return false;
     const auto slope = [&](const Spot& s) {  // depth gained on the way to the neighbour, at most
         const float facing = std::max(-s.normal.dot(view.into), kLeastFacing);
         return std::abs(s.normal.dot(side)) / facing;
     };
-    const float leap = std::abs(a.depth - b.depth) / view.step;
     return leap > kDepthJump + 2.0F * std::max(slope(a), slope(b));
+}
+
+BELTGRINDING_CLONES void shade_row(Shader& shade, std::span<const RayHit> hits, Spot* spots) {
+    for (const RayHit& hit : hits) *spots++ = shade(hit);
 }
 
 /// What a band of rows is drawn in.
@@ -187,7 +194,8 @@ std::uint8_t byte_of(float value) {
 }
 
 /// Draws row `y` of pixels from the spots of its rows of rays and of the next one.
-void draw_row(const View& view, std::span<const Spot> spots, std::size_t y, Picture& picture) {
+BELTGRINDING_CLONES void draw_row(const View& view, std::span<const Spot> spots, std::size_t y,
+                                  Picture& picture) {
     const std::size_t columns = view.grid.columns;
     for (std::size_t x = 0; x < picture.width; ++x) {
         Vec3f sum = Vec3f::Zero();
@@ -219,14 +227,29 @@ struct Renderer::Scene {
     View view_of(const Camera& camera, std::size_t width, std::size_t height) const;
     /// Made when first asked for: many a picture needs none.
     const SightLines& lines() const;
+    /// The triangles as they are drawn, made when first asked for.
+    const std::vector<Rasteriser::Mesh>& meshes() const;
 
     Spare<Rasteriser> rasterisers;
     Spare<Band> bands;
 
   private:
-    mutable std::once_flag asked;
+    mutable std::once_flag asked, asked_meshes;
     mutable std::optional<SightLines> made;
+    mutable std::vector<std::vector<Box>> boxes;
+    mutable std::vector<Rasteriser::Mesh> drawn;
 };
+
+const std::vector<Rasteriser::Mesh>& Renderer::Scene::meshes() const {
+    std::call_once(asked_meshes, [this] {
+        boxes.reserve(surfaces.size());
+        for (const ColouredSurface& one : surfaces) {
+            boxes.push_back(boxes_of(one.vertices, one.triangles));
+            drawn.push_back({one.vertices, one.triangles, boxes.back()});
+        }
+    });
+    return drawn;
+}
 
 const SightLines& Renderer::Scene::lines() const {
     std::call_once(asked, [this] {
@@ -295,7 +318,10 @@ const Box& Renderer::extents() const {
 }
 
 std::vector<std::uint8_t> Renderer::seen(const std::vector<Vec3>& points,
-                                         const std::vector<Vec3>& directions, double slack) const {
+                                         const std::vector<Vec3>& directions, double slack,
+                                         std::span<const std::uint8_t> asked) const {
+    if (!asked.empty() && asked.size() != points.size() * directions.size())
+        throw InputError("picture.asked", "picture: a line of sight has a point and a direction");
     std::vector<std::uint8_t> seen(points.size() * directions.size());
     std::vector<SightLines::Way> ways;
     ways.reserve(directions.size());
@@ -303,8 +329,11 @@ std::vector<std::uint8_t> Renderer::seen(const std::vector<Vec3>& points,
     const SightLines& lines = scene_->lines();
     parallel_blocks(points.size(), kPointsOfTask, {}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
-            for (std::size_t d = 0; d < ways.size(); ++d)
-                seen[p * ways.size() + d] = lines.hidden(points[p], ways[d], slack) ? 0 : 1;
+            for (std::size_t d = 0; d < ways.size(); ++d) {
+                const std::size_t at = p * ways.size() + d;
+                if (!asked.empty() && asked[at] == 0) continue;
+                seen[at] = lines.hidden(points[p], ways[d], slack) ? 0 : 1;
+            }
         }
     });
     return seen;
@@ -357,22 +386,19 @@ Picture Renderer::render(const Camera& camera, std::size_t width, std::size_t he
     Picture picture{width, height, std::vector<std::uint8_t>(3 * width * height),
                     std::vector<float>(width * height)};
     const std::size_t columns = view.grid.columns;
-    std::vector<Rasteriser::Mesh> meshes;
-    for (const ColouredSurface& one : scene_->surfaces)
-        meshes.push_back({one.vertices, one.triangles});
     std::unique_ptr<Rasteriser> rasteriser = scene_->rasterisers.take();
-    rasteriser->lay_out(meshes, view.grid, kRowsOfTask * kRays, context);
+    rasteriser->lay_out(scene_->meshes(), view.grid, kRowsOfTask * kRays, context);
     parallel_blocks(height, kRowsOfTask, context, [&](std::size_t begin, std::size_t end) {
         std::unique_ptr<Band> band = scene_->bands.take();
         band->hits.resize((kRowsOfTask * kRays + 1) * columns);
         band->spots.resize((kRays + 1) * columns);
         rasteriser->rasterise(static_cast<std::uint32_t>(begin / kRowsOfTask), band->hits);
         Shader shade(scene_->surfaces, view);
-        const RayHit* hit = band->hits.data();
-        for (std::size_t i = 0; i < columns; ++i) band->spots[i] = shade(*hit++);
+        std::span<const RayHit> hits = band->hits;
+        shade_row(shade, hits.first(columns), band->spots.data());
         for (std::size_t y = begin; y < end; ++y) {
-            for (std::size_t i = columns; i < band->spots.size(); ++i)
-                band->spots[i] = shade(*hit++);
+            shade_row(shade, hits.subspan(columns, kRays * columns), band->spots.data() + columns);
+            hits = hits.subspan(kRays * columns);
             draw_row(view, band->spots, y, picture);
             std::copy_n(band->spots.end() - static_cast<std::ptrdiff_t>(columns), columns,
                         band->spots.begin());

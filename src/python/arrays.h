@@ -85,6 +85,7 @@ void bind_section(py::module_& m);
 void bind_verdict(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_picture(py::module_& m);
+void bind_thinning(py::module_& m);
 void bind_collision(py::module_& m);
 void bind_toolpath(py::module_& m);
 

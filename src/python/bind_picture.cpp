@@ -85,21 +85,26 @@ void bind_picture(py::module_& m) {
         .def(
             "seen",
             [](const Renderer& renderer, const Array<double>& points,
-               const Array<double>& directions, double slack) {
+               const Array<double>& directions, double slack,
+               const std::optional<Array<std::uint8_t>>& asked) {
                 const auto from = rows_of<Vec3, double>(points, "points");
                 const auto ways = rows_of<Vec3, double>(directions, "directions");
+                std::span<const std::uint8_t> wanted;
+                if (asked) wanted = {asked->data(), static_cast<std::size_t>(asked->size())};
                 std::vector<std::uint8_t> seen;
                 {
                     const py::gil_scoped_release release;
-                    seen = renderer.seen(from, ways, slack);
+                    seen = renderer.seen(from, ways, slack, wanted);
                 }
                 return own(std::move(seen))
                     .reshape({static_cast<py::ssize_t>(from.size()),
                               static_cast<py::ssize_t>(ways.size())});
             },
             py::arg("points"), py::arg("directions"), py::arg("slack"),
+            py::arg("asked") = py::none(),
             "Lines of sight, (n, m) uint8: 1 where nothing stands between points (n, 3) mm and a "
-            "camera far away in directions (m, 3); what lies within slack mm does not hide.")
+            "camera far away in directions (m, 3); what lies within slack mm does not hide. "
+            "asked: (n, m), where it is False nothing is looked for, and the answer is 0.")
         .def(
             "farthest",
             [](const Renderer& renderer, const Array<double>& directions) {

@@ -158,8 +158,12 @@ void bind_verdict(py::module_& m) {
         [](const HeightField& field, const py::list& zones) {
             std::vector<ToleranceZone> given;
             for (const auto& zone : zones) given.push_back(zone_from(zone));
-            const py::gil_scoped_release release;
-            return zone_of_samples(field, given);
+            std::vector<std::uint32_t> zone;
+            {
+                const py::gil_scoped_release release;
+                zone = zone_of_samples(field, given);
+            }
+            return own(std::move(zone));
         },
         py::arg("field"), py::arg("zones"), "(n,) number of the last zone that holds the sample.");
     m.def(

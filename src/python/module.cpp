@@ -95,6 +95,7 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_ground_mesh(m);
     bind_section(m);
     bind_picture(m);
+    bind_thinning(m);
     bind_verdict(m);
     bind_robot(m);
     bind_collision(m);

@@ -12,7 +12,7 @@ median of three, ``_cpu`` of processor time:
 - ground_mesh: the whole part as one closed mesh with the deviation's colours, PLY;
 - report: the HTML report with its pictures and 3D view, from a result in memory to the file's bytes;
 - of it report_pictures, report_view (the 3D view's data, made beside the pictures) and report_page (text, tables,
-  charts; two of them are made, one without the view);
+  charts);
 - write, read: all files of the result, and back;
 - total: verdict, mesh and report, one after the other.
 """
@@ -47,7 +47,7 @@ def works(result, folder):
 
     def reported():
         content = report.load(result)
-        return report.render(content, Language("en"))[1].encode()
+        return report.render(content, Language("en"), still=False)[1].encode()
 
     def read():
         return Result.read(folder)

@@ -187,14 +187,62 @@ def large_field(count):
     return field, k
 
 
-@pytest.mark.parametrize(
-    "count, most", [(1, 1), (50, 7), (4000, 30_000), (4000, 40_000), (300, 2**60)]
-)
-def test_keys_are_numbered_as_sorting_numbers_them(count, most):
-    keys = np.random.default_rng(count).integers(0, most, count)
-    first, number = view_mesh._numbered(keys)
-    _, expected, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    assert (first == expected).all() and (number == inverse).all()
+def thinned_slowly(points, normals, groups, most, keep):
+    """What ``view_mesh.thinned`` promises, sample by sample."""
+    low, size = points.min(axis=0), np.ptp(points, axis=0)
+    edge = np.linalg.norm(size) / len(points) ** 0.5
+    while True:
+        firsts, found = {}, {}
+        for i, cell in enumerate(np.floor((points - low) / edge).astype(int).tolist()):
+            cube = (groups[i], *cell)
+            first = firsts.setdefault(cube, i)
+            found.setdefault((cube, bool((normals[i] * normals[first]).sum() < 0.0)), []).append(i)
+        if len(found) <= most:
+            break
+        edge *= max(1.02, (len(found) / most) ** 0.5)
+    place = np.empty(len(points), dtype=int)
+    for samples in found.values():
+        away = np.linalg.norm(points[samples] - points[samples].sum(axis=0) / len(samples), axis=1)
+        kept = [i for i in samples if i in keep]
+        place[samples] = kept[0] if kept else samples[int(np.argmin(away))]
+    return np.unique(place, return_inverse=True)
+
+
+@pytest.mark.parametrize("groups, most", [(1, 10), (1, 700), (4, 300)])
+def test_samples_are_thinned_as_one_by_one(groups, most):
+    random = np.random.default_rng(7)
+    points = random.normal(size=(3000, 3)) * [30.0, 5.0, 0.2]
+    points[500:600] = points[500]  # in one place
+    normals = random.normal(size=(3000, 3)).astype(np.float32)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    groups, keep = random.integers(0, groups, 3000), [2900, 17, 560, 18]
+    chosen, place = view_mesh.thinned(points, normals, groups, most, keep)
+    wanted, wanted_place = thinned_slowly(points, normals, groups, most, keep)
+    assert len(chosen) <= most
+    np.testing.assert_array_equal(chosen, wanted)
+    np.testing.assert_array_equal(place, wanted_place)
+    triangles = random.integers(0, 3000, (500, 3)).astype(np.uint32)
+    moved = [t for t in place[triangles].tolist() if len(set(t)) == 3]
+    assert core.replaced(triangles, place).tolist() == moved
+
+
+def test_thinning_refuses_what_does_not_fit():
+    points, groups = np.eye(3), np.zeros(3)
+    for code, wrong in [
+        ("thinning.counts", (points, points[:2], groups, 1, [])),
+        ("thinning.counts", (points, points, groups[:2], 1, [])),
+        ("thinning.size", (points, points, groups, 0, [])),
+        ("thinning.keep", (points, points, groups, 1, [3])),
+        ("call.thinning_rows", (points[:, :2], points, groups, 1, [])),
+    ]:
+        with pytest.raises(InputError) as error:
+            core.thinned(*wrong)
+        assert error.value.code == code
+    with pytest.raises(InputError) as error:
+        core.replaced(np.array([[0, 1, 3]]), np.arange(3))
+    assert error.value.code == "thinning.corner"
+    chosen, place = core.thinned(points, points, np.arange(3), 1, [])  # as few as the groups allow
+    assert chosen.tolist() == place.tolist() == [0, 1, 2]
 
 
 @pytest.mark.parametrize("corners", [3, 40, 2**21, 2**21 + 1, 2**31])

@@ -163,6 +163,13 @@ TEST(Renderer, SeesPastWhatDoesNotHideAPoint) {
     EXPECT_EQ(renderer.seen(points, ways, 0.01), expected);
     EXPECT_EQ(renderer.seen({{0, 0, 0}}, {{0, 0, 1}}, 1.5), std::vector<std::uint8_t>{1});
     EXPECT_TRUE(renderer.seen({}, ways, 0.01).empty());
+    std::vector<std::uint8_t> asked(expected.size());
+    for (std::size_t k = 0; k < asked.size(); ++k) asked[k] = k % 3 != 0 ? 1 : 0;
+    const auto seen = renderer.seen(points, ways, 0.01, asked);
+    for (std::size_t k = 0; k < asked.size(); ++k)
+        EXPECT_EQ(seen[k], asked[k] != 0 ? expected[k] : 0) << k;
+    asked.pop_back();
+    EXPECT_THROW(renderer.seen(points, ways, 0.01, asked), InputError);
 }
 
 TEST(Renderer, KnowsItsFarthestVertices) {

@@ -170,6 +170,51 @@ TEST(Rasteriser, MeetsNothingOfWhatHasNoArea) {
     EXPECT_EQ(compare(rasteriser, {{}, {}}, grid_of(9, 9, 10.0), 4, 0.0), 0U);
 }
 
+TEST(Rasteriser, PassesOverBoxesBesideThePictureAndNothingElse) {
+    std::mt19937 random(9);
+    Lattice lattice = random_lattice(40 * kTrianglesOfBox + 7, false, random);
+    // Neighbours lie together, as those of a surface do; some boxes far away, or without end.
+    for (std::size_t i = 0; i < lattice.places.size(); ++i) {
+        const auto box = static_cast<std::int64_t>(i / 3 / kTrianglesOfBox);
+        for (std::size_t k = 0; k < 2; ++k)
+            lattice.places[i][k] =
+                lattice.places[i][k] / 3 + (k == 0 ? box % 7 : box / 7) * 140 - 300;
+    }
+    const Lattice few = random_lattice(9, true, random);
+    for (const auto& [columns, rows] :
+         {std::pair(20U, 30U), {9U, 120U}, {130U, 8U}, {200U, 200U}}) {
+        const RayGrid grid = grid_of(columns, rows, 6.0);
+        std::vector<Vec3> vertices = vertices_of(lattice, grid), others = vertices_of(few, grid);
+        vertices[3 * kTrianglesOfBox] = {1e300, -1e300, 0.0};
+        const auto boxes = boxes_of(vertices, lattice.triangles);
+        const auto other_boxes = boxes_of(others, few.triangles);
+        Rasteriser all, chosen;
+        all.lay_out(
+            std::vector<Rasteriser::Mesh>{{others, few.triangles}, {vertices, lattice.triangles}},
+            grid, 8, {});
+        // The corners of an earlier, wider picture are no longer there.
+        chosen.lay_out(std::vector<Rasteriser::Mesh>{{others, few.triangles}}, grid_of(9, 9, 1.0),
+                       8, {});
+        chosen.lay_out(std::vector<Rasteriser::Mesh>{{others, few.triangles, other_boxes},
+                                                     {vertices, lattice.triangles, boxes}},
+                       grid, 8, {});
+        std::vector<RayHit> wanted(std::size_t{9} * columns), hits(wanted.size());
+        std::size_t met = 0;
+        for (std::uint32_t b = 0; b < all.bands(); ++b) {
+            all.rasterise(b, wanted);
+            chosen.rasterise(b, hits);
+            for (std::size_t i = 0; i < hits.size(); ++i) {
+                met += wanted[i].met() ? 1 : 0;
+                EXPECT_EQ(hits[i].depth, wanted[i].depth);
+                EXPECT_EQ(hits[i].triangle, wanted[i].triangle);
+                EXPECT_EQ(hits[i].u, wanted[i].u);
+                EXPECT_EQ(hits[i].v, wanted[i].v);
+            }
+        }
+        EXPECT_GT(met, 20U);
+    }
+}
+
 TEST(Rasteriser, LeavesOutWhatNoNumberHolds) {
     // Finite, and so far away that single precision has no number for it.
     const std::vector<Vec3> vertices{{1e300, 0, 0}, {0, 1e300, 0}, {4, -2, 8}};

@@ -103,7 +103,7 @@ class Studio:
             )
         self.renderer = core.Renderer(surfaces, context)
         self.corners = self.renderer.farthest(_ways())
-        self.lengths = field.points.max(axis=0) - field.points.min(axis=0)
+        self.lengths = np.array([np.ptp(column) for column in field.points.T])  # faster than by rows
 
     def view(
         self, target, direction, up, height, columns=WIDTH, rows=HEIGHT, near=np.inf, context=None

@@ -43,10 +43,10 @@ class Sides:
         chosen = thinned(len(points))
         ways = around()
         self.ways = ways[np.abs(ways).max(axis=1) < ALONG_AXIS]
-        seen = renderer.seen(points[chosen], self.ways, slack)
+        facing = np.clip(normals[chosen] @ self.ways.T, 0.0, None)
+        seen = renderer.seen(points[chosen], self.ways, slack, facing > 0.0)
         weights = np.asarray(areas, dtype=float)[chosen]
         weights /= max(weights.sum(), 1e-300)
-        facing = np.clip(normals[chosen] @ self.ways.T, 0.0, None)
         self.shown = weights[:, None] * seen * facing  # area in the picture, by point and direction
 
     def front(self):
@@ -73,9 +73,8 @@ def towards(renderer, points, normals, preferred, slack, liking=0.5):
     points, normals = np.atleast_2d(points), np.atleast_2d(normals)
     preferred = np.asarray(preferred, dtype=float) / np.linalg.norm(preferred)
     ways = np.vstack([preferred, around()])
-    seen = renderer.seen(points, ways, slack).astype(bool)
     facing = np.asarray(normals, dtype=float) @ ways.T
-    seen &= facing > 0.05
+    seen = renderer.seen(points, ways, slack, facing > 0.05).astype(bool)
     weights = np.full(len(points), 0.5 / max(len(points) - 1, 1))
     weights[0] = 0.5 if len(points) > 1 else 1.0
     # At 45 degrees a place is seen as well as one could wish.

@@ -160,7 +160,7 @@ def lower_limits(job, field):
 def zone_of_samples(job, field):
     """(n,) number of the zone of a job that holds each sample; that of all zones: none of them."""
     rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
-    return np.asarray(core.zone_of_samples(field, _core_zones(zones, rest)))
+    return core.zone_of_samples(field, _core_zones(zones, rest))
 
 
 def limits(job, field):

@@ -106,7 +106,7 @@ def _mesh(field, most, keep):
     chosen, place = view_mesh.thinned(field.points, field.normals, groups, most, keep)
     triangles = field.triangles
     if len(chosen) < field.size:
-        triangles = view_mesh.proper_triangles(place[triangles])
+        triangles = view_mesh.proper_triangles(core.replaced(triangles, place))
     if few:
         return chosen, triangles, view_mesh.borders(triangles)
     sharp = view_mesh.creases(field.points, field.normals, field.triangles)
@@ -134,7 +134,7 @@ def _rest(content, context):
         return corners, normals, triangles
     same = np.zeros(len(corners), dtype=np.int64)
     kept, place = view_mesh.thinned(corners, normals, same, MOST_TRIANGLES // 2)
-    return corners[kept], normals[kept], view_mesh.proper_triangles(place[triangles])
+    return corners[kept], normals[kept], view_mesh.proper_triangles(core.replaced(triangles, place))
 
 
 def _solid(shape, field):

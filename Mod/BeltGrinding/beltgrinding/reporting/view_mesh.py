@@ -5,11 +5,12 @@ import zlib
 
 import numpy as np
 
+from ..engine import core
+
 STEPS = 65534  # of a quantised value
 MISSING = 65535  # its code where there is none
 SHARP = np.cos(np.radians(25.0))  # of the turn at an edge from which it is drawn
 LEVEL = 7  # of 9: a third of the time of 9 for a twentieth more bytes
-COUNTED = 8  # numbers a key, up to which they are counted in a table
 KINDS = {"u1": np.uint8, "u2": np.uint16, "u4": np.uint32}
 
 
@@ -94,43 +95,7 @@ def thinned(points, normals, groups, most, keep=()):
     count = len(points)
     if count <= most:
         return np.arange(count), np.arange(count)
-    low, size = points.min(axis=0), np.ptp(points, axis=0)
-    labels = np.unique(groups, return_inverse=True)[1].reshape(-1)
-    edge = max(float(np.linalg.norm(size)) / count**0.5, 1e-9)
-    while True:
-        cells = np.floor((points - low) / edge).astype(np.int64)
-        spans = cells.max(axis=0) + 1
-        key = ((labels * spans[0] + cells[:, 0]) * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-        one, cluster = _numbered(key)
-        behind = (normals * normals[one][cluster]).sum(axis=1) < 0.0  # of a thin wall
-        found, cluster = _numbered(2 * cluster + behind)
-        if len(found) <= most:
-            break
-        edge *= max(1.02, (len(found) / most) ** 0.5)
-    counts = np.bincount(cluster)
-    middle = np.stack([np.bincount(cluster, points[:, k]) / counts for k in range(3)], axis=1)
-    away = np.linalg.norm(points - middle[cluster], axis=1)
-    away[np.asarray(keep, dtype=int)] = -1.0
-    chosen = np.empty(len(found), dtype=np.int64)
-    order = np.argsort(away, kind="stable")[::-1]
-    chosen[cluster[order]] = order  # of several the last one stays
-    rank = np.argsort(np.argsort(chosen))  # in the samples' own order, which packs well
-    return np.sort(chosen), rank[cluster]
-
-
-def _numbered(keys):
-    """(first (k,), number (n,)) of whole ``keys`` (n,) from 0: where each that occurs stands first, and which
-    of them, ascending, every one is.
-    """
-    count, most = len(keys), int(keys.max(initial=0)) + 1
-    if most > COUNTED * count:
-        return np.unique(keys, return_index=True, return_inverse=True)[1:]
-    places = np.zeros(most, dtype=bool)  # a table is faster than sorting
-    places[keys] = True
-    number = (np.cumsum(places) - 1)[keys]
-    first = np.empty(np.count_nonzero(places), dtype=np.int64)
-    first[number[::-1]] = np.arange(count - 1, -1, -1)  # of several the last one stays
-    return first, number
+    return core.thinned(points, normals, groups, most, np.asarray(keep, dtype=np.uint32))
 
 
 def proper_edges(edges):

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "beltgrinding/geometry.h"
@@ -59,9 +60,11 @@ class Renderer {
 
     /// Lines of sight: 1 at [p * directions.size() + d] where nothing stands between `points[p]`
     /// and a camera far away in `directions[d]` (not zero, any length), else 0. What lies within
-    /// `slack` mm of a point does not hide it.
+    /// `slack` mm of a point does not hide it. `asked`, if not empty, has the same places: 0 where
+    /// the answer is not needed; it is 0 then.
     std::vector<std::uint8_t> seen(const std::vector<Vec3>& points,
-                                   const std::vector<Vec3>& directions, double slack) const;
+                                   const std::vector<Vec3>& directions, double slack,
+                                   std::span<const std::uint8_t> asked = {}) const;
 
     /// Of all vertices those that lie farthest along each direction, and against it; each once, in
     /// the surfaces' order.

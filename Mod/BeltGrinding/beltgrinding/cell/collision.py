@@ -10,9 +10,8 @@ import math
 import numpy as np
 
 from ..base import frames, kept
-from ..base.solids import box
 from ..engine import InputError, core
-from ..job import fork, machine as machines, workpiece
+from ..job import fork, free_run, machine as machines, workpiece
 from ..job.bodies import PART, PLATE, ROLLERS, STOCK, WHEEL
 from ..job.poses import program_name
 from ..presets import robot as robots, robot_shape
@@ -213,24 +212,18 @@ def machine_bodies(machine):
         return [(name, _mesh(*solid)) for name, solid in found]
     if machines.kind(machine) == machines.WHEEL:
         return []
-    run = machine["free_run"]
-    radius, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
-    found = []
+    run, found = machine["free_run"], []
+    radius = run["roller_radius_mm"]
     if radius > 0.0:
         roller = {"radius_mm": radius, "width_mm": run["width_mm"]}
         mesh = wheel_body({**roller, "crown_radius_mm": 0.0, "profile_mm": []}, 0.0)
-        for name, side in zip(ROLLERS, (-1.0, 1.0)):
-            middle = side * 0.5 * run["length_mm"] - run["position_mm"]
-            # The belt's inner face lies on them.
-            place = [middle, 0.0, -run["thickness_mm"]]
+        for name, middle in zip(ROLLERS, free_run.ends(machine)):
+            # A wheel's body has its axis at -radius.
+            place = [middle, 0.0, free_run.roller_height(machine) + radius]
             points = mesh.vertices + np.array(place, dtype=np.float32)
             found.append((name, core.TriangleMesh(points, mesh.triangles)))
     if machines.kind(machine) == machines.PLATEN:
-        platen = machine["platen"]
-        behind = run["thickness_mm"] + sum(layer["thickness_mm"] for layer in platen["layers"])
-        low = [-0.5 * platen["length_mm"], -half, -behind - platen["plate_thickness_mm"]]
-        high = [0.5 * platen["length_mm"], half, -behind]
-        found.append((PLATE, _mesh(*box(low, high))))
+        found.append((PLATE, _mesh(*free_run.plate(machine))))
     return found
 
 

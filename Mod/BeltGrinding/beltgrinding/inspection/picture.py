@@ -103,7 +103,8 @@ class Studio:
             )
         self.renderer = core.Renderer(surfaces, context)
         self.corners = self.renderer.farthest(_ways())
-        self.lengths = np.array([np.ptp(column) for column in field.points.T])  # faster than by rows
+        columns = field.points.T  # faster than by rows
+        self.lengths = np.array([np.ptp(column) for column in columns])
 
     def view(
         self, target, direction, up, height, columns=WIDTH, rows=HEIGHT, near=np.inf, context=None

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..cell import collision
 from ..engine import core
-from ..job import engine_input, machine as machines
+from ..job import engine_input, free_run, machine as machines
 
 CHECKS = 8.0  # of a wheel's radius, or a belt's width: that way from place to place that is looked at, along a pass
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
@@ -119,10 +119,9 @@ class Belt:
         self._roller = None
         if radius > 0.0:
             self._roller = {"radius": radius, "width": self.width}  # a cylinder
-            self._rollers = [
-                np.array([self._middle + 0.5 * side * self.length, 0.0, advance - thickness])
-                for side in (-1.0, 1.0)
-            ]
+            # Where a wheel would touch that stands as they do.
+            low = free_run.roller_height(machine) + radius + advance
+            self._rollers = [np.array([x, 0.0, low]) for x in free_run.ends(machine)]
 
     @property
     def name(self):

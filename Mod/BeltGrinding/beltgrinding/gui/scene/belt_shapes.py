@@ -9,9 +9,9 @@ import math
 import numpy as np
 
 from ...base.solids import box
-from ...job import fork
+from ...job import fork, free_run
 from ...job.bodies import PLATE, ROLLERS
-from ...objects.belt_machine import KEYS, KIND_KEYS, PLATEN, layers_of
+from ...objects.belt_machine import KEYS, KIND_KEYS, LAYERS, PLATEN, layers_of
 from ...objects.properties import to_job
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
@@ -22,25 +22,22 @@ AXES = 0.15  # of the free length
 
 def parts(machine):
     """{name of the body in events, or '' for what is none: node} of a free belt or platen in the document."""
-    found = {"": separator(material(BELT), triangles(*belt(machine), crease=0.8))}
-    found[""].addChild(axes(AXES * machine.RunLength.Value))
-    for name, middle in zip(ROLLERS, ends(machine)):
-        if machine.RollerRadius.Value > 0.0:
-            found[name] = separator(material(CORE), triangles(*roller(machine, middle)))
+    job = _of_job(machine)
+    found = {"": separator(material(BELT), triangles(*belt(job), crease=0.8))}
+    found[""].addChild(axes(AXES * job["free_run"]["length_mm"]))
+    for name, middle in zip(ROLLERS, free_run.ends(job)):
+        if job["free_run"]["roller_radius_mm"] > 0.0:
+            found[name] = separator(material(CORE), triangles(*roller(job, middle)))
     if machine.Kind == PLATEN:
-        plate, layers = platen(machine)
-        found[PLATE] = separator(material(CORE), triangles(*plate, crease=0.0))
-        for layer in layers:
+        found[PLATE] = separator(material(CORE), triangles(*free_run.plate(job), crease=0.0))
+        for layer in free_run.layers(job):
             found[""].addChild(separator(material(RUBBER), triangles(*layer, crease=0.0)))
     return found
 
 
 def fork_parts(machine):
     """{name of the body in events: node} of what holds a small wheel in the document: the belt's runs, the arms."""
-    job = {"belt_machine": {}}
-    to_job(machine, (*KIND_KEYS[machine.Kind], *KEYS), job)
-    job = job["belt_machine"]
-    found = {}
+    job, found = _of_job(machine), {}
     for name, side in zip(fork.NAMES, (-1.0, 1.0) if fork.holds(job) else ()):
         found[name] = separator(material(BELT), triangles(*fork.run(job, side), crease=0.0))
     arms = [triangles(*arm, crease=0.0) for arm in fork.arms(job)]
@@ -49,34 +46,37 @@ def fork_parts(machine):
     return found
 
 
-def ends(machine):
-    """x of the two rollers' axes."""
-    half, shift = 0.5 * machine.RunLength.Value, machine.RunPosition.Value
-    return -half - shift, half - shift
+def _of_job(machine):
+    """A job's ``belt_machine`` of one in the document; layers that were written by hand and are none are left out."""
+    keys = (key for key in KIND_KEYS[machine.Kind] if key is not LAYERS)
+    job = {"belt_machine": {}}
+    to_job(machine, (*keys, *KEYS), job)
+    if machine.Kind == PLATEN:
+        job["belt_machine"]["platen"]["layers"] = layers_of(machine)
+    return job["belt_machine"]
 
 
-def roller(machine, middle):
-    """(points, triangles) of a roller at x ``middle``, on whose top the belt's inner face lies."""
-    radius, half = machine.RollerRadius.Value, 0.5 * machine.RunWidth.Value
+def roller(job, middle):
+    """(points, triangles) of a roller at x ``middle``. ``job``: a job's belt_machine."""
+    run = job["free_run"]
+    radius, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
     line = np.array([[-half, 0.0], [-half, radius], [half, radius], [half, 0.0]])
     points, faces = revolved(line)
-    return points + [middle, 0.0, -machine.RunThickness.Value - radius], faces
+    return points + [middle, 0.0, free_run.roller_height(job)], faces
 
 
-def belt(machine):
+def belt(job):
     """(points, triangles) of the whole belt round its rollers; without rollers, of the free run."""
-    thickness = max(machine.RunThickness.Value, LEAST * machine.RunLength.Value)
-    inner, half = machine.RollerRadius.Value, 0.5 * machine.RunWidth.Value
-    first, last = ends(machine)
+    run = job["free_run"]
+    thickness = max(run["thickness_mm"], LEAST * run["length_mm"])
+    inner, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
+    first, last = free_run.ends(job)
     if inner <= 0.0:
         return box([first, -half, -thickness], [last, half, 0.0])
-    centre = -machine.RunThickness.Value - inner
+    centre, outer = free_run.roller_height(job), inner + run["thickness_mm"]
     angles = np.linspace(0.5 * math.pi, -0.5 * math.pi, TURN + 1)
     lines = []
-    for radius in (
-        inner + machine.RunThickness.Value - thickness,
-        inner + machine.RunThickness.Value,
-    ):
+    for radius in (outer - thickness, outer):
         x, z = radius * np.cos(angles), radius * np.sin(angles) + centre
         lines.append(np.stack([np.r_[last + x, first - x[::-1]], np.r_[z, z[::-1]]], axis=1))
     return band(*lines, half)
@@ -96,16 +96,3 @@ def band(inside, outside, half):
         found.append(np.stack([a + i, a + after, b + after], axis=1))
         found.append(np.stack([a + i, b + after, b + i], axis=1))
     return np.concatenate(rings), np.concatenate(found)
-
-
-def platen(machine):
-    """((points, triangles) of the plate, [the same of each layer on it])."""
-    half, long = 0.5 * machine.RunWidth.Value, 0.5 * machine.PlatenLength.Value
-    layers = layers_of(machine)
-    at = -machine.RunThickness.Value - sum(layer["thickness_mm"] for layer in layers)
-    plate = box([-long, -half, at - machine.PlateThickness.Value], [long, half, at])
-    found = []
-    for layer in layers:
-        found.append(box([-long, -half, at], [long, half, at + layer["thickness_mm"]]))
-        at += layer["thickness_mm"]
-    return plate, found

@@ -5173,8 +5173,8 @@ Kontakt: {:.0f} mm² bei {:.1f} x {:.1f} mm
 x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     </message>
     <message>
-        <source>there is no room</source>
-        <translation>kein Platz ist</translation>
+        <source>without room</source>
+        <translation>ohne Platz</translation>
     </message>
     <message>
         <source>Crossed from, °</source>

@@ -165,7 +165,7 @@ field("WhereItCollides").setCurrentIndex(1)
 field("Along").setCurrentIndex(2)
 type_in("Direction_x", "0")
 type_in("Direction_y", "1")
-wait(lambda: path.LeftOut > 5 and "does not fit" in field("rasterLeft").text())
+wait(lambda: path.LeftOut > 5 and "without room" in field("rasterLeft").text())
 assert path.LeftTriangles and path.ViewObject.Proxy.left.whichChild.getValue() == -3
 screenshot("left.png")
 field("WhereItCollides").setCurrentIndex(2)  # only warn

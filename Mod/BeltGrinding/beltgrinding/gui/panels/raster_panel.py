@@ -294,7 +294,7 @@ class RasterPanel(Panel):
     def _tell_left(self):
         """What the passes leave out, in the colours that it has on the part."""
         words = (
-            (NO_ROOM, self.obj.LeftOut, translate("BeltGrinding", "there is no room")),
+            (NO_ROOM, self.obj.LeftOut, translate("BeltGrinding", "without room")),
             (NO_PASS, self.obj.NoPass, translate("BeltGrinding", "without a pass")),
         )
         lines = []

@@ -5189,10 +5189,6 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <translation>Oberflächengüte</translation>
     </message>
     <message>
-        <source>Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more. The job must compute the finish</source>
-        <translation>Größte Rauheit, etwa 0,8; 0,8 T16%: Bis zu 16 % der Fläche dürfen mehr haben. Der Auftrag muss die Oberflächengüte berechnen</translation>
-    </message>
-    <message>
         <source>Grit</source>
         <translation>Körnung</translation>
     </message>
@@ -5281,8 +5277,28 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <translation>Rauheit und Rillenrichtung</translation>
     </message>
     <message>
-        <source>the measurements need the belt&apos;s grit</source>
-        <translation>die Messungen brauchen die Körnung des Bandes</translation>
+        <source>Exponents of Ra: {}</source>
+        <translation>Exponenten von Ra: {}</translation>
+    </message>
+    <message>
+        <source>Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more, or scratches that are not the lay&apos;s. The job must compute the finish</source>
+        <translation>Größte Rauheit, etwa 0,8; 0,8 T16%: Bis zu 16 % der Fläche dürfen mehr haben oder Spuren, die nicht in der Rillenrichtung liegen. Der Auftrag muss die Oberflächengüte berechnen</translation>
+    </message>
+    <message>
+        <source>belt speed</source>
+        <translation>Bandgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>give the belt&apos;s grit; {} to {} were measured</source>
+        <translation>die Körnung des Bandes angeben; gemessen wurden {} bis {}</translation>
+    </message>
+    <message>
+        <source>pressure</source>
+        <translation>Druck</translation>
+    </message>
+    <message>
+        <source>remaining cut</source>
+        <translation>verbliebene Schnittfähigkeit</translation>
     </message>
 </context>
 <context>

@@ -53,7 +53,7 @@ def validate(job, folder="."):
             )
     machine.filled(job["belt_machine"], schema()["properties"]["belt_machine"])
     machine.check(job)
-    _check_finish(job.get("finish"))
+    check_finish(job.get("finish"))
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
         compliance["surrogate_file"] = absolute(folder, compliance["surrogate_file"])
@@ -88,7 +88,8 @@ def validate(job, folder="."):
     return job
 
 
-def _check_finish(finish):
+def check_finish(finish):
+    """Raises InputError for a job's ``finish`` (None: none) that cannot be, though the schema takes it."""
     model = (finish or {}).get("model")
     if model is None:
         return

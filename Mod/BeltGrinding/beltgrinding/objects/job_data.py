@@ -1,13 +1,15 @@
 """The settings of a job in the document, its children, and the faces that it grinds."""
 
 import json
+from pathlib import Path
 
 import Part
 
+from ..base import schemas
 from ..engine import InputError
-from ..job import tolerances
+from ..job import load as loads, tolerances
 from .geometry import placed_shape
-from .properties import Key, to_job
+from .properties import Key, rule, to_job
 from .proxy import type_of
 
 KEYS = (
@@ -95,12 +97,27 @@ def zones(job):
 
 def set_zones(job, found):
     """Gives a job tolerance zones. Raises InputError, and leaves the old ones, for wrong ones."""
-    from ..base import schemas
-
-    rule = schemas.schema("job")["properties"]["inspection"]["properties"]["zones"]
-    found = schemas.checked(list(found), rule, "zones")
+    found = schemas.checked(list(found), rule("inspection.zones")[0], "zones")
     tolerances.check_zones(found, design(job)[1], bool(job.Finish))
     job.Zones = json.dumps(found) if found else ""
+
+
+def finish_model(path):
+    """A job's ``finish.model`` of the file that ``beltgrind calibrate-finish`` wrote. Raises InputError that names the
+    file.
+    """
+    found = schemas.read_json(Path(path))
+    try:
+        found = schemas.checked(found, rule("finish.model")[0], "model")
+        loads.check_finish({"grit": found["reference_grit"], "model": found})
+    except InputError as error:
+        raise InputError(
+            "objects.no_finish_model",
+            "{file}: is no measured roughness as beltgrind calibrate-finish writes it: {reason}",
+            file=path,
+            reason=error,
+        ) from None
+    return found
 
 
 def design(job):

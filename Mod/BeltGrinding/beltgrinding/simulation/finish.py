@@ -4,6 +4,21 @@ from ..engine import InputError, core
 from ..inspection import finish as figures
 
 
+def check_grit(given):
+    """Raises InputError where the grit of a job's ``finish`` is none that its model's measurements cover."""
+    span = given["model"]["ranges"]["grit"]
+    low, high = figures.widened(span)
+    if not low <= given["grit"] <= high:
+        raise InputError(
+            "job.grit_not_measured",
+            "{key}: a grit of {grit:g} was not measured (from {low:g} to {high:g}): its roughness is not known",
+            key="finish.grit",
+            grit=given["grit"],
+            low=span[0],
+            high=span[1],
+        )
+
+
 def options(job, warnings):
     """The dict that core.simulate takes as ``finish``; {} for a job without ``finish``, or one whose rigid tool has no
     pressure, which is told. Raises InputError for a grit that was not measured.
@@ -37,17 +52,7 @@ def options(job, warnings):
         )
         return found | {"roughness": 0.0}
     ranges = {key: figures.widened(span) for key, span in model["ranges"].items()}
-    low, high = ranges["grit"]
-    grit = given["grit"]
-    if not low <= grit <= high:
-        raise InputError(
-            "job.grit_not_measured",
-            "{key}: a grit of {grit:g} was not measured (from {low:g} to {high:g}): its roughness is not known",
-            key="finish.grit",
-            grit=grit,
-            low=model["ranges"]["grit"][0],
-            high=model["ranges"]["grit"][1],
-        )
+    check_grit(given)
     if rest is None:
         warnings.append(
             core.Fact(
@@ -57,7 +62,7 @@ def options(job, warnings):
                 key="finish.rest_per_pass",
             )
         )
-    factor = (grit / model["reference_grit"]) ** model["grit_exponent"]
+    factor = (given["grit"] / model["reference_grit"]) ** model["grit_exponent"]
     speeds = tuple(1000.0 * speed for speed in ranges["belt_speed_m_s"])
     return found | {
         "roughness": model["coefficient_um"] * factor,

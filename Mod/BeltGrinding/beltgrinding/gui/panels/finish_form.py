@@ -1,11 +1,13 @@
 """What the finish (roughness, lay) is computed with; a part of the job's panel."""
 
 import json
+import math
 
 from ...base import schemas
 from ...engine import InputError
-from ...objects.job_data import KEYS
+from ...objects.job_data import KEYS, finish_model
 from ...objects.properties import get_value, rule
+from ...simulation.finish import check_grit
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
 from ..common.theme import warning_style
@@ -24,6 +26,7 @@ class FinishForm(QtGui.QGroupBox):
     def __init__(self, job):
         super().__init__(translate("BeltGrinding", "Finish"))
         self.job, self.changed = job, lambda: None
+        self.before = {"crossing_angle_deg": ANGLE}  # what computing it again takes up
         self.rows = QtGui.QFormLayout(self)
         self.rows.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
@@ -102,9 +105,12 @@ class FinishForm(QtGui.QGroupBox):
         self._tell()
 
     def _chosen(self, index):
-        self.values = {"crossing_angle_deg": ANGLE} if index else None
+        if index:
+            self.values = self.before
+        else:
+            self.before, self.values = self.values, None
         self.show_values()
-        self._set()
+        self._typed()
 
     def _browse(self):
         title = translate("BeltGrinding", "Measured roughness")
@@ -115,11 +121,9 @@ class FinishForm(QtGui.QGroupBox):
     def read_model(self, path):
         """Takes over what ``beltgrind calibrate-finish`` wrote; says so where the file is none."""
         try:
-            model = schemas.checked(schemas.read_json(path), rule("finish.model")[0], "model")
+            model = finish_model(path)
         except InputError as error:
-            self._warn(
-                InputError("gui.no_finish_model", "{file}: {reason}", file=path, reason=error)
-            )
+            self._warn(error)
             return
         self._take_model(model)
 
@@ -127,11 +131,12 @@ class FinishForm(QtGui.QGroupBox):
         values = {key: value for key, value in self.values.items() if key != "model"}
         if model is not None:
             values["model"] = model
-            if "grit" not in values:
-                values["grit"] = model["reference_grit"]
+            low, high = model["ranges"]["grit"]
+            if low == high:  # of several nobody knows which one the belt has
+                values.setdefault("grit", low)
         self.values = values
         self.show_values()
-        self._set()
+        self._typed()
 
     def _typed(self):
         try:
@@ -159,19 +164,30 @@ class FinishForm(QtGui.QGroupBox):
                 found[key] = number(text)
             else:
                 found.pop(key, None)
-        if error is not None:
-            self._warn(error)
-            raise error
+        try:
+            if error is not None:
+                raise error
+            if "model" in found:
+                check_grit(found)
+        except InputError as one:
+            if error is None:
+                self.fields["grit"].setStyleSheet(WRONG)
+            self._warn(one)
+            raise
         return found
 
     def _reason(self, key, text):
         if not text:
             if key == "grit" and "model" in self.values:
-                return translate("BeltGrinding", "the measurements need the belt's grit")
+                low, high = self.values["model"]["ranges"]["grit"]
+                needed = translate("BeltGrinding", "give the belt's grit; {} to {} were measured")
+                return needed.format(shown(low), shown(high))
             return ""
         try:
             value = number(text)
         except ValueError:
+            return translate("BeltGrinding", "This is no number: {}").format(text)
+        if not math.isfinite(value):
             return translate("BeltGrinding", "This is no number: {}").format(text)
         if key == "rest_per_pass":
             if not 0.0 <= value < 1.0:
@@ -202,9 +218,6 @@ class FinishForm(QtGui.QGroupBox):
             )
             self.told.setText(text)
             return
-        low, high = model["ranges"]["grit"]
-        if not low <= given.get("grit", low) <= high:
-            self.told.setStyleSheet(warning_style())
         names = {
             "grit": translate("BeltGrinding", "grit"),
             "pressure_MPa": "MPa",
@@ -212,11 +225,19 @@ class FinishForm(QtGui.QGroupBox):
             "feed_mm_s": "mm/s",
             "remaining_cut": translate("BeltGrinding", "of a fresh belt's cut"),
         }
-        spans = (
-            f"{model['ranges'][key][0]:g} … {model['ranges'][key][1]:g} {names[key]}"
-            for key in RANGES
-        )
+        spans = (f"{_span(*model['ranges'][key])} {names[key]}" for key in RANGES)
         lines = [translate("BeltGrinding", "Measured: {}").format("; ".join(spans))]
+        exponents = (
+            f"{model[key]:+.2g} {text}"
+            for key, text in (
+                ("grit_exponent", translate("BeltGrinding", "grit")),
+                ("pressure_exponent", translate("BeltGrinding", "pressure")),
+                ("belt_speed_exponent", translate("BeltGrinding", "belt speed")),
+                ("feed_exponent", translate("BeltGrinding", "feed")),
+                ("wear_exponent", translate("BeltGrinding", "remaining cut")),
+            )
+        )
+        lines.append(translate("BeltGrinding", "Exponents of Ra: {}").format("; ".join(exponents)))
         if model["source"]:
             lines.append(model["source"])
         if given.get("rest_per_pass", model.get("rest_per_pass")) is None:
@@ -245,3 +266,8 @@ class FinishForm(QtGui.QGroupBox):
     def check(self):
         """Raises InputError for the first field with a mistake."""
         self.read()
+
+
+def _span(low, high):
+    """What was measured, from least to greatest."""
+    return f"{low:g} … {high:g}" if low < high else f"{low:g}"

@@ -9,6 +9,7 @@ from ...objects import job_data
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
+from ..widgets.rows import shown
 from .job_panel import FaceGate
 from .panel import Panel
 
@@ -68,8 +69,8 @@ class ZonesPanel(Panel):
             THICK: translate("BeltGrinding", "Upper limit of the thickness against the design's"),
             RA: translate(
                 "BeltGrinding",
-                "Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more. The job must compute "
-                "the finish",
+                "Greatest roughness, such as 0.8; 0.8 T16%: up to 16 % of the area may have more, or "
+                "scratches that are not the lay's. The job must compute the finish",
             ),
             LAY: translate(
                 "BeltGrinding",
@@ -116,10 +117,10 @@ class ZonesPanel(Panel):
             texts[NAME] = zone["name"]
             texts[FACES] = " ".join(map(str, zone.get("faces", [])))
             if "edge_radius_mm" in zone:
-                texts[EDGE] = f"{zone['edge_radius_mm']:g}"
+                texts[EDGE] = shown(zone["edge_radius_mm"])
             for low, high, key in LIMITS:
                 if key in zone:
-                    texts[low], texts[high] = (f"{value:g}" for value in zone[key])
+                    texts[low], texts[high] = (shown(value) for value in zone[key])
             finish = zone.get("finish", {})
             texts[RA], texts[LAY] = _ra_text(finish), _lay_text(finish)
             for k, text in enumerate(texts):
@@ -161,16 +162,17 @@ class ZonesPanel(Panel):
         """A zone's ``finish``; {} where the drawing calls for none."""
         found, words = {}, self.text(row, RA).split()
         if words:
-            found["Ra_max_um"] = self._number(row, RA, words[0])
-            if len(words) > 2 or (len(words) == 2 and words[1] not in ACCEPTANCES):
+            if words[-1] in ACCEPTANCES:  # may stand alone: it counts for the lay, too
+                found["acceptance"] = words.pop()
+            if len(words) > 1:
                 raise InputError(
                     "gui.zone_acceptance",
                     "{zone}: after the roughness, '{text}' is neither Tmax nor T16%.",
                     zone=self.text(row, NAME),
                     text=" ".join(words[1:]),
                 )
-            if len(words) == 2:
-                found["acceptance"] = words[1]
+            if words:
+                found["Ra_max_um"] = self._number(row, RA, words[0])
         words = self.text(row, LAY).split()
         if not words:
             return found
@@ -336,14 +338,13 @@ class ZonesPanel(Panel):
 
 def _ra_text(finish):
     """What stands for a zone's limit of the roughness."""
-    if "Ra_max_um" not in finish:
-        return ""
     accepted = finish.get("acceptance", ACCEPTANCES[0])
-    return f"{finish['Ra_max_um']:g}" + (f" {accepted}" if accepted != ACCEPTANCES[0] else "")
+    words = [shown(finish["Ra_max_um"])] if "Ra_max_um" in finish else []
+    return " ".join(words + [accepted] * (accepted != ACCEPTANCES[0]))
 
 
 def _lay_text(finish):
     """What stands for a zone's lay."""
     symbol = finish.get("lay", "")
     numbers = finish.get(LAYS.get(symbol), [])
-    return " ".join([symbol, *(f"{value:g}" for value in numbers)])
+    return " ".join([symbol, *(shown(value) for value in numbers)])

@@ -79,7 +79,7 @@ SingleContactResult press(const PressedBelt& pressed) {
         result.gap = problem.gap;
         result.coverage = problem.coverage;
         const double reach = half_length(grid, result.solution.pressure);
-        const double wanted = std::max(0.5 * kRoom * 2.0 * reach, grid.ds);
+        const double wanted = std::max(kRoom * reach, grid.ds);
         if (!(reach > 0.0) || 2.0 * reach >= kFewest * grid.ds || wanted >= half) break;
         half = wanted;
     }

@@ -7,7 +7,7 @@ import pytest
 
 from beltgrinding.engine import core
 from beltgrinding.job import load, poses
-from beltgrinding.raster import raster_path, tool
+from beltgrinding.raster import footprint, raster_path, tool
 from beltgrinding.simulation import run as runs
 from test_clearing import floor_of, parts  # noqa: F401
 from test_raster import plate
@@ -144,3 +144,21 @@ def test_the_core_refuses_what_is_no_belt():
         core.press_belt({"kind": "free_belt"}, math.nan, 0.0, force=10.0)
     with pytest.raises(ValueError):
         core.press_belt({"kind": "free_belt"}, 0.0, 0.0)
+
+
+def test_contacts_that_have_not_converged_do_not_count_and_that_is_told(bent, monkeypatch):
+    class Unsolved:
+        def __getattr__(self, name):
+            return getattr(core, name)
+
+        def contacts_at(self, *arguments):
+            return [
+                found and {**found, "converged": False} for found in core.contacts_at(*arguments)
+            ]
+
+    solved = raster_path.raster(job_of(bent), X)
+    monkeypatch.setattr(footprint, "core", Unsolved())
+    unsolved = raster_path.raster(job_of(bent), X)
+    assert not any(one.code == "raster.belt_not_solved" for one in solved["warnings"])
+    assert any(one.code == "raster.belt_not_solved" for one in unsolved["warnings"])
+    assert unsolved["contact_width_mm"] == unsolved["footprint"]["plain_mm"]

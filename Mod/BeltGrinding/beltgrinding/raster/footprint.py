@@ -125,9 +125,10 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     ``levels``: the passes, lists of dict(points, normals, tangents (n, 3)); ``plain``: mm, of its width, about.
     Returns dict(width_mm: across the pass, that of all but the narrowest share ``NARROW``; length_mm: along it, of
     all but the longest; gap_mm: how far from the undeformed wheel, placed on the design, the outermost of the faces
-    are that it touches, of all but the share with the least; widths, lengths (k,) mm; beyond: share of the places whose
-    contacts are not whole on the faces), or None where fewer than ``FEWEST`` places have one that is. Of a belt, which is
-    often wider than the faces, those that are not whole count instead then, by their median. Raises InputError, Cancelled.
+    are that it touches, of all but the share with the least; widths, lengths (k,) mm; beyond: share of these that
+    are not whole on the faces), or None where fewer than ``FEWEST`` places have one that is. Of a belt, which is often wider
+    than the faces, those that are not whole count as well then, by the median of all, and none that has not converged.
+    Raises InputError, Cancelled.
     """
     if not any(levels):
         return None
@@ -156,12 +157,13 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     for found in core.contacts_at(field, path, poses, wheel, compliance, options, context):
         if found is None or not found["pressure"].max(initial=0.0) > 0.0:
             continue
+        if tool.belt and not found["converged"]:  # its extents are of no use
+            continue
         some = whole if _whole(found) else cut_off
         some.append((*contact_extents.extents(found, angle), _outermost_gap(found)))
-    beyond = len(cut_off) / max(len(whole) + len(cut_off), 1)
     narrow, long, counted = NARROW, LONG, whole
     if tool.belt and len(whole) < FEWEST:
-        narrow, long, counted = 0.5, 0.5, cut_off
+        narrow, long, counted = 0.5, 0.5, whole + cut_off
     if len(counted) < FEWEST:
         return None
     lengths, widths, gaps = np.array(counted).T
@@ -172,7 +174,7 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
         "gap_mm": weighted_quantile(gaps, even, narrow),
         "widths": widths,
         "lengths": lengths,
-        "beyond": beyond,
+        "beyond": 1.0 - len(whole) / len(counted),
     }
 
 

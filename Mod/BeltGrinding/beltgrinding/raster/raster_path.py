@@ -14,17 +14,7 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs, machine as machines, spacing as sampling
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
-from . import (
-    around,
-    direction,
-    filling,
-    footprint,
-    passes,
-    path_check,
-    reachable,
-    region,
-    tool as tools,
-)
+from . import around, direction, filling, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import belt_extents, contact_width, plane_extents
@@ -71,7 +61,7 @@ def raster(job, settings, context=None):
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
     work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
     mm how deep the undeformed wheel reaches into the part, cuts, beside, stuck (as ``passes.assemble``),
-    step_over_mm, contact_width_mm (None if the step-over was given), usual_width_mm (on a plane), contact_length_mm, footprint (as
+    step_over_mm, contact_width_mm (None if the step-over was given), usual_width_mm (else None; on a plane, of a belt on the median curvatures), contact_length_mm, footprint (as
     ``footprint.solved``, and plain_mm, the width on a cylinder), area_mm2, no_room (bool: the wheel fits nowhere, and
     the passes lie as if it did), along, direction: the way that they go, tried (as ``direction.best``), places (as
     ``reachable.look``), reachable (as ``reachable.told``), check (as ``path_check.check``), warnings). Raises
@@ -161,7 +151,15 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
             first = _lines(sheets, settings, about, spacing, lever, [], context)
             along = footprint.solved(job, shape, faces, first, settings, plain, context)
             seen = {**seen, **(along or {})}
-            if along and belt:
+            if belt and along is None:
+                warnings.append(
+                    core.Fact(
+                        "raster.belt_not_solved",
+                        "at too few places along the passes the belt's contact could be solved: its width is that on the "
+                        "faces' median curvatures",
+                    )
+                )
+            elif belt:
                 _tell_beyond(along["beyond"], warnings)
         step_over = settings["step_over_share"] * seen["width_mm"]
     finer = _finer(area, step_over)
@@ -225,7 +223,7 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
 
 
 def _tell_beyond(share, warnings):
-    if share > 0.5:
+    if share > 0.0:
         warnings.append(
             core.Fact(
                 "raster.belt_beyond_faces",

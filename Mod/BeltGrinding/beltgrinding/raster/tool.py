@@ -15,10 +15,8 @@ from ..job import engine_input, free_run, machine as machines
 CHECKS = 8.0  # of a wheel's radius, or a belt's width: that way from place to place that is looked at, along a pass
 CLEAR = 0.25  # of the wheel's height over the border: so far it must stand off other faces
 OFF = 0.05  # mm, that a belt must, which lies flat
-COARSE_CELLS, COARSE_TOLERANCE = (
-    10,
-    1e-2,
-)  # across a belt; of its pressure: to look at many contacts
+COARSE_CELLS = 10  # across a belt, to look at many contacts
+COARSE_TOLERANCE = 1e-2  # of their pressure
 LEAST_BEHIND = 5.0  # mm behind a belt on rollers of no size
 
 
@@ -116,12 +114,11 @@ class Belt:
         radius, thickness = float(run["roller_radius_mm"]), float(run["thickness_mm"])
         # Up to the belt that runs back.
         self._behind = max(2.0 * (radius + thickness), LEAST_BEHIND)
-        self._roller = None
-        if radius > 0.0:
-            self._roller = {"radius": radius, "width": self.width}  # a cylinder
-            # Where a wheel would touch that stands as they do.
-            low = free_run.roller_height(machine) + radius + advance
-            self._rollers = [np.array([x, 0.0, low]) for x in free_run.ends(machine)]
+        self._roller = {"radius": radius, "width": self.width}  # a cylinder
+        # Where a wheel would touch that stands as they do.
+        low = free_run.roller_height(machine) + radius + advance
+        ends = free_run.ends(machine) if radius > 0.0 else ()
+        self._rollers = [np.array([x, 0.0, low]) for x in ends]
 
     @property
     def name(self):
@@ -157,12 +154,14 @@ class Belt:
         """mm (n,) that points (k, 3) stand in it, or in its rollers."""
         size = self.length, self._middle, self.width, self._behind
         found = np.asarray(core.run_fit(*size, frames, points, context))
-        for place in self._rollers if self._roller else ():
-            moved = frames.copy()
-            moved[:, :3, 3] += frames[:, :3, :3] @ place
-            met = core.wheel_fit(self._roller, moved, points, points, context, True)
-            found = np.maximum(found, met)
-        return found
+        if not self._rollers:
+            return found
+        both = []  # at once: the points are sorted into cells at each call
+        for place in self._rollers:
+            both.append(frames.copy())
+            both[-1][:, :3, 3] += frames[:, :3, :3] @ place
+        met = core.wheel_fit(self._roller, np.concatenate(both), points, points, context, True)
+        return np.maximum(found, np.max(np.split(np.asarray(met), len(both)), axis=0))
 
     def depth_before(self, frames, points, normals, context=None):
         """mm (n,) that a surface of points (k, 3) stands in it, whatever its normals."""

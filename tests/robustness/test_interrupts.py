@@ -22,7 +22,7 @@ for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
         sys.path.insert(0, str(folder))
 
 from beltgrinding.base import folders  # noqa: E402
-from beltgrinding.cli import interrupts  # noqa: E402
+from beltgrinding.cli import background, interrupts  # noqa: E402
 from beltgrinding.engine import core  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
@@ -100,6 +100,35 @@ def test_ctrl_c_at_many_moments(tmp_path):
             assert new == ("was written" in told and "nothing" not in told)
     early = sum(status == 130 for status, _, _ in found)
     assert early > MOMENTS // 3
+
+
+def test_ctrl_c_at_every_line_of_waiting_is_an_interruption():
+    """Of Python's own lines too: what it raises when it is interrupted there must not take its place."""
+    before = signal.getsignal(signal.SIGINT)
+    kept, outcomes = sys.gettrace(), []
+    try:
+        while not outcomes or outcomes[-1] != "result":
+            signal.signal(signal.SIGINT, interrupts.stop)
+            left = len(outcomes)
+
+            def line(_, event, __):
+                nonlocal left
+                if event == "line" and signal.getsignal(signal.SIGINT) is not interrupts.stop:
+                    left -= 1
+                    if left == -1:
+                        raise KeyboardInterrupt
+                return line
+
+            sys.settrace(line)
+            try:
+                outcomes.append(background.run(lambda _: time.sleep(0.15) or "result", quiet=True))
+            except KeyboardInterrupt:
+                outcomes.append("interrupted")
+            finally:
+                sys.settrace(kept)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert len(outcomes) > 5
 
 
 @pytest.mark.parametrize("place", ["made", "removed"])

@@ -14,6 +14,10 @@ def run(work, quiet=False):
     from ..engine import core
 
     context, outcome, done = core.RunContext(), {}, threading.Event()
+    # What the main thread waits for is a lock: Ctrl-C inside Event.wait (3.11) lets go of what it does not hold,
+    # and that error takes the interruption's place; join takes a thread for ended.
+    computing = threading.Lock()
+    computing.acquire()
 
     def guarded():
         try:
@@ -22,18 +26,19 @@ def run(work, quiet=False):
             outcome["error"] = error
         finally:
             done.set()
+            computing.release()
 
     threading.Thread(target=guarded, daemon=True).start()
     if sys.stderr.isatty() and not quiet:
         threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
     try:
         with interruptible():
-            # Not join: Python 3.11's takes a thread for ended when Ctrl-C comes while it waits.
-            while not done.wait(0.1):
+            while not computing.acquire(timeout=0.1):  # another thread may have taken the signal
                 pass
     except KeyboardInterrupt:
         context.cancel()
-        done.wait(CANCEL_TIME)  # what does not hear it ends with the process
+        if not done.is_set():
+            computing.acquire(timeout=CANCEL_TIME)  # what does not hear it ends with the process
         raise
     if "error" in outcome:
         raise outcome["error"]

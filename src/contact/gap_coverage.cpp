@@ -115,14 +115,15 @@ const GapMap::BorderPatch* GapMap::border_patch(std::uint32_t sample) const {
     return found != borders_.end() && found->sample == sample ? &*found : nullptr;
 }
 
-GapMap::Patch GapMap::patch_of(const Footprint& f, const HeightField& field) const {
+GapMap::Patch GapMap::patch_of(const Footprint& f, const SampleBlocks& blocks) const {
     const double y = std::clamp<double>(f.y, -0.5 * wheel_.width, 0.5 * wheel_.width);
     // Lengths round the wheel are told at its radius.
     const double round = wheel_.radius / (f.own_gap + wheel_.radius - wheel_.drop(y));
     const double slope_s = f.slope_s * round, slope_y = f.slope_y - wheel_.drop_slope(y);
     const double side = std::sqrt(static_cast<double>(f.area));
     Patch patch{f.s, f.y, 0.5 * side, 0.5 * side};
-    const bool on_border = (field.flags[f.sample] & kOnBoundary) != 0;
+    const auto& block = blocks.block(static_cast<std::uint32_t>(f.position / kBlockLanes));
+    const bool on_border = (block.border >> (f.position % kBlockLanes) & 1U) != 0;
     if (const BorderPatch* border = on_border ? border_patch(f.sample) : nullptr) {
         const Vec3 middle = contact_from_work_.linear() * border->middle.cast<double>();
         const double angle = f.s / wheel_.radius;
@@ -130,8 +131,9 @@ GapMap::Patch GapMap::patch_of(const Footprint& f, const HeightField& field) con
         const double to_y = middle.y(), square = to_s * to_s + to_y * to_y;
         if (square > 0.0) {
             // As long as the samples are apart along the border, narrower across it.
-            const double narrow =
-                border->along > 0.0f ? side / border->along : std::min(side / field.spacing, 1.0);
+            const double narrow = border->along > 0.0f
+                                      ? side / border->along
+                                      : std::min(side / blocks.field().spacing, 1.0);
             const double aspect = std::pow(narrow, (to_y * to_y - to_s * to_s) / square);
             patch.half_s /= aspect;
             patch.half_y *= aspect;
@@ -185,8 +187,8 @@ void GapMap::for_patch(const EdgePatch& patch, Visit visit) const {
             const float s0 = std::max(left - i, -0.5f), s1 = std::min(right - i, 0.5f);
             const double share = static_cast<double>(s1 - s0) * (y1 - y0);
             if (share < kTouch) continue;
-            visit(j * grid_.nx + i, share, 0.5 * (s0 + s1), 0.5 * (y0 + y1),
-                  f.gap + f.slope_s * (i - i0) + f.slope_y * (j - j0));
+            visit(PatchCell{j * grid_.nx + i, share, 0.5 * (s0 + s1), 0.5 * (y0 + y1),
+                            f.gap + f.slope_s * (i - i0) + f.slope_y * (j - j0)});
         }
     }
 }
@@ -224,8 +226,12 @@ bool GapMap::map_smooth(const SampleBlocks& blocks, double pressable) {
     high_.assign(cells, -std::numeric_limits<float>::infinity());
     inhabited_.assign(cells, 0);
     const int above = grid_.ny > 1 ? grid_.nx : 0;
-    const CellSums sums{gap_.data(), weight_.data(), low_.data(), high_.data(), inhabited_.data()};
-    for (std::size_t k = 0; k < placed_count_; ++k) gather_cells(placed_[k], above, sums);
+    four_cells_.resize(cells);
+    clear_cells(four_cells_.data(), cells);
+    for (std::size_t k = 0; k < placed_count_; ++k)
+        gather_cells(placed_[k], above, four_cells_.data(), inhabited_.data());
+    spread_cells(four_cells_.data(), cells, above,
+                 {gap_.data(), weight_.data(), low_.data(), high_.data()});
     for (const Footprint& f : footprints_) {
         if (!f.on_grid || f.inside <= 0.0f) continue;
         inhabited_[static_cast<std::size_t>(own_cell(f))] = 1;
@@ -315,18 +321,14 @@ void GapMap::part_edges(const SampleBlocks& blocks) {
                                     (placed.v[lane] >= 0.5f ? nx : 0);
             if (kind_[own] == kWhole) continue;
             placed.regular &= ~(std::uint64_t{1} << lane);
-            const std::size_t before = footprints_.size();
-            place_alone(blocks,
-                        std::size_t{placed.block} * kBlockLanes + static_cast<std::size_t>(lane));
-            if (footprints_.size() == before) continue;
-            put_on_grid(footprints_.back());
-            footprints_.back().on_grid = footprints_.back().nearest = true;
+            footprints_.push_back(footprint_at(blocks, placed, lane));
         }
     }
 }
 
-void GapMap::cover(const HeightField& field) {
+void GapMap::cover(const SampleBlocks& blocks) {
     patches_.clear();
+    covered_.clear();
     for (std::size_t cell = 0; cell < kind_.size(); ++cell) {
         if (kind_[cell] == kEdge)
             nearest_[cell] = kNone;
@@ -339,27 +341,30 @@ void GapMap::cover(const HeightField& field) {
         Footprint physical = f;
         physical.slope_s /= static_cast<float>(grid_.ds);
         physical.slope_y /= static_cast<float>(grid_.dy);
-        const Patch patch = patch_of(physical, field);
-        patches_.push_back({k, static_cast<float>(patch.s / grid_.ds + 0.5 * (grid_.nx - 1)),
+        const Patch patch = patch_of(physical, blocks);
+        patches_.push_back({k, 0, static_cast<float>(patch.s / grid_.ds + 0.5 * (grid_.nx - 1)),
                             static_cast<float>(patch.y / grid_.dy + 0.5 * (grid_.ny - 1)),
                             static_cast<float>(patch.half_s / grid_.ds),
                             static_cast<float>(patch.half_y / grid_.dy)});
-        for_patch(patches_.back(), [&](int cell, double, double, double, double carried) {
-            const auto c = static_cast<std::size_t>(cell);
-            if (kind_[c] == kEdge) nearest_[c] = std::min(nearest_[c], carried);
+        for_patch(patches_.back(), [&](const PatchCell& part) {
+            covered_.push_back(part);
+            const auto c = static_cast<std::size_t>(part.cell);
+            if (kind_[c] == kEdge) nearest_[c] = std::min(nearest_[c], part.carried);
         });
+        patches_.back().end = covered_.size();
     }
+    auto part = covered_.begin();
     for (const EdgePatch& patch : patches_) {
         double of_layer = 0.0, of_others = 0.0;
-        for_patch(patch, [&](int cell, double share, double along, double across, double carried) {
-            const auto c = static_cast<std::size_t>(cell);
-            const bool same = carried - nearest_[c] <= layer_;
-            (same ? of_layer : of_others) += share;
-            if (!same || kind_[c] != kEdge) return;
-            coverage_.share[cell] += share;
-            coverage_.along[cell] += share * along;
-            coverage_.across[cell] += share * across;
-        });
+        for (; part != covered_.begin() + static_cast<std::ptrdiff_t>(patch.end); ++part) {
+            const auto c = static_cast<std::size_t>(part->cell);
+            const bool same = part->carried - nearest_[c] <= layer_;
+            (same ? of_layer : of_others) += part->share;
+            if (!same || kind_[c] != kEdge) continue;
+            coverage_.share[part->cell] += part->share;
+            coverage_.along[part->cell] += part->share * part->along;
+            coverage_.across[part->cell] += part->share * part->across;
+        }
         footprints_[patch.footprint].nearest = of_layer >= of_others;
     }
 }
@@ -369,8 +374,12 @@ void GapMap::average_gap() {
     for (std::size_t cell = 0; cell < nearest_.size(); ++cell)
         limit_[cell] = static_cast<float>(nearest_[cell] + layer_);
     const int above = grid_.ny > 1 ? grid_.nx : 0;
+    four_cells_.resize(limit_.size());
+    clear_cells(four_cells_.data(), limit_.size());
     for (std::size_t k = 0; k < placed_count_; ++k)
-        average_cells(placed_[k], above, limit_.data(), gap_.data(), weight_.data());
+        average_cells(placed_[k], above, limit_.data(), four_cells_.data());
+    spread_cells(four_cells_.data(), limit_.size(), above,
+                 {gap_.data(), weight_.data(), nullptr, nullptr});
     for (const Footprint& f : footprints_) {
         if (!f.on_grid) continue;
         for_cells(f, [&](int cell, float share, double carried) {

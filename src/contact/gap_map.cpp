@@ -182,6 +182,7 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
     placing.last_row = std::max(0, grid_.ny - 2);
     if (placed_.size() < hits.size()) placed_.resize(hits.size());
     placed_count_ = samples_ = 0;
+    alignas(64) float across[kBlockLanes];
     for (const std::uint32_t number : hits) {
         const SampleBlocks::Block& block = blocks.block(number);
         const Vec3f origin = (contact_from_work_ * block.origin).cast<float>();
@@ -196,12 +197,18 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
                      block.nz.data(),
                      block.area.data(),
                      {origin.x(), origin.y(), origin.z()}},
-                    placed);
+                    placed, across);
         placed.regular &= ~block.leaning;
         placed.block = number;
-        for (std::uint64_t lanes = placed.special | block.leaning; lanes != 0; lanes &= lanes - 1)
-            place_alone(blocks, std::size_t{number} * kBlockLanes +
-                                    static_cast<std::size_t>(std::countr_zero(lanes)));
+        const std::uint64_t alone = placed.special | block.leaning;
+        for (std::uint64_t lanes = placed.aside | alone; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            if ((alone >> lane & 1U) != 0)
+                place_alone(blocks,
+                            std::size_t{number} * kBlockLanes + static_cast<std::size_t>(lane));
+            else
+                place_aside(blocks, placed, lane, across[lane]);
+        }
         samples_ += static_cast<std::size_t>(std::popcount(placed.in_reach & placed.regular));
         if (placed.regular != 0) ++placed_count_;
     }
@@ -212,29 +219,31 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
 
 void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
     const HeightField& field = blocks.field();
-    const Frame& contact_from_work = contact_from_work_;
-    const Eigen::Matrix3d rotation = contact_from_work.linear();
+    const SampleBlocks::Block& block =
+        blocks.block(static_cast<std::uint32_t>(position / kBlockLanes));
+    const std::size_t lane = position % kBlockLanes;
+    const Vec3f design_normal = block.normal(lane);
+    if (design_normal.isZero()) return;  // missed
+    const Eigen::Matrix3d rotation = contact_from_work_.linear();
     const double radius = wheel_.radius, half_width = 0.5 * wheel_.width;
-    const std::uint32_t sample = blocks.sample(position);
-    if ((field.flags[sample] & kMissed) != 0) return;
-    const Vec3 top = contact_from_work * blocks.top(position);
+    const Vec3 top = contact_from_work_ * blocks.top_in_block(position);
     const double along = top.z() + radius;  // from the wheel's axis towards the work
     if (along <= 0.0 || std::abs(top.y()) > half_width + 0.5 * field.spacing + beside_) return;
     if (along < ahead_) {
-        const Vec3 bottom = contact_from_work * field.bottom(sample);
+        const Vec3 bottom = contact_from_work_ * field.bottom(blocks.sample(position));
         if (bottom.z() + radius < ahead_) return;
     }
     const double r = std::sqrt(top.x() * top.x() + along * along);
     const double y = std::clamp(top.y(), -half_width, half_width);
     const double gap = r - (radius - wheel_.drop(y));
     if (gap > seen_gap_) return;
-    Vec3 normal = rotation * field.normal[sample].cast<double>();
+    Vec3 normal = rotation * design_normal.cast<double>();
     const double sine = top.x() / r;
     const double cosine = along / r;
     double n_radial = normal.x() * sine + normal.z() * cosine;
     const double facing = -n_radial;
-    if (field.leans(sample) && facing > kLeastFacing) {
-        const Vec3 ray = rotation * field.rays[sample].cast<double>();
+    if ((block.leaning >> lane & 1U) != 0 && facing > kLeastFacing) {
+        const Vec3 ray = rotation * field.rays[blocks.sample(position)].cast<double>();
         normal = between(normal, ray, Vec3(-sine, 0.0, -cosine));
         n_radial = (normal.x() * sine + normal.z() * cosine) / normal.norm();
         normal.normalize();
@@ -243,7 +252,7 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
     const double n_tangential = normal.x() * cosine - normal.z() * sine;
     Footprint f{};
     f.position = position;
-    f.sample = sample;
+    f.sample = blocks.sample(position);
     f.s = static_cast<float>(radius * angle_of(top.x(), along));
     f.y = static_cast<float>(top.y());
     f.gap = gap;
@@ -252,11 +261,30 @@ void GapMap::place_alone(const SampleBlocks& blocks, std::size_t position) {
     f.own_gap = static_cast<float>(gap);
     f.cosine = static_cast<float>(facing);
     f.facing = static_cast<float>(cosine);
-    f.area = field.area[sample];
+    f.area = block.area[lane];
     f.inside = f.taken = 1.0f;
-    if (std::abs(top.y()) + field.spacing > half_width) {
+    keep(f, blocks);
+}
+
+void GapMap::place_aside(const SampleBlocks& blocks, const PlacedBlock& placed, int lane,
+                         float across) {
+    Footprint f = footprint_of(blocks, placed, lane);
+    f.s = static_cast<float>(
+        (static_cast<double>(placed.cell[lane]) + static_cast<double>(placed.u[lane])) * grid_.ds);
+    f.y = across;
+    f.gap = f.own_gap;
+    f.slope_s = placed.slope_s[lane] / static_cast<float>(grid_.ds);
+    f.slope_y = placed.slope_y[lane] / static_cast<float>(grid_.dy);
+    f.inside = f.taken = 1.0F;
+    keep(f, blocks);
+}
+
+void GapMap::keep(Footprint f, const SampleBlocks& blocks) {
+    const double half_width = 0.5 * wheel_.width;
+    const auto y = static_cast<double>(f.y);
+    if (std::abs(y) + blocks.field().spacing > half_width) {
         // A patch at the wheel's edge is a strip that the wheel covers in part.
-        const Patch patch = patch_of(f, field);
+        const Patch patch = patch_of(f, blocks);
         const double within = std::min(patch.y + patch.half_y, half_width) -
                               std::max(patch.y - patch.half_y, -half_width);
         const bool is_beside = std::abs(patch.y) - patch.half_y < half_width + beside_;
@@ -291,7 +319,7 @@ void GapMap::map(const SampleBlocks& blocks, double pressable) {
     }
     mark_edges(pressable);
     part_edges(blocks);
-    cover(blocks.field());
+    cover(blocks);
     average_gap();
     coverage_.merge_slivers(grid_);
     share_cells();

@@ -67,6 +67,24 @@ double GapMap::down_to_envelope(const SampleBlocks& blocks, const Footprint& f, 
     return low;
 }
 
+GapMap::Footprint GapMap::footprint_at(const SampleBlocks& blocks, const PlacedBlock& placed,
+                                       int lane) const {
+    Footprint f = footprint_of(blocks, placed, lane);
+    const Eigen::Vector2d at = place_of(placed, static_cast<std::uint32_t>(lane));
+    f.gap = placed.gap[lane];
+    f.cell = placed.cell[lane];
+    f.s = static_cast<float>(at.x());
+    // Beyond the outermost cells' centres, weights do not tell how far.
+    f.y = static_cast<float>((contact_from_work_ * blocks.top_in_block(f.position)).y());
+    f.slope_s = placed.slope_s[lane];
+    f.slope_y = placed.slope_y[lane];
+    f.u = placed.u[lane];
+    f.v = placed.v[lane];
+    f.inside = f.taken = 1.0F;
+    f.on_grid = f.nearest = true;
+    return f;
+}
+
 GapMap::Footprint GapMap::footprint_of(const SampleBlocks& blocks, const PlacedBlock& placed,
                                        int lane) {
     Footprint f{};
@@ -74,7 +92,7 @@ GapMap::Footprint GapMap::footprint_of(const SampleBlocks& blocks, const PlacedB
     f.sample = blocks.sample(f.position);
     f.own_gap = placed.own_gap[lane];
     f.facing = placed.facing[lane];
-    f.area = blocks.field().area[f.sample];
+    f.area = blocks.block(placed.block).area[static_cast<std::size_t>(lane)];
     f.cosine = f.area > 0.0f ? placed.weight[lane] / f.area : 1.0f;
     return f;
 }
@@ -267,7 +285,7 @@ std::optional<std::size_t> GapMap::sample_near(double s, double y) const {
     std::optional<std::size_t> found;
     double least = kNone;
     const auto look = [&](std::size_t position, double at_s, double at_y) {
-        const double away = std::hypot(at_s - s, at_y - y);
+        const double away = (at_s - s) * (at_s - s) + (at_y - y) * (at_y - y);
         if (away >= least) return;
         least = away;
         found = position;
@@ -305,12 +323,12 @@ GapMap::MeanSlope GapMap::slope_near(const SampleBlocks& blocks, double s, doubl
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             // Beyond the outermost cells' centres, weights do not tell how far.
             const std::size_t position = std::size_t{placed.block} * kBlockLanes + lane;
-            const double across = (contact_from_work_ * blocks.top(position)).y();
+            const double across = (contact_from_work_ * blocks.top_in_block(position)).y();
             add({place_of(placed, lane).x(), across}, placed.slope_s[lane], placed.slope_y[lane]);
         }
     }
     for (const Footprint& f : footprints_)
-        if (f.nearest && std::hypot(f.s - s, f.y - y) <= reach)
+        if (f.nearest && (f.s - s) * (f.s - s) + (f.y - y) * (f.y - y) <= reach * reach)
             add({f.s, f.y}, f.slope_s, f.slope_y);
     return {mean.place / count, mean.slope / count};
 }

@@ -1,5 +1,8 @@
 #include "contact/placed_block.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "base/lanes.h"
 
 namespace beltgrinding {
@@ -80,6 +83,14 @@ BELTGRINDING_INLINE void share_out(const PlacedBlock& placed, int first, Four* w
     turn(g, g + slope_s, g + slope_y, g + slope_s + slope_y, carried);
 }
 
+BELTGRINDING_INLINE void add(double* to, const Four& values) {
+    using FourDoubles = double __attribute__((vector_size(32)));
+    FourDoubles sum;
+    __builtin_memcpy(&sum, to, sizeof sum);
+    sum += __builtin_convertvector(values, FourDoubles);
+    __builtin_memcpy(to, &sum, sizeof sum);
+}
+
 BELTGRINDING_INLINE Floats between(const PlacedBlock& placed, const Bilinear* table, int first) {
     Four rows[kWide];
     for (int k = 0; k < kWide; ++k) {
@@ -108,10 +119,10 @@ BELTGRINDING_INLINE Floats between(const PlacedBlock& placed, const Bilinear* ta
 }  // namespace
 
 BELTGRINDING_CLONES
-void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
+void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out, float* across) {
     const float* m = p.rotation;
     const float radius = p.radius, by_ds = 1.0f / p.ds, by_dy = 1.0f / p.dy;
-    out.regular = out.special = out.in_reach = 0;
+    out.regular = out.aside = out.special = out.in_reach = 0;
     Floats farthest{};
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const Floats h = load(in.height + first);
@@ -141,19 +152,20 @@ void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
                           (away <= p.width_limit) & ((along >= p.ahead) | (lowest >= p.ahead));
         const Floats tangent = x / (along + r);  // of half the angle
         const Floats q = tangent * tangent;
-        const Ints special = seen & ((away > p.side_limit) | (q > kWidestAngle));
-        const Ints regular = seen & ~special;
+        const Ints special = seen & (q > kWidestAngle), known = seen & ~special;
+        const Ints aside = known & (away > p.side_limit), regular = known & ~aside;
         const Ints in_reach = regular & (gap <= p.reach);
         out.regular |= bits(regular) << first;
+        out.aside |= bits(aside) << first;
         out.special |= bits(special) << first;
         out.in_reach |= bits(in_reach) << first;
-        const Floats s = kept(2.0f * radius * tangent * angle_by(q), regular);
+        const Floats s = kept(2.0f * radius * tangent * angle_by(q), known);
         farthest = larger(farthest, kept(magnitude(s), in_reach));
         const Floats at_s = s * by_ds;
         const Ints cut = __builtin_convertvector(at_s, Ints);
         const Ints column = cut + (__builtin_convertvector(cut, Floats) > at_s);
         const Floats u = at_s - __builtin_convertvector(column, Floats);
-        const Floats at_y = kept(y * by_dy + p.middle_row, regular);
+        const Floats at_y = kept(y * by_dy + p.middle_row, known);
         Ints row = __builtin_convertvector(larger(at_y, Floats{}), Ints);
         row = row < p.last_row ? row : Ints{} + p.last_row;
         const Floats beyond = at_y - __builtin_convertvector(row, Floats);
@@ -172,6 +184,7 @@ void place_block(const Placing& p, const SampleArrays& in, PlacedBlock& out) {
         store(out.weight + first, -n_radial * load(in.area + first));
         store(out.cell + first, column);
         store(out.row + first, row);
+        store(across + first, y);
     }
     out.farthest = 0.0f;
     for (int k = 0; k < kWide; ++k)
@@ -192,13 +205,6 @@ void number_cells(PlacedBlock& placed, int columns, int middle) {
 
 BELTGRINDING_CLONES
 void range_cells(const PlacedBlock& placed, int above, double* nearest, double* farthest) {
-    std::int32_t at = -1;
-    float low = 0.0f, high = 0.0f;
-    const auto flush = [&]() __attribute__((always_inline)) {
-        if (at < 0) return;
-        if (low < nearest[at]) nearest[at] = low;
-        if (high > farthest[at]) farthest[at] = high;
-    };
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
         if (lanes == 0) continue;
@@ -210,34 +216,23 @@ void range_cells(const PlacedBlock& placed, int above, double* nearest, double* 
                        kept(load(placed.slope_y + first), up));
         for (int k = 0; k < kWide; ++k) {
             if ((lanes >> k & 1U) == 0) continue;
-            if (own[k] != at) {
-                flush();
-                at = own[k];
-                low = high = gap[k];
-            } else {
-                low = gap[k] < low ? gap[k] : low;
-                high = gap[k] > high ? gap[k] : high;
-            }
+            double &low = nearest[own[k]], &high = farthest[own[k]];
+            const auto here = static_cast<double>(gap[k]);
+            low = here < low ? here : low;
+            high = here > high ? here : high;
         }
     }
-    flush();
+}
+
+void clear_cells(FourCells* cells, std::size_t count) {
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    constexpr FourCells kEmpty{
+        {}, {}, {kNone, kNone, kNone, kNone}, {-kNone, -kNone, -kNone, -kNone}};
+    std::fill_n(cells, count, kEmpty);
 }
 
 BELTGRINDING_CLONES
-void gather_cells(const PlacedBlock& placed, int above, const CellSums& sums) {
-    std::int32_t at = -1;
-    Four weights{}, gaps{}, low{}, high{};
-    const auto flush = [&]() __attribute__((always_inline)) {
-        if (at < 0) return;
-        const std::int32_t cells[4] = {at, at + 1, at + above, at + above + 1};
-        for (int k = 0; k < 4; ++k) {
-            const std::int32_t cell = cells[k];
-            sums.weight[cell] += static_cast<double>(weights[k]);
-            sums.gap[cell] += static_cast<double>(gaps[k]);
-            sums.low[cell] = low[k] < sums.low[cell] ? low[k] : sums.low[cell];
-            sums.high[cell] = high[k] > sums.high[cell] ? high[k] : sums.high[cell];
-        }
-    };
+void gather_cells(const PlacedBlock& placed, int above, FourCells* cells, std::uint8_t* inhabited) {
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
         if (lanes == 0) continue;
@@ -247,35 +242,39 @@ void gather_cells(const PlacedBlock& placed, int above, const CellSums& sums) {
         store(own, own_cells(placed, first, above));
         for (int k = 0; k < kWide; ++k) {
             if ((lanes >> k & 1U) == 0) continue;
-            sums.inhabited[own[k]] = 1;
-            if (const std::int32_t cell = placed.cell[first + k]; cell != at) {
-                flush();
-                at = cell;
-                weights = gaps = Four{};
-                low = high = carried[k];
-            }
-            weights += by_lane[k];
-            gaps += by_lane[k] * carried[k];
+            inhabited[own[k]] = 1;
+            FourCells& to = cells[placed.cell[first + k]];
+            add(to.weight, by_lane[k]);
+            add(to.gap, by_lane[k] * carried[k]);
+            Four low, high;
+            __builtin_memcpy(&low, to.low, sizeof low);
+            __builtin_memcpy(&high, to.high, sizeof high);
             low = carried[k] < low ? carried[k] : low;
             high = carried[k] > high ? carried[k] : high;
+            __builtin_memcpy(to.low, &low, sizeof low);
+            __builtin_memcpy(to.high, &high, sizeof high);
         }
     }
-    flush();
+}
+
+void spread_cells(const FourCells* cells, std::size_t count, int above, const CellSums& sums) {
+    for (std::size_t first = 0; first < count; ++first) {
+        const FourCells& from = cells[first];
+        if (!(from.low[0] <= from.high[0])) continue;  // no sample
+        const auto next = first + static_cast<std::size_t>(above);
+        const std::size_t to[4] = {first, first + 1, next, next + 1};
+        for (std::size_t k = 0; k < 4; ++k) {
+            sums.weight[to[k]] += from.weight[k];
+            sums.gap[to[k]] += from.gap[k];
+            if (sums.low == nullptr) continue;
+            sums.low[to[k]] = std::min(sums.low[to[k]], from.low[k]);
+            sums.high[to[k]] = std::max(sums.high[to[k]], from.high[k]);
+        }
+    }
 }
 
 BELTGRINDING_CLONES
-void average_cells(const PlacedBlock& placed, int above, const float* limit, double* gap,
-                   double* weight) {
-    std::int32_t at = -1;
-    Four limits{}, weights{}, gaps{};
-    const auto flush = [&]() __attribute__((always_inline)) {
-        if (at < 0) return;
-        const std::int32_t cells[4] = {at, at + 1, at + above, at + above + 1};
-        for (int k = 0; k < 4; ++k) {
-            weight[cells[k]] += static_cast<double>(weights[k]);
-            gap[cells[k]] += static_cast<double>(gaps[k]);
-        }
-    };
+void average_cells(const PlacedBlock& placed, int above, const float* limit, FourCells* cells) {
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
         if (lanes == 0) continue;
@@ -283,20 +282,18 @@ void average_cells(const PlacedBlock& placed, int above, const float* limit, dou
         share_out(placed, first, by_lane, carried);
         for (int k = 0; k < kWide; ++k) {
             if ((lanes >> k & 1U) == 0) continue;
-            if (const std::int32_t cell = placed.cell[first + k]; cell != at) {
-                flush();
-                at = cell;
-                limits = Four{limit[at], limit[at + 1], limit[at + above], limit[at + above + 1]};
-                weights = gaps = Four{};
-            }
+            const std::int32_t at = placed.cell[first + k];
+            const Four limits{limit[at], limit[at + 1], limit[at + above], limit[at + above + 1]};
             const FourInts near = carried[k] <= limits;
             const Four share =
                 reinterpret_cast<Four>(reinterpret_cast<FourInts>(by_lane[k]) & near);
-            weights += share;
-            gaps += share * carried[k];
+            FourCells& to = cells[at];
+            add(to.weight, share);
+            add(to.gap, share * carried[k]);
+            to.low[0] = 0.0f;  // there is one
+            to.high[0] = 0.0f;
         }
     }
-    flush();
 }
 
 BELTGRINDING_CLONES

@@ -40,11 +40,13 @@ SampleBlocks::SampleBlocks(const HeightField& field, const RunContext& context)
                                 block.z[lane] = from.z();
                                 block.height[lane] = field.height[s];
                                 block.area[lane] = field.area[s];
+                                const std::uint64_t bit = std::uint64_t{1} << lane;
+                                if ((field.flags[s] & kOnBoundary) != 0) block.border |= bit;
                                 if ((field.flags[s] & kMissed) != 0) continue;
                                 block.nx[lane] = field.normal[s].x();
                                 block.ny[lane] = field.normal[s].y();
                                 block.nz[lane] = field.normal[s].z();
-                                if (field.leans(s)) block.leaning |= std::uint64_t{1} << lane;
+                                if (field.leans(s)) block.leaning |= bit;
                             }
                             bounds_[k] = bound_of(k);
                         }

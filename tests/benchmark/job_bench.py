@@ -2,9 +2,9 @@
 
     PYTHONPATH=Mod/BeltGrinding:build/release/python python3 tests/benchmark/job_bench.py [--samples N]
 
-A plate sampled every 0.2 mm, about 26,000 samples in the wheel's reach, ground in lanes by a layered rim
-(`simulation_bench`'s wheel) with events, trace and recording, from the job's data to the judged result; and the same
-without recording. The rim's table is solved before, as it is once for a wheel. Writes Google Benchmark's JSON to
+A plate sampled every 0.2 mm, about 26,000 samples in the wheel's reach, its stock of 0.2 mm ground away by a layered
+rim (`simulation_bench`'s wheel) in lanes that cover it four times, with events, trace and recording, from the job's
+data to the judged result; and the same without recording. ``--lanes`` more than 16: deeper than the stock, a staircase. The rim's table is solved before, as it is once for a wheel. Writes Google Benchmark's JSON to
 BELTGRINDING_BENCH_OUT. Figures in s of wall time, the least of three in turns, ``_cpu`` of processor time of all
 threads; the parts are of the least one with its recording; ``peak`` is the process's greatest resident memory, MB.
 """
@@ -23,14 +23,17 @@ from beltgrinding.simulation import run as runs
 from ground_plate import plate_job
 
 SPACING = 0.2  # mm
-STEPS, TRAVEL = 10_000, 1.0  # mm a step
+STEPS, LANES = 10_000, 16
+FEED = 100.0  # mm/s
 TIMES = 3
 TARGET = 6.0  # s
 
 
-def job(samples):
+def job(samples, lanes=LANES):
     side = SPACING * samples**0.5
-    data = plate_job(samples, round(STEPS * TRAVEL / (side - 10.0)), side)
+    data = plate_job(samples, lanes, side)
+    for pose in data["programs"][0]["poses"]:
+        pose["feed_mm_s"] = FEED
     data["belt_machine"].update(
         wheel={"radius_mm": 100, "width_mm": 50},
         compliance={
@@ -39,7 +42,7 @@ def job(samples):
         },
         force_N=100,
     )
-    data["simulation"]["max_travel_mm"] = TRAVEL
+    data["simulation"]["max_travel_mm"] = lanes * (side - 10.0) / STEPS
     return jobs.validate(data)
 
 
@@ -54,7 +57,9 @@ def timed(data, recording):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--samples", type=float, default=1e6)
-    data = job(parser.parse_args().samples)
+    parser.add_argument("--lanes", type=int, default=LANES)
+    arguments = parser.parse_args()
+    data = job(arguments.samples, arguments.lanes)
     timed(data, None)  # the rim's table
     plain, recorded = [], []
     for _ in range(TIMES):

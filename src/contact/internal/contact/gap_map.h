@@ -196,7 +196,14 @@ class GapMap {
     /// One near an edge, in cells, from the middle of the outermost cell of lower s and y.
     struct EdgePatch {
         std::size_t footprint;
+        std::size_t end;  // of its cells in `covered_`
         float s, y, half_s, half_y;
+    };
+    /// What of a cell the patch of a sample near an edge covers.
+    struct PatchCell {
+        int cell;
+        double share, along, across;  // of the cell; the middle of that from the cell's, in cells
+        double carried;               // mm, the sample's gap at the cell's centre
     };
     /// Where the patch of a sample on a border has its middle, from the sample: in the work frame.
     struct BorderPatch {
@@ -224,8 +231,13 @@ class GapMap {
         return has_taken_[placed] != 0 ? &taken_[placed * kBlockLanes] : nullptr;
     }
     void place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits);
-    /// Places a sample by itself, if the wheel can press it.
+    /// Places a sample by itself, if the wheel can press it: where its ray leans, or far round the
+    /// wheel.
     void place_alone(const SampleBlocks& blocks, std::size_t position);
+    /// The same of a lane at the wheel's side faces, `across` mm along the axis.
+    void place_aside(const SampleBlocks& blocks, const PlacedBlock& placed, int lane, float across);
+    /// Keeps a footprint, not yet on the grid, if the wheel can press what it stands for.
+    void keep(Footprint f, const SampleBlocks& blocks);
     /// The rest of `update`, once all samples are placed.
     void map(const SampleBlocks& blocks, double pressable);
     /// The same where no edge, step or second layer is near what may bear pressure; false, with
@@ -250,7 +262,9 @@ class GapMap {
     /// Null if the sample lies on no border.
     const BorderPatch* border_patch(std::uint32_t sample) const;
     /// Before the footprint is put on the grid.
-    Patch patch_of(const Footprint& f, const HeightField& field) const;
+    Patch patch_of(const Footprint& f, const SampleBlocks& blocks) const;
+    /// Of a regular lane on the grid.
+    Footprint footprint_at(const SampleBlocks& blocks, const PlacedBlock& placed, int lane) const;
     /// Of a regular lane, what the envelope needs to know.
     static Footprint footprint_of(const SampleBlocks& blocks, const PlacedBlock& placed, int lane);
     /// Of a belt: what lies beyond its free run is no surface; `stretch_` of the others.
@@ -264,8 +278,7 @@ class GapMap {
     /// Calls visit(cell, weight, gap carried to its centre) for each of the four.
     template <class Visit>
     void for_cells(const Footprint& f, Visit visit) const;
-    /// Calls visit(cell, share of it that the patch covers, middle of that from the cell's along
-    /// and across in cells, gap carried to its centre).
+    /// Calls visit(PatchCell) for each cell that the patch lies on.
     template <class Visit>
     void for_patch(const EdgePatch& patch, Visit visit) const;
     void fit_grid(double half_length);
@@ -276,7 +289,7 @@ class GapMap {
     void mark_edges(double pressable);
     /// Edge cells are covered as far as patches of their nearest layer lie on them, the others
     /// wholly.
-    void cover(const HeightField& field);
+    void cover(const SampleBlocks& blocks);
     /// The gap of each cell, at its centre.
     void average_gap();
     /// The four cells' shares in each sample: those of its layer, by how much of them is covered.
@@ -309,6 +322,7 @@ class GapMap {
     std::vector<std::uint8_t> kind_, wider_;
     std::vector<Footprint> footprints_;
     std::vector<EdgePatch> patches_;
+    std::vector<PatchCell> covered_;    // by all patches, one after the other
     std::vector<BorderPatch> borders_;  // by sample
     // Along what is longer of each sample's patch, by how much more; empty: samples lie evenly.
     std::vector<Vec3f> longer_;
@@ -326,7 +340,8 @@ class GapMap {
     double reach_gap_ = 0.0, seen_gap_ = 0.0, ahead_ = 0.0;  // mm
     std::vector<std::uint8_t> pressable_;  // by cell; empty: all edges were looked at
     std::vector<std::uint8_t> matters_;  // by cell: so near to a pressable one that an edge counts
-    std::vector<float> low_, high_;      // mm, by cell, of what is in its mean
+    std::vector<FourCells> four_cells_;
+    std::vector<float> low_, high_;        // mm, by cell, of what is in its mean
     std::vector<std::uint8_t> inhabited_;  // by cell: a sample lies in it
     /// A sample near a cell that may be stepped, in cells, and its gap there carried to the cell.
     struct NearStep {

@@ -14,7 +14,8 @@ constexpr int kBlockLanes = 64;
 constexpr float kSteepest = 0.2f;
 
 /// A block of samples as the wheel sees it. Only lanes in `regular` have values: those of samples
-/// on whole cells, of one layer, under the wheel's width. The cells are the four that a sample lies
+/// on whole cells, of one layer, under the wheel's width; and before `number_cells` those in
+/// `aside`, at the wheel's side faces. The cells are the four that a sample lies
 /// between.
 struct alignas(64) PlacedBlock {
     float gap[kBlockLanes];                // mm, carried to the first cell's centre
@@ -25,9 +26,10 @@ struct alignas(64) PlacedBlock {
     float weight[kBlockLanes];       // mm2: area times the cosine of its normal against that radius
     std::int32_t cell[kBlockLanes];  // the first; before `number_cells` its column from the middle
     std::int32_t row[kBlockLanes];
-    std::uint64_t regular, special;  // lanes; special ones are to be placed one by one
-    std::uint64_t in_reach;          // regular ones with a gap within `Placing::reach`
-    float farthest;                  // mm, largest |s| of those
+    std::uint64_t regular, aside;  // lanes
+    std::uint64_t special;         // lanes that are to be placed one by one
+    std::uint64_t in_reach;        // regular ones with a gap within `Placing::reach`
+    float farthest;                // mm, largest |s| of those
     std::uint32_t block;
 };
 
@@ -43,7 +45,7 @@ struct Placing {
     float reach;        // gaps beyond are not asked for
     float seen;         // gaps beyond are left out
     float width_limit;  // |y| beyond is left out
-    float side_limit;   // |y| beyond is special
+    float side_limit;   // |y| beyond is aside
     float ahead;        // from the wheel's axis: no part of the segment beyond is left out
     float depth;        // of the segments below the design
     float crown;        // radius; 0: none
@@ -61,32 +63,39 @@ struct SampleArrays {
     float origin[3];
 };
 
-/// Fills `out` but for `block`.
-void place_block(const Placing& placing, const SampleArrays& in, PlacedBlock& out);
+/// Fills `out` but for `block`, and `across`: y of all lanes, mm.
+void place_block(const Placing& placing, const SampleArrays& in, PlacedBlock& out, float* across);
 
 /// Makes cells of columns and rows, `columns` in a row, the middle one being number `middle`. Lanes
 /// beyond the last column are regular no longer.
 void number_cells(PlacedBlock& placed, int columns, int middle);
 
-/// What samples tell of the four cells that each lies between, by cell.
-struct CellSums {
-    double* gap;              // mm, by weight
-    double* weight;           // mm2
-    float *low, *high;        // mm, of what is in that mean
-    std::uint8_t* inhabited;  // 1: a sample lies in the cell itself
+/// What samples tell of the four cells that they lie between, gathered by the first of the four.
+struct alignas(32) FourCells {
+    double weight[4];       // mm2
+    double gap[4];          // mm, by weight
+    float low[4], high[4];  // mm, of what is in that mean
 };
+void clear_cells(FourCells* cells, std::size_t count);
+/// Adds all regular samples to `cells`, and sets to 1 in `inhabited` the cells that they lie in.
+void gather_cells(const PlacedBlock& placed, int above, FourCells* cells, std::uint8_t* inhabited);
 
-/// Adds all regular samples to `sums`.
-void gather_cells(const PlacedBlock& placed, int above, const CellSums& sums);
+/// What samples tell of each cell.
+struct CellSums {
+    double* gap;        // mm, by weight
+    double* weight;     // mm2
+    float *low, *high;  // mm, of what is in that mean
+};
+/// Adds what was gathered of `count` cells.
+void spread_cells(const FourCells* cells, std::size_t count, int above, const CellSums& sums);
 
 /// Lowers `nearest` and raises `farthest` (mm, by cell) to the gaps of the samples in each cell.
 /// `above`: cells to the next row, 0 if there is one row.
 void range_cells(const PlacedBlock& placed, int above, double* nearest, double* farthest);
 
-/// Adds to the weighted gaps and weights of the four cells of each sample, where it lies no deeper
-/// than `limit` (mm, by cell).
-void average_cells(const PlacedBlock& placed, int above, const float* limit, double* gap,
-                   double* weight);
+/// The same of those samples only that lie no deeper than `limit` (mm, by cell) of each cell, and
+/// without `low` and `high`.
+void average_cells(const PlacedBlock& placed, int above, const float* limit, FourCells* cells);
 
 /// What is true at (u, v) between four cells: a + b u + c v + d u v.
 struct Bilinear {

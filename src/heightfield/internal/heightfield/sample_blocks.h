@@ -28,7 +28,10 @@ class SampleBlocks {
         std::array<float, kLanes> nx, ny, nz;
         std::array<float, kLanes> area;  // mm2
         std::uint64_t leaning = 0;       // lanes whose rays are not their normals
+        std::uint64_t border = 0;        // lanes on a border of the surface
         Vec3 origin = Vec3::Zero();      // mm, work frame
+
+        Vec3f normal(std::size_t lane) const { return {nx[lane], ny[lane], nz[lane]}; }
     };
     /// What is lowered in a block, one bit a lane.
     struct Change {
@@ -54,6 +57,16 @@ class SampleBlocks {
     Vec3 top(std::size_t position) const {
         const std::uint32_t s = sample(position);
         return field_.point[s] + height(position) * field_.ray(s).cast<double>();
+    }
+    /// The same of the block alone, whose design point is rounded to 1e-7 of the block's size; of
+    /// what is not to be touched the design point.
+    Vec3 top_in_block(std::size_t position) const {
+        const Block& from = blocks_[position / kLanes];
+        const std::size_t lane = position % kLanes;
+        const Vec3f offset(from.x[lane], from.y[lane], from.z[lane]);
+        const bool leans = (from.leaning >> lane & 1U) != 0;
+        const Vec3f ray = leans ? field_.rays[sample(position)] : from.normal(lane);
+        return from.origin + offset.cast<double>() + from.height[lane] * ray.cast<double>();
     }
 
     /// Replaces `found` by all blocks that may have a segment in the reach, ascending.

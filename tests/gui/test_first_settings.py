@@ -105,6 +105,51 @@ assert doc.RasterPath.PoseCount > 2
     )
 
 
+def test_another_kind_of_machine_gets_values_of_its_own(freecad):
+    freecad.run(
+        """
+from support.hands import *
+start()
+doc = FreeCAD.newDocument("work")
+doc.UndoMode = 1
+part = doc.addObject("Part::Feature", "Shell")
+part.Shape = Part.makeCylinder(30, 60, FreeCAD.Vector(), FreeCAD.Vector(0, 1, 0), 120)
+doc.recompute()
+side = next(i for i, f in enumerate(part.Shape.Faces, 1) if hasattr(f.Surface, "Radius"))
+Gui.Selection.clearSelection()
+Gui.Selection.addSelection(doc.Name, "Shell", f"Face{side}")
+menu("New job")
+machine, path = doc.BeltMachine, doc.RasterPath
+radius, travel, cell = (getattr(machine, name).Value for name in ("WheelRadius", "ForceTravel", "ContactSpacing"))
+along = FreeCAD.Vector(path.Direction)
+box = field("Kind", QtGui.QComboBox)
+
+def kind(text):
+    box.setCurrentIndex(box.findText(text))
+    settle()
+
+assert visible(QtGui.QWidget, "WheelRadius") and not visible(QtGui.QWidget, "RunWidth")
+kind("Free belt")
+assert visible(QtGui.QWidget, "RunWidth") and not visible(QtGui.QWidget, "WheelRadius")
+# The belt gives way, and runs round the part.
+assert machine.ForceTravel.Value > travel and machine.ContactSpacing.Value > cell
+assert abs(path.Direction.dot(along)) < 0.1 and abs(path.Direction.y) < 0.01
+assert "The belt is taken as it is" in field("note").text(), field("note").text()
+force = machine.Force
+assert abs(force.getValueAs("N") - 38) < 1e-9, force  # 0.75 N for each of 50 mm
+kind("Contact wheel")
+assert (machine.WheelRadius.Value, machine.ForceTravel.Value, machine.ContactSpacing.Value) == (radius, travel, cell)
+assert abs(path.Direction.dot(along)) > 0.99 and "Chosen from the part: wheel" in field("note").text()
+kind("Platen")
+press("OK")
+assert doc.RasterPath.PoseCount > 2 and machine.Kind == "platen"
+doc.undo()
+assert [o.Name for o in doc.Objects] == ["Shell"]
+""",
+        window=True,
+    )
+
+
 def test_a_large_part_takes_no_millions_of_samples_without_a_word(freecad):
     freecad.run(
         """

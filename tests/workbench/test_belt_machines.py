@@ -16,7 +16,6 @@ from beltgrinding.calibration import contacts  # noqa: E402
 from beltgrinding.contact import single_contact  # noqa: E402
 from beltgrinding.engine import InputError  # noqa: E402
 from beltgrinding.job import fork, load as jobs  # noqa: E402
-from beltgrinding.raster import proposal  # noqa: E402
 from beltgrinding.simulation.result import Result  # noqa: E402
 from test_job import plate_job  # noqa: E402
 
@@ -181,9 +180,6 @@ def test_a_belt_is_not_rigid():
 def test_what_knows_wheels_only_says_so():
     job = jobs.validate(belt_job())
     with pytest.raises(InputError, match="free_belt") as error:
-        proposal.propose(job)
-    assert error.value.code == "job.needs_wheel"
-    with pytest.raises(InputError) as error:
         single_contact.rim(job)
     assert error.value.code == "job.needs_wheel"
     with pytest.raises(InputError) as error:

@@ -127,3 +127,80 @@ def test_a_missing_face_is_an_error():
     job["design"]["faces"] = [99]
     with pytest.raises(InputError, match="99"):
         proposal.propose(job)
+
+
+BELT = {
+    "kind": "free_belt",
+    "free_run": {"width_mm": 20, "tension_N_per_mm": 2.0, "length_mm": 150},
+}
+LAYER = {"thickness_mm": 5.0, "youngs_modulus_MPa": 2.0, "poissons_ratio": 0.45}
+PLATEN = {"kind": "platen", "free_run": {"width_mm": 20}, "platen": {"layers": [LAYER]}}
+
+
+@pytest.mark.parametrize("machine", [BELT, PLATEN], ids=["free belt", "platen"])
+def test_a_belt_takes_the_allowance_off(machine):
+    stock = {"kind": "allowance", "allowance_mm": 0.1}
+    found = proposal.propose(plate(belt_machine=machine, stock=stock))
+    assert found["notes"] == [] and "wheel_radius_mm" not in found
+    given = {**machine, "force_N": found["force_N"]}
+    given["contact_spacing_mm"] = found["contact_spacing_mm"]
+    if machine is BELT:  # what it gives way is more than the default
+        given["force_travel_mm"] = found["force_travel_mm"]
+        assert found["force_travel_mm"] > 5.0
+    settings = {"along": "direction"}
+    for key in ("direction", "step_over_share", "feed_mm_s", "approach_feed_mm_s"):
+        settings[key] = found[key]
+    share, mean = ground(plate()["design"], given, settings, 1.0, stock)
+    print(f"proposed {share:.0%}, mean {mean:+.3f} mm")
+    assert abs(mean - 0.1 * (1.0 - found["ground_share"])) < 0.015
+
+
+@pytest.fixture(scope="module")
+def parts(freecad, tmp_path_factory):
+    """BREP files: a third of a cylinder of R 30, 60 mm long; a block with a slot 30 mm wide."""
+    folder = tmp_path_factory.mktemp("belts")
+    freecad.run(
+        f"""
+import FreeCAD, Part
+V = FreeCAD.Vector
+Part.makeCylinder(30, 60, V(0, 0, 0), V(0, 1, 0), 120).exportBrep("{folder}/third.brep")
+slot = Part.makeBox(120, 30, 10, V(-60, -15, 0))
+Part.makeBox(120, 60, 20, V(-60, -30, -10)).cut(slot).exportBrep("{folder}/slot.brep")
+"""
+    )
+    return folder
+
+
+def largest(path, machine, like=lambda shape, face: True):
+    """A validated job of the largest face of a file that is like that."""
+    design = {"file": str(path)}
+    shape = core.Shape.read(str(path))
+    faces = [face for face in range(shape.face_count) if like(shape, face)]
+    design["faces"] = [max(faces, key=shape.face_area) + 1]
+    job = {"schema": 1, "design": design, "stock": {"allowance_mm": 0.1}, "belt_machine": machine}
+    return jobs.validate({**job, "programs": [{"poses": []}]})
+
+
+def test_a_belt_runs_round_what_is_bent_and_a_wheel_along_it(parts):
+    def side(shape, face):
+        return shape.surface_type(face) == "cylinder"
+
+    wheel = proposal.propose(largest(parts / "third.brep", {}, side))
+    assert abs(wheel["direction"][0]) < 0.5  # the chord is 52 mm, the length 60
+    belt = proposal.propose(largest(parts / "third.brep", BELT, side))
+    assert abs(np.dot(belt["direction"], wheel["direction"])) < 0.1
+    assert abs(belt["direction"][1]) < 0.01
+
+
+def test_a_belt_that_does_not_fit_is_told_with_one_that_does(parts):
+    def bottom(shape, face):
+        return abs(shape.face_area(face) - 120 * 30) < 1.0
+
+    # On a belt of 50 mm the slot's walls stand.
+    wide = {**BELT, "free_run": {**BELT["free_run"], "width_mm": 50}}
+    found = proposal.propose(largest(parts / "slot.brep", wide, bottom))
+    note = found["notes"][0]
+    assert note.code == "raster.proposed_narrower", found["notes"]
+    print(*found["notes"], sep="\n")
+    assert 12 <= note.arguments["narrower"] <= 25  # places lie some mm apart
+    assert proposal.propose(largest(parts / "slot.brep", BELT, bottom))["notes"] == []

@@ -5,6 +5,7 @@ from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
 from .job_data import child, children
+from .properties import rule
 from .raster_path import RasterPath, generate, proposed
 from .set_up import make_belt_machine, make_raster, make_stock
 from .stock import Stock
@@ -42,14 +43,21 @@ def propose(job, text=""):
         return waiting.wait(lambda context: proposal.propose(data, context), text)
 
 
+# Property: what a proposal calls it, if it has it, by the kind of machine.
+WHEEL = {
+    "WheelRadius": "wheel_radius_mm",
+    "WheelWidth": "wheel_width_mm",
+    "RimThickness": "rim_thickness_mm",
+}
+BELT = {"ForceTravel": "force_travel_mm", "ContactSpacing": "contact_spacing_mm"}
+
+
 def values(job, found):
     """{object: {property: value}} of a proposal."""
     return {
         job: {"Spacing": found["spacing_mm"]},
         child(job, BeltMachine): {
-            "WheelRadius": found["wheel_radius_mm"],
-            "WheelWidth": found["wheel_width_mm"],
-            "RimThickness": found["rim_thickness_mm"],
+            **{name: found[key] for name, key in {**WHEEL, **BELT}.items() if key in found},
             "Force": f"{found['force_N']} N",
         },
         **{
@@ -73,8 +81,13 @@ def apply(job, found, before=None):
     kept = {} if before is None else values(job, before)
     for obj, wanted in values(job, found).items():
         for name, value in wanted.items():
-            if before is None or _is(getattr(obj, name), kept[obj][name]):
+            if name not in kept.get(obj, ()) or _is(getattr(obj, name), kept[obj][name]):
                 setattr(obj, name, value)
+    machine = child(job, BeltMachine)
+    for name, key in BELT.items():  # of a belt before, and of no use to what it is now
+        if before and key in before and key not in found:
+            if _is(getattr(machine, name), before[key]):
+                setattr(machine, name, rule(f"belt_machine.{key}")[1])
 
 
 def _is(now, value):

@@ -1,4 +1,4 @@
-"""First settings for a part: wheel, force, passes, feed, samples, chosen from the faces that are ground.
+"""First settings for a part: wheel or belt's force, passes, feed, samples, chosen from the faces that are ground.
 
 Rules of thumb and one balance of volumes, for a first look that is near what the user wants; none of it
 replaces his knowledge of the machine. What is assumed is said.
@@ -13,6 +13,7 @@ from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job import machine as machines
 from ..job.workpiece import apply_stock, make_field, read_design
+from . import belt_proposal
 from .clearing import Clearing
 from .passes import contact_frames
 from .raster_path import raster, validate
@@ -40,33 +41,42 @@ AXIS = math.cos(math.radians(10.0))  # a direction so near to an axis of the par
 
 
 def propose(job, context=None):
-    """Settings for a validated job's design, stock and law.
+    """Settings for a validated job's design, stock, kind of belt machine and law.
 
-    Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm, force_N, direction (3,), step_over_share,
-    feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what is to come off, area_mm2, ground_share: of it, that
-    the passes touch, length_mm of them, notes: list of Fact). Raises InputError, Cancelled.
+    Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm: of a wheel, contact_spacing_mm, and force_travel_mm: of
+    a belt, force_N, direction (3,), step_over_share, feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what
+    is to come off, area_mm2, ground_share: of it, that the passes touch, length_mm of them, notes: list of Fact). A
+    free belt or a platen is taken as it is. Raises InputError, Cancelled.
     """
-    machines.need_wheel(job, core.Fact("raster.first_settings", "first settings are proposed"))
     context = context or core.RunContext()
     job, notes = copy.copy(job), []
     shape = read_design(job["design"], context)
     area, field = _look(job, shape, context)
     middle, along = _principal(field)
-    settings = validate(
-        {
-            "along": "direction",
-            "direction": along.tolist(),
-            "step_over_share": STEP_SHARE,
-            "approach_feed_mm_s": APPROACH_FEED,
-        }
-    )
-    extent = float(np.ptp(field.points @ along))
-    radius, width = _wheel(job, shape, field, settings, area, extent, notes, context)
-    allowance = _allowance(job, field, notes, context)
     machine = job["belt_machine"] = copy.deepcopy(job["belt_machine"])
-    _mount(machine, radius, width)
+    if machines.wheel_presses(machine):
+        settings = _settings(along)
+        extent = float(np.ptp(field.points @ along))
+        _mount(machine, *_wheel(job, shape, field, settings, area, extent, notes, context))
+        tool = {
+            "wheel_radius_mm": machine["wheel"]["radius_mm"],
+            "wheel_width_mm": machine["wheel"]["width_mm"],
+            "rim_thickness_mm": machine["compliance"]["rim_thickness_mm"],
+        }
+    else:
+        tool = belt_proposal.mount(machine)
+        look = {
+            "standing": _standing,
+            "bends": lambda way: _bends(job, shape, area, _settings(way), context)[1:],
+            "widths": WIDTHS,
+            "unfit": UNFIT,
+            "as_good": AS_GOOD,
+        }
+        along = belt_proposal.direction(job, shape, field, along, look, notes, context)
+        settings = _settings(along)
+    allowance = _allowance(job, field, notes, context)
     laid = raster(job, settings, context)
-    force, rim = machine["force_N"], machine["compliance"]["rim_thickness_mm"]
+    force = machine["force_N"]
     feed = _feed(job, settings, laid, allowance)
     if feed is not None and not FEEDS[0] <= feed <= FEEDS[1]:
         bound = min(max(feed, FEEDS[0]), FEEDS[1])
@@ -85,9 +95,7 @@ def propose(job, context=None):
             )
     spacing, samples = _spacing(area, laid["contact_width_mm"], notes)
     return {
-        "wheel_radius_mm": radius,
-        "wheel_width_mm": width,
-        "rim_thickness_mm": rim,
+        **tool,
         "force_N": force,
         "direction": along.tolist(),
         "step_over_share": STEP_SHARE,
@@ -103,6 +111,25 @@ def propose(job, context=None):
         "length_mm": sum(one["length_mm"] for one in laid["passes"]),
         "notes": notes,
     }
+
+
+def _settings(direction):
+    """Validated settings of passes along a direction."""
+    return validate(
+        {
+            "along": "direction",
+            "direction": np.asarray(direction).tolist(),
+            "step_over_share": STEP_SHARE,
+            "approach_feed_mm_s": APPROACH_FEED,
+        }
+    )
+
+
+def _bends(job, shape, area, settings, context):
+    """Normal curvatures (n,) along and across the passes, 1/mm, positive where the faces are convex, and the areas."""
+    faces = [face - 1 for face in job["design"]["faces"] or range(1, shape.face_count + 1)]
+    parts = surfaces(job, shape, faces, math.sqrt(area / SAMPLES), settings, [], context)
+    return tuple(map(np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))))
 
 
 def _mount(machine, radius, width):
@@ -145,11 +172,7 @@ def _principal(field):
 
 def _wheel(job, shape, field, settings, area, extent, notes, context):
     """(radius, width), mm, of a cylindrical wheel."""
-    faces = [face - 1 for face in job["design"]["faces"] or range(1, shape.face_count + 1)]
-    parts = surfaces(job, shape, faces, math.sqrt(area / SAMPLES), settings, [], context)
-    along, across, weights = map(
-        np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))
-    )
+    along, across, weights = _bends(job, shape, area, settings, context)
     hollow_along, hollow_across = (
         weighted_quantile(np.maximum(-k, 0.0), weights, HOLLOW) for k in (along, across)
     )

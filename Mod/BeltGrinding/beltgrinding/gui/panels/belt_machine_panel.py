@@ -10,6 +10,7 @@ from ..common.compat import translate
 from ..widgets.form import SIGNED, Form
 from ..widgets.layer_rows import LayerRows
 from ..widgets.machine_drawing import MachineDrawing
+from .machine_form import kinds
 from .panel import Panel
 from .preset_form import HardnessField, PresetForm
 
@@ -25,13 +26,7 @@ class BeltMachinePanel(Panel):
         title = translate("BeltGrinding", "Belt machine")
         super().__init__(obj, title, "BeltGrinding_BeltMachine")
         kind = Form(obj, translate("BeltGrinding", "Kind of machine"))
-        kinds = {
-            machines.WHEEL: translate("BeltGrinding", "Contact wheel"),
-            machines.FREE_BELT: translate("BeltGrinding", "Free belt"),
-            machines.PLATEN: translate("BeltGrinding", "Platen"),
-            machines.SMALL_WHEEL: translate("BeltGrinding", "Small wheel in a fork"),
-        }
-        kind.add("Kind", translate("BeltGrinding", "Kind"), kinds)
+        kind.add("Kind", translate("BeltGrinding", "Kind"), kinds())
         self.drawing = MachineDrawing(obj)
         kind.layout_.addRow(self.drawing)
         self.run = _run_form(obj)

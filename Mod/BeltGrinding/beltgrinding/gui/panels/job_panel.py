@@ -15,6 +15,7 @@ from ..widgets.form import NUMBERS, QUANTITIES, Form
 from .finish_form import FinishForm
 from .heat_form import HeatForm
 from .law_forms import LawForms
+from .machine_form import MachineForm
 from .panel import Panel
 
 MANY = 2_000_000  # samples; more are warned of
@@ -96,6 +97,7 @@ class JobPanel(Panel):
         Gui.Selection.addSelectionGate(FaceGate())
         self.tint = FaceTint(self.document)
         self.chosen = self._numbers()
+        self.kind = self._kind()
         for form in self.form.findChildren(Form):
             if form.obj is not obj:
                 form.changed = self.estimate
@@ -134,27 +136,14 @@ class JobPanel(Panel):
                 lambda: stock.Allowance.UserString,
                 not new,
             )
-        machine = job_data.child(self.obj, BeltMachine)
+        machine, self.machine = job_data.child(self.obj, BeltMachine), None
         if machine is not None:
-            form = Form(machine, "")
-            of_wheel = machine.Kind in WHEELS
-            if of_wheel:
-                form.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
-                form.add("WheelWidth", translate("BeltGrinding", "Wheel width"))
-            else:
-                form.add("RunLength", translate("BeltGrinding", "Free length"))
-                form.add("RunWidth", translate("BeltGrinding", "Belt's width"))
-            form.add("Force", translate("BeltGrinding", "Force"))
-            form.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+            self.machine = MachineForm(machine)
             yield Fold(
                 "foldMachine",
                 translate("BeltGrinding", "Belt machine"),
-                form,
-                lambda: (
-                    f"R {machine.WheelRadius.Value:g} × {machine.WheelWidth.Value:g} mm"
-                    if of_wheel
-                    else f"{machine.RunLength.Value:g} × {machine.RunWidth.Value:g} mm"
-                ),
+                self.machine,
+                self.machine.summary,
                 not new,
             )
         self.passes = None
@@ -288,15 +277,20 @@ class JobPanel(Panel):
         try:
             found = first_settings.propose(self.obj, text)
         except (InputError, Cancelled) as error:
-            self.first["notes"] = [error]
+            self.first["notes"], self.kind = [error], self._kind()
             return
         first_settings.apply(self.obj, found, self.first)
-        self.first = self.obj.Proxy.proposed = found
-        self.chosen = self._numbers()
+        self.first = self.obj.Proxy.proposed = {**self.first, **found}
+        self.chosen, self.kind = self._numbers(), self._kind()
         for form in self.form.findChildren(Form):
             for name in form.rows:
                 if form.obj.getTypeIdOfProperty(name) in QUANTITIES | NUMBERS:
                     form.refresh(name)
+
+    def _kind(self):
+        """Of the belt machine; None where there is none."""
+        machine = job_data.child(self.obj, BeltMachine)
+        return machine and machine.Kind
 
     def _numbers(self):
         """What the feed of a new job was chosen by, and the feed."""
@@ -307,14 +301,18 @@ class JobPanel(Panel):
             stock and (stock.Kind, stock.Allowance.Value),
             machine
             and (
-                *(machine.WheelRadius.Value, machine.WheelWidth.Value, machine.Force.Value),
-                machine.BeltSpeed.Value,
+                *(machine.WheelRadius.Value, machine.WheelWidth.Value, machine.RunWidth.Value),
+                *(machine.Force.Value, machine.BeltSpeed.Value),
             ),
             [(path.Feed.Value, path.StepOverShare) for path in paths if proposed(path)],
         ]
 
     def estimate(self):
-        """Says what the settings will cost."""
+        """Says what the settings will cost; a new job gets other ones where its machine becomes another kind."""
+        if self.machine is not None:
+            self.machine.arrange()
+        if self.first is not None and "feed_mm_s" in self.first and self._kind() != self.kind:
+            self.propose()
         mark_tolerance(self.sampling, self.obj)
         try:
             self.check()
@@ -353,6 +351,15 @@ class JobPanel(Panel):
                         "BeltGrinding",
                         "⚠ Changed since the values were chosen from the part: the feed need not take the "
                         "allowance off on the mean any more.",
+                    )
+                )
+            elif "feed_mm_s" in self.first and self._kind() not in WHEELS:
+                lines.append(
+                    translate(
+                        "BeltGrinding",
+                        "Chosen from the part: force, passes, samples, and the feed at which the allowance comes off "
+                        "on the mean, if K is right: K is not known before the belt is calibrated. The belt is taken "
+                        "as it is.",
                     )
                 )
             elif "feed_mm_s" in self.first:

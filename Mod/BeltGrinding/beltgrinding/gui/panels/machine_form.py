@@ -1,0 +1,43 @@
+"""The belt machine in short, in the job's panel; all there is to it is in its own panel."""
+
+from ...objects import belt_machine as machines
+from ..common.compat import translate
+from ..widgets.form import Form
+
+OF_WHEEL, OF_BELT = {"WheelRadius", "WheelWidth"}, {"RunLength", "RunWidth"}
+
+
+def kinds():
+    """What the kinds of machines are called."""
+    return {
+        machines.WHEEL: translate("BeltGrinding", "Contact wheel"),
+        machines.FREE_BELT: translate("BeltGrinding", "Free belt"),
+        machines.PLATEN: translate("BeltGrinding", "Platen"),
+        machines.SMALL_WHEEL: translate("BeltGrinding", "Small wheel in a fork"),
+    }
+
+
+class MachineForm(Form):
+    """Of a BeltMachine."""
+
+    def __init__(self, machine):
+        super().__init__(machine, "")
+        self.add("Kind", translate("BeltGrinding", "Kind"), kinds())
+        self.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
+        self.add("WheelWidth", translate("BeltGrinding", "Wheel width"))
+        self.add("RunLength", translate("BeltGrinding", "Free length"))
+        self.add("RunWidth", translate("BeltGrinding", "Belt's width"))
+        self.add("Force", translate("BeltGrinding", "Force"))
+        self.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
+        self.arrange()
+
+    def arrange(self):
+        """Shows the rows of the machine's kind."""
+        of_kind = OF_WHEEL if self.obj.Kind in machines.WHEELS else OF_BELT
+        self.show_rows({"Kind", "Force", "BeltSpeed"} | of_kind)
+
+    def summary(self):
+        """What the machine is, in a few words."""
+        if self.obj.Kind in machines.WHEELS:
+            return f"R {self.obj.WheelRadius.Value:g} × {self.obj.WheelWidth.Value:g} mm"
+        return f"{self.obj.RunLength.Value:g} × {self.obj.RunWidth.Value:g} mm"

@@ -374,10 +374,19 @@ void GapMap::average_gap() {
     for (std::size_t cell = 0; cell < nearest_.size(); ++cell)
         limit_[cell] = static_cast<float>(nearest_[cell] + layer_);
     const int above = grid_.ny > 1 ? grid_.nx : 0;
-    four_cells_.resize(limit_.size());
-    clear_cells(four_cells_.data(), limit_.size());
+    // What was gathered holds where no sample is too deep, or placed by itself since.
+    wider_.assign(limit_.size(), 0);
+    for (std::size_t first = 0; first < limit_.size(); ++first) {
+        FourCells& four = four_cells_[first];
+        if (!(four.low[0] <= four.high[0])) continue;
+        const std::size_t next = first + static_cast<std::size_t>(above);
+        const std::size_t cells[4] = {first, first + 1, next, next + 1};
+        for (std::size_t k = 0; k < 4; ++k)
+            if (kind_[cells[k]] != kWhole || four.high[k] > limit_[cells[k]]) wider_[first] = 1;
+        if (wider_[first] != 0) clear_cells(&four, 1);
+    }
     for (std::size_t k = 0; k < placed_count_; ++k)
-        average_cells(placed_[k], above, limit_.data(), four_cells_.data());
+        average_cells(placed_[k], above, wider_.data(), limit_.data(), four_cells_.data());
     spread_cells(four_cells_.data(), limit_.size(), above,
                  {gap_.data(), weight_.data(), nullptr, nullptr});
     for (const Footprint& f : footprints_) {

@@ -274,14 +274,17 @@ void spread_cells(const FourCells* cells, std::size_t count, int above, const Ce
 }
 
 BELTGRINDING_CLONES
-void average_cells(const PlacedBlock& placed, int above, const float* limit, FourCells* cells) {
+void average_cells(const PlacedBlock& placed, int above, const std::uint8_t* wanted,
+                   const float* limit, FourCells* cells) {
     for (int first = 0; first < kBlockLanes; first += kWide) {
-        const auto lanes = static_cast<std::uint32_t>((placed.regular >> first) & 0xFFU);
+        std::uint32_t lanes = 0;
+        for (int k = 0; k < kWide; ++k) lanes |= std::uint32_t{wanted[placed.cell[first + k]]} << k;
+        lanes &= static_cast<std::uint32_t>(placed.regular >> first);
         if (lanes == 0) continue;
         Four by_lane[kWide], carried[kWide];
         share_out(placed, first, by_lane, carried);
-        for (int k = 0; k < kWide; ++k) {
-            if ((lanes >> k & 1U) == 0) continue;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int k = __builtin_ctz(lanes);
             const std::int32_t at = placed.cell[first + k];
             const Four limits{limit[at], limit[at + 1], limit[at + above], limit[at + above + 1]};
             const FourInts near = carried[k] <= limits;
@@ -290,8 +293,7 @@ void average_cells(const PlacedBlock& placed, int above, const float* limit, Fou
             FourCells& to = cells[at];
             add(to.weight, share);
             add(to.gap, share * carried[k]);
-            to.low[0] = 0.0f;  // there is one
-            to.high[0] = 0.0f;
+            to.low[0] = to.high[0] = 0.0f;  // there is one
         }
     }
 }

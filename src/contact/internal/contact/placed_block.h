@@ -93,9 +93,10 @@ void spread_cells(const FourCells* cells, std::size_t count, int above, const Ce
 /// `above`: cells to the next row, 0 if there is one row.
 void range_cells(const PlacedBlock& placed, int above, double* nearest, double* farthest);
 
-/// The same of those samples only that lie no deeper than `limit` (mm, by cell) of each cell, and
-/// without `low` and `high`.
-void average_cells(const PlacedBlock& placed, int above, const float* limit, FourCells* cells);
+/// The same for first cells that are `wanted` (1) only, of those samples only that lie no deeper
+/// than `limit` (mm, by cell) of each cell, and without `low` and `high`.
+void average_cells(const PlacedBlock& placed, int above, const std::uint8_t* wanted,
+                   const float* limit, FourCells* cells);
 
 /// What is true at (u, v) between four cells: a + b u + c v + d u v.
 struct Bilinear {

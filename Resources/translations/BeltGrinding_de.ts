@@ -1663,6 +1663,14 @@
         <source>removed on the way down to the passes and off them, percent, by force and time; -1: not known</source>
         <translation>des Abtrags, auf dem Weg hinab zu den Bahnen und von ihnen weg, in Prozent, nach Kraft und Zeit; -1: nicht bekannt</translation>
     </message>
+    <message>
+        <source>when every motion ends, s; empty: not known</source>
+        <translation>wann jede Bewegung endet, s; leer: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>zones by which events tell the finish, JSON</source>
+        <translation>Zonen, nach denen Ereignisse die Oberflächengüte beurteilen, JSON</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -5299,6 +5307,14 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     <message>
         <source>remaining cut</source>
         <translation>verbliebene Schnittfähigkeit</translation>
+    </message>
+    <message>
+        <source>In tolerance, but the finish is not as called for: {} of {} zones</source>
+        <translation>In der Toleranz, aber die Oberflächengüte ist nicht wie gefordert: {} von {} Zonen</translation>
+    </message>
+    <message>
+        <source>In tolerance, but the finish of a zone is not known</source>
+        <translation>In der Toleranz, aber die Oberflächengüte einer Zone ist nicht bekannt</translation>
     </message>
 </context>
 <context>

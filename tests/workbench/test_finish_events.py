@@ -213,6 +213,26 @@ def test_what_is_not_known_has_its_reason_and_a_place(changes, reason):
     assert result.summary["events"]["finish_unknown"] == 1
 
 
+def test_what_a_pass_outside_of_the_measurements_leaves_is_told_as_that():
+    """Ra before grinding is given: what is not known is left by the first program, whose feed was not measured."""
+    job = crossing_job()
+    for pose in job["programs"][0]["poses"]:
+        pose["feed_mm_s"] = 10
+    result = beltgrinding.run(lined(job))
+    assert result.verdict["finish"]["outside_shares"]["feed"] > 0.1
+    codes = [fact["code"] for fact in result.verdict["note_facts"]]
+    assert "inspection.finish_pass_before" in codes and "inspection.finish_unsettled" not in codes
+    both = np.flatnonzero(np.asarray(result.field.finish["passes"]) == 2)
+    asked = {"Ra_max_um": 9.0, "acceptance": "Tmax"}
+    judged = finish_zones.judge_zone(result.job, result.field, asked, both, result.motions)
+    assert (
+        judged["Ra"]["verdict"] == "unknown" and judged["Ra"]["unknown"]["reason"] == "pass_before"
+    )
+    assert judged["Ra"]["unknown"]["place"]["line"] == 201
+    event = finish_events._of_unknown("z", "Tmax", "Ra", judged["Ra"])
+    assert event[-1][1].code == "event.finish_pass_before"
+
+
 def test_a_rigid_tools_zone_is_told_though_nothing_was_computed():
     job = finish_job([zone(Ra_max_um=1.0)])
     job["law"] = {"model": "geometric"}

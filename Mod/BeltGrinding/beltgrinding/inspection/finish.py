@@ -153,7 +153,18 @@ def notes(job, field):
         if found["outside_shares"][name.replace(" ", "_")] > 0.0
     ]
     unsettled = 1.0 - found["known_share"] - sum(found["outside_shares"].values())
-    if found["ground_area_mm2"] > 0.0 and unsettled > 1e-6:
+    if not (found["ground_area_mm2"] > 0.0 and unsettled > 1e-6):
+        return told
+    if "initial_Ra_um" in job["finish"]:
+        told.append(
+            core.Fact(
+                "inspection.finish_pass_before",
+                "{percent:.1f} % of the ground area has no roughness: too much is left there of a pass before the last, "
+                "which lay outside of what was measured",
+                percent=100.0 * unsettled,
+            )
+        )
+    else:
         told.append(
             core.Fact(
                 "inspection.finish_unsettled",

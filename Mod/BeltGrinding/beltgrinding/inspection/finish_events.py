@@ -18,7 +18,11 @@ REASONS = {  # of what is not known: (code, text) of a fact
     "no_model": ("event.finish_no_model", "mostly since no measurements are given"),
     "unsettled": (
         "event.finish_unsettled",
-        "mostly since too much is left of what was before grinding, which is not known",
+        "mostly since too much is left of what was before, which is not known",
+    ),
+    "pass_before": (
+        "event.finish_pass_before",
+        "mostly since too much is left of a pass before, which lay outside of what was measured",
     ),
     "no_direction": (
         "event.finish_no_direction",

@@ -13,7 +13,8 @@ CROSSED = ("X", "M")  # lays of several directions
 ROUNDING = 1e-6  # of a roughness that is kept in single precision
 LEAST_TRACE = 1e-6  # of a direction on the surface, that it tells one there
 # Why something is not known, beside the quantities of ``OUTSIDE``.
-NOT_COMPUTED, NO_PASS, NO_MODEL, UNSETTLED = "not_computed", "no_pass", "no_model", "unsettled"
+NOT_COMPUTED, NO_PASS, NO_MODEL = "not_computed", "no_pass", "no_model"
+UNSETTLED, PASS_BEFORE = "unsettled", "pass_before"
 NO_DIRECTION, NO_REST = "no_direction", "no_rest"
 NO_SAMPLE = "no_sample"
 
@@ -110,8 +111,12 @@ def _roughness_reasons(job, field, samples):
     """(k,) why the roughness of samples is not known, where it is not."""
     if field.finish is None:
         return np.full(len(samples), NOT_COMPUTED, dtype=object)
-    measured = "model" in job.get("finish", {})
-    found = np.full(len(samples), UNSETTLED if measured else NO_MODEL, dtype=object)
+    given, reason = job.get("finish", {}), UNSETTLED
+    if "model" not in given:
+        reason = NO_MODEL
+    elif "initial_Ra_um" in given:  # what is not known is left by a pass
+        reason = PASS_BEFORE
+    found = np.full(len(samples), reason, dtype=object)
     outside = np.asarray(field.finish["outside"])[samples]
     for number, name in enumerate(OUTSIDE, 1):
         found[outside == number] = name.replace(" ", "_")

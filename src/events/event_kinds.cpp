@@ -124,7 +124,7 @@ constexpr std::array kKinds = {
               "refine the contact grid, or raise belt_machine.contact_tolerance"},
     EventKind{
         "roughness_exceeded", kError, "um", kLarger,
-        "a zone is rougher than it calls for; the value is its greatest Ra",
+        "a zone is rougher than it calls for; the value is the Ra at the worst place",
         "grind the zone once more with a finer grit, or at pressure, speed and feed that left "
         "less in the measurements"},
     EventKind{"wrong_lay", kError, "%", kLarger,

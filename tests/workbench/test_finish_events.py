@@ -67,7 +67,7 @@ def crossed():
 
 DEMANDS = [
     ({"Ra_max_um": 3.0}, "roughness_exceeded", ["roughness_exceeded", "finish_untouched"]),
-    ({"Ra_max_um": 0.9}, "roughness_exceeded", ["roughness_exceeded", "finish_untouched"]),
+    ({"Ra_max_um": 0.9, "acceptance": "T16%"}, "roughness_exceeded", ["roughness_exceeded"]),
     (
         {"Ra_max_um": 3.2},
         None,
@@ -117,10 +117,19 @@ def test_the_place_the_line_and_the_time_are_of_the_pass_that_left_it_so(ground)
     assert event["time"] == event["worst_time"] == pytest.approx(min(max(x - 10, 0), 40) / 30)
     share = float(np.asarray(ground.field.areas)[passes].sum() / ground.field.areas.sum())
     assert event["value"] == pytest.approx(100 * share, rel=1e-5) and event["limit"] == 0.0
-    # Where no pass was nothing is earlier than the end of the programs, and no line did it.
+    # Of what passes left it is the roughest, though what none touched is rougher.
     (event,) = of_finish(judged_again(ground, [zone(Ra_max_um=0.9)]))
+    assert (
+        event["line"] == 101 and event["value"] == pytest.approx(rough.max()) and rough.max() < 3.2
+    )
+    assert np.allclose(event["point"], ground.field.points[rough.argmax()])
+    # Where passes left what is called for it is what they missed; no line did it, and the end is when it is known.
+    (event,) = of_finish(judged_again(ground, [zone(Ra_max_um=3.0)]))
     assert event["line"] == 0 and event["time"] == pytest.approx(40 / 30)
     assert event["value"] == pytest.approx(3.2) and event["value"] > rough.max()
+    area = np.asarray(ground.field.areas)
+    share = 100 * area[~passes].sum() / area.sum()
+    assert event["facts"][1]["arguments"]["percent"] == pytest.approx(share, rel=1e-5)
 
 
 def test_each_zone_and_each_failure_is_one_event_by_its_own_program(crossed):

@@ -117,21 +117,28 @@ def _event(known, motions, code, value, limit, place, facts):
 
 
 def _of_roughness(job, zone, acceptance, judged, asked):
+    worst = judged["worst"]
     facts = [
         core.Fact(
             "event.roughness_exceeded",
             "zone '{zone}': Ra {worst:.3g} µm where {limit:.3g} µm are called for ({acceptance}); {percent:.3g} % of its "
             "area are above",
             zone=zone,
-            worst=judged["max_um"],
+            worst=worst["Ra_um"],
             limit=judged["limit_um"],
             acceptance=acceptance,
             percent=100.0 * judged["above_share"],
         )
     ]
-    if judged["worst"]["motion"] is None:
-        facts.append(core.Fact("event.finish_untouched", "no pass has touched it there"))
-    return ROUGH, judged["max_um"], judged["limit_um"], judged["worst"], facts
+    if judged["untouched_share"] > 0.0:
+        facts.append(
+            core.Fact(
+                "event.finish_untouched",
+                "no pass has touched {percent:.3g} % of it",
+                percent=100.0 * judged["untouched_share"],
+            )
+        )
+    return ROUGH, worst["Ra_um"], judged["limit_um"], worst, facts
 
 
 def _of_lay(job, zone, acceptance, judged, asked):

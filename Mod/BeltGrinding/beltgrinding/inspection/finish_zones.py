@@ -12,11 +12,12 @@ SIXTEEN_PERCENT = 0.16  # ISO 21920-3
 CROSSED = ("X", "M")  # lays of several directions
 ROUNDING = 1e-6  # of a roughness that is kept in single precision
 LEAST_TRACE = 1e-6  # of a direction on the surface, that it tells one there
-# Why something is not known, beside the quantities of ``OUTSIDE``.
-NOT_COMPUTED, NO_PASS, NO_MODEL = "not_computed", "no_pass", "no_model"
-UNSETTLED, PASS_BEFORE = "unsettled", "pass_before"
-NO_DIRECTION, NO_REST = "no_direction", "no_rest"
-NO_SAMPLE = "no_sample"
+# Why something is not known; those of ``OUTSIDE`` have the numbers that core gives them.
+REASONS = (
+    "not_computed",
+    *(name.replace(" ", "_") for name in OUTSIDE),
+    *("no_pass", "no_model", "unsettled", "pass_before", "no_direction", "no_rest"),
+)
 
 
 def allowed_share(acceptance):
@@ -47,7 +48,7 @@ def judge_zone(job, field, asked, samples, motions=None):
     verdicts, judged = [], {"acceptance": asked["acceptance"]}
     limit = asked.get("Ra_max_um")
     if limit is not None:
-        judged["Ra"] = _judge_roughness(job, field, limit, samples, share, motions)
+        judged["Ra"] = _judge_roughness(job, field, limit, allowed, samples, share, motions)
         verdicts.append((judged["Ra"], "above_share"))
     if asked.get("lay") is not None:
         judged["lay"] = _judge_lay(job, field, asked, samples, share, motions)
@@ -55,7 +56,7 @@ def judge_zone(job, field, asked, samples, motions=None):
     for one, beyond in verdicts:
         one["verdict"] = _word(one[beyond], one["unknown_share"], allowed, whole)
         if not whole > 0.0:
-            one["unknown"] = {"reason": NO_SAMPLE, "place": None}
+            one["unknown"] = {"reason": "no_sample", "place": None}
     words = [one["verdict"] for one, _ in verdicts]
     judged["verdict"] = next((w for w in ("fail", "unknown", "pass") if w in words), "unknown")
     return judged
@@ -86,46 +87,49 @@ def _word(off, unknown, allowed, whole):
     return "unknown" if off + unknown > allowed or not whole > 0.0 else "pass"
 
 
-def _judge_roughness(job, field, limit, samples, share, motions):
+def _judge_roughness(job, field, limit, allowed, samples, share, motions):
     values = np.full(len(samples), np.nan)
+    touched = np.zeros(len(samples), dtype=bool)
     if field.finish is not None:
         values = roughness(field)[samples]
+        touched = np.asarray(field.finish["passes"])[samples] > 0
     known = np.isfinite(values)
     above = np.nan_to_num(values) > limit * (1.0 + ROUNDING)
     worst = None
     if above.any():
-        worst = place(field, samples[int(np.nan_to_num(values).argmax())], motions)
+        # What no pass has touched is rough as it was: it counts where the rest would do.
+        rough = above & touched if share(above & touched) > allowed else above
+        k = int(np.flatnonzero(rough)[values[rough].argmax()])
+        worst = {"Ra_um": float(values[k]), **place(field, samples[k], motions)}
     return {
         "limit_um": limit,
         "max_um": float(values[known].max()) if known.any() else None,
         "above_share": share(above),
+        "untouched_share": share(above & ~touched),
         "unknown_share": share(~known),
         "worst": worst,
-        "unknown": _unknown(
-            field, samples, ~known, _roughness_reasons(job, field, samples), motions
-        ),
+        "unknown": _unknown(field, samples[~known], _why_not_rough(job), motions),
     }
 
 
-def _roughness_reasons(job, field, samples):
-    """(k,) why the roughness of samples is not known, where it is not."""
-    if field.finish is None:
-        return np.full(len(samples), NOT_COMPUTED, dtype=object)
-    given, reason = job.get("finish", {}), UNSETTLED
+def _why_not_rough(job):
+    """``why`` of ``_unknown`` for a roughness."""
+    given, rest = job.get("finish", {}), "unsettled"
     if "model" not in given:
-        reason = NO_MODEL
+        rest = "no_model"
     elif "initial_Ra_um" in given:  # what is not known is left by a pass
-        reason = PASS_BEFORE
-    found = np.full(len(samples), reason, dtype=object)
-    outside = np.asarray(field.finish["outside"])[samples]
-    for number, name in enumerate(OUTSIDE, 1):
-        found[outside == number] = name.replace(" ", "_")
-    found[np.asarray(field.finish["passes"])[samples] == 0] = NO_PASS
-    return found
+        rest = "pass_before"
+
+    def why(passes, outside):
+        found = np.where(outside > 0, outside, REASONS.index(rest))
+        return np.where(passes > 0, found, REASONS.index("no_pass"))
+
+    return why
 
 
 def _judge_lay(job, field, asked, samples, share, motions):
-    angle, crossing, off, unknown, reasons = _lay(job, field, asked, samples)
+    angle, crossing, off, unknown, rest = _lay(job, field, asked, samples)
+    no_pass, rest = REASONS.index("no_pass"), REASONS.index(rest)
     worst = None
     if off.any():
         # Farthest from what is called for; of crossed scratches, least or most crossed.
@@ -144,7 +148,9 @@ def _judge_lay(job, field, asked, samples, share, motions):
         "off_share": share(off),
         "unknown_share": share(unknown),
         "worst": worst,
-        "unknown": _unknown(field, samples, unknown, reasons, motions),
+        "unknown": _unknown(
+            field, samples[unknown], lambda passes, _: np.where(passes > 0, rest, no_pass), motions
+        ),
     }
 
 
@@ -155,24 +161,21 @@ def _tolerance(asked):
 def _lay(job, field, asked, samples):
     """((k,) angle from the direction that is called for, rad, nan: there is none; (k,) angle by which the last two passes'
     scratches cross, rad, nan: fewer than two; (k,) whether the scratches are not what is called for; (k,) whether that is
-    not known; (k,) why).
+    not known; why, where passes were).
     """
     count, symbol = len(samples), asked["lay"]
     nowhere, none = np.zeros(count, dtype=bool), np.full(count, np.nan)
     if field.finish is None:
-        return none, none, nowhere, ~nowhere, np.full(count, NOT_COMPUTED, dtype=object)
+        return none, none, nowhere, ~nowhere, "not_computed"
     lay = np.asarray(field.finish["lay"], dtype=float)[samples]
     crossing = np.asarray(field.finish["crossing"], dtype=float)[samples]
-    reasons = np.full(count, NO_DIRECTION, dtype=object)
-    reasons[np.asarray(field.finish["passes"])[samples] == 0] = NO_PASS
     unknown = ~lay.any(axis=1)
     across = crossed_of(job, field)
     across = None if across is None else across[samples]
     if symbol in CROSSED:
         if across is None:
-            reasons[~unknown] = NO_REST
-            return none, crossing, nowhere, ~nowhere, reasons
-        return none, crossing, ~across & ~unknown, unknown, reasons
+            return none, crossing, nowhere, ~nowhere, "no_rest"
+        return none, crossing, ~across & ~unknown, unknown, "no_direction"
     normals = np.asarray(field.normals, dtype=float)[samples]
     if symbol in ("=", "⊥"):
         along = np.tile(np.asarray(asked["lay_direction"], dtype=float), (count, 1))
@@ -189,22 +192,25 @@ def _lay(job, field, asked, samples):
     if across is not None:
         off = off | across
     unknown = unknown | blind
-    return angle, crossing, off & ~unknown, unknown, reasons
+    return angle, crossing, off & ~unknown, unknown, "no_direction"
 
 
-def _unknown(field, samples, unknown, reasons, motions):
-    """The reason that most of the area has of what is not known, and a place in the middle of it; None where all is."""
-    if not unknown.any():
+def _unknown(field, samples, why, motions):
+    """The reason that most of the area of the ``samples`` has, of which something is not known, and a place in the middle of
+    it; None where there are none. ``why(passes, outside)``: the numbers in ``REASONS``, of arrays as a finish has them.
+    """
+    if not len(samples):
         return None
+    finish = field.finish
+    if finish is None:
+        return {"reason": "not_computed", "place": None}
+    reasons = why(np.asarray(finish["passes"])[samples], np.asarray(finish["outside"])[samples])
     areas = np.asarray(field.areas, dtype=float)[samples]
-    names = sorted(set(reasons[unknown].tolist()))
-    sums = [float(areas[unknown & (reasons == name)].sum()) for name in names]
-    reason = names[int(np.argmax(sums))]
-    if reason == NOT_COMPUTED:
-        return {"reason": reason, "place": None}
-    of_it = np.flatnonzero(unknown & (reasons == reason))
-    points = np.asarray(field.points, dtype=float)[samples[of_it]]
-    weights = areas[of_it] if areas[of_it].sum() > 0.0 else None
+    if not areas.sum() > 0.0:
+        areas = np.ones(len(samples))
+    most = int(np.bincount(reasons, weights=areas).argmax())
+    of_it = reasons == most
+    points, weights = np.asarray(field.points, dtype=float)[samples[of_it]], areas[of_it]
     middle = np.average(points, axis=0, weights=weights)
     nearest = int(((points - middle) ** 2).sum(axis=1).argmin())
-    return {"reason": reason, "place": place(field, samples[of_it[nearest]], motions)}
+    return {"reason": REASONS[most], "place": place(field, samples[of_it][nearest], motions)}

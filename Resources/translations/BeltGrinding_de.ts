@@ -5404,6 +5404,14 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <source>{} measurements. Left out one by one, they are told with a median error of {:.1f} %, nine of ten within {:.0f} %.</source>
         <translation>{} Messungen. Einzeln weggelassen werden sie mit einem mittleren Fehler (Median) von {:.1f} % vorhergesagt, neun von zehn auf {:.0f} %.</translation>
     </message>
+    <message>
+        <source>{}: lay</source>
+        <translation>{}: Rillenrichtung</translation>
+    </message>
+    <message>
+        <source>{}: roughness</source>
+        <translation>{}: Rauheit</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

@@ -129,8 +129,22 @@ panel = table.parent().chosen.__self__
 contact = panel.moment.cell.frames()["contact"][:3, 3]
 assert abs(contact[0] - worst[0]) < 1.0 or not 10 <= worst[0] <= 50, (contact, worst)
 
-# By other zones the list is another one, at once.
+# The verdict's dock has rows for it: the zone's heights are good, not its roughness.
 press("Close")
+menu("Verdict")
+regions = field("regions")
+rows = [[regions.item(i, k).text() for k in range(7)] for i in range(regions.rowCount())]
+assert [row[:2] for row in rows[:3]] == [["spout", "pass"], ["spout: roughness", "fail"], ["spout: lay", "unknown"]], rows
+assert rows[1][5] == f"{event['value']:.2f} µm" and rows[1][6] == f"+{event['value'] - 0.6:.2f} µm", rows
+assert doc.Verdict.ZoneVerdicts[0].endswith("finish: fail")
+regions.cellClicked.emit(1, 0)
+settle()
+view = Gui.ActiveDocument.ActiveView
+at, (width, height) = view.getPointOnScreen(FreeCAD.Vector(*event["point"])), view.getSize()
+assert abs(at[0] - width / 2) < 0.2 * width and abs(at[1] - height / 2) < 0.2 * height, (at, width, height)
+field("BeltGrinding_VerdictDock").close()
+
+# By other zones the list is another one, at once.
 api.set_zones(job, [{"name": "spout", "tolerance_mm": [-9, 9], "finish": {"Ra_max_um": 9.0}}])
 doc.recompute()
 doc.Simulation.ViewObject.Proxy.doubleClicked(doc.Simulation.ViewObject)

@@ -62,13 +62,17 @@ def judge_zone(job, field, asked, samples, motions=None):
     return judged
 
 
-def without(zone):
-    """ "pass", "fail" or "unknown": the verdict on a zone of a verdict but for its finish."""
-    thick = (zone["thickness"] or {}).get("verdict", "pass")
-    if zone["above_share"] + zone["below_share"] > 0.0 or thick == "fail":
+def heights(zone):
+    """What a zone of a verdict is by its heights alone: "pass", "fail" or "unknown"."""
+    if zone["above_share"] + zone["below_share"] > 0.0:
         return "fail"
-    unknown = zone["worst"] is None or zone["missed_rays"] or thick == "unknown"
-    return "unknown" if unknown else "pass"
+    return "unknown" if zone["worst"] is None or zone["missed_rays"] else "pass"
+
+
+def without(zone):
+    """What it is by all but its finish."""
+    words = (heights(zone), (zone["thickness"] or {}).get("verdict", "pass"))
+    return next(word for word in ("fail", "unknown", "pass") if word in words)
 
 
 def decides(verdict):

@@ -222,12 +222,14 @@ def show(obj, found):
 
 def describe(region):
     """One line for a face or a zone."""
-    if region["worst"] is None:
-        return f"{region['verdict']}, nothing was inspected"
-    worst = region["worst"]
+    worst, finish = region["worst"], ""
+    if region.get("finish"):
+        finish = f"; finish: {region['finish']['verdict']}"
+    if worst is None:
+        return f"{region['verdict']}, nothing was inspected{finish}"
     return (
         f"{region['verdict']}, {100 * region['in_share']:.2f} % in tolerance, worst "
-        f"{worst['value_mm']:+.4f} mm ({worst['beyond_mm']:+.4f} mm beyond)"
+        f"{worst['value_mm']:+.4f} mm ({worst['beyond_mm']:+.4f} mm beyond){finish}"
     )
 
 

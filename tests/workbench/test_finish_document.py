@@ -92,6 +92,32 @@ assert not told(simulation) and verdict.Overall == "fail"
     )
 
 
+def test_a_result_that_was_judged_by_others_since_is_judged_by_the_document(freecad):
+    freecad.run(
+        JOB
+        + """
+import subprocess
+doc = FreeCAD.newDocument("life")
+job = make(block(doc))
+job.Finish = json.dumps(FINISH)
+beltgrinding.set_zones(job, [zone(Ra_max_um=3.0)])
+simulation = beltgrinding.simulate(job, write_to="out")
+first = simulation.EventData
+beltgrinding.set_zones(job, [zone(Ra_max_um=9.0)])
+beltgrinding.export_job(job, "other.json")
+from beltgrinding import cli
+assert cli.main(["verdict", "out", "--job", "other.json"]) == 0
+assert "roughness_exceeded" not in Path("out/events.json").read_text()
+beltgrinding.set_zones(job, [zone(Ra_max_um=3.0)])
+simulation = beltgrinding.import_result(job, "out")
+verdict = beltgrinding.make_verdict(job)
+assert verdict.Proxy.data(verdict)["zones"][0]["finish"]["verdict"] == "fail"
+assert kinds(simulation) == ["roughness_exceeded"]
+agree(simulation, verdict)
+"""
+    )
+
+
 def test_what_crosses_is_judged_again_as_the_run_judged_it(freecad):
     freecad.run(
         JOB

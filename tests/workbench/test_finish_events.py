@@ -287,8 +287,14 @@ def test_files_counts_and_a_studys_columns_have_them(tmp_path):
     again = Result.read(tmp_path / "out")
     assert not of_finish(again) and again.verdict["zones"][0]["finish"]["verdict"] == "pass"
     assert "wrong_lay" not in again.summary["events"]
+    assert again.judged_by()["zones"][0]["finish"]["Ra_max_um"] == 3.3
+    report = beltgrinding.report(tmp_path / "out").read_text(encoding="utf-8")
+    assert "the limits of another job" in report
     done = call("verdict", tmp_path / "out")
     assert done.returncode == 0 and Result.read(tmp_path / "out").events == result.events
+    assert "judged_by" not in Result.read(tmp_path / "out").summary
+    report = beltgrinding.report(tmp_path / "out").read_text(encoding="utf-8")
+    assert "the limits of another job" not in report
 
 
 def test_an_earlier_versions_result_has_none_and_stays_so(ground, tmp_path):

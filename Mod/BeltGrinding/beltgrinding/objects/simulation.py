@@ -156,7 +156,7 @@ def _store(obj, result, files):
     obj.Resolution = s.get("resolution", resolution.FULL)
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
     store_events(obj, result.events, result.job)
-    obj.EventZones = json.dumps(result.job["inspection"].get("zones", []))
+    obj.EventZones = json.dumps(result.judged_by().get("zones", []))
     obj.Warnings = s["warnings"]
     obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
     obj.RemainingCut = 100.0 * s["belt"]["remaining_cut"]
@@ -185,7 +185,7 @@ def _store_verdict(obj, result):
         setattr(obj, f"Motion{name.title()}s", values)
     obj.MotionPoints = [tuple(map(float, point)) for point in motions["point"]]
     obj.MotionTimes = [float(time) for time in motions.get("time", ())]
-    inspection = result.job["inspection"]
+    inspection = result.judged_by()
     kept = {key: inspection.get(key, []) for key in ("tolerance_mm", "zones")}
     judged = {"inspection": kept, "verdict": result.verdict} if result.verdict else {}
     obj.VerdictData = json.dumps(judged)

@@ -90,8 +90,17 @@ class Result:
         """None of an older version's result."""
         return {key: self.summary[key] for key in ("run_id",) if key in self.summary}
 
+    def judged_by(self):
+        """The ``inspection`` whose limits its verdict is by: its job's, or that of another by which it was judged since."""
+        return self.summary.get("judged_by") or self.job["inspection"]
+
     def tell_finish(self, inspection):
-        """Makes the events of zones' finish anew, by its verdict on the zones of a job's ``inspection``."""
+        """Makes the events of zones' finish anew, by its verdict on the zones of a job's ``inspection``, and keeps by which
+        one that is.
+        """
+        self.summary.pop("judged_by", None)
+        if inspection != self.job["inspection"]:
+            self.summary["judged_by"] = inspection
         job = {**self.job, "inspection": inspection}
         self.events = finish_events.renewed(self.events, job, self.verdict["zones"], self.motions)
         self.summary["events"] = events.count(self.events)

@@ -1663,6 +1663,14 @@
         <source>removed on the way down to the passes and off them, percent, by force and time; -1: not known</source>
         <translation>des Abtrags, auf dem Weg hinab zu den Bahnen und von ihnen weg, in Prozent, nach Kraft und Zeit; -1: nicht bekannt</translation>
     </message>
+    <message>
+        <source>when every motion ends, s; empty: not known</source>
+        <translation>wann jede Bewegung endet, s; leer: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>zones by which events tell the finish, JSON</source>
+        <translation>Zonen, nach denen Ereignisse die Oberflächengüte beurteilen, JSON</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>
@@ -5229,16 +5237,8 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <translation>Rauheit und Rillenrichtung</translation>
     </message>
     <message>
-        <source>The file that beltgrind calibrate-finish wrote</source>
-        <translation>Die Datei, die beltgrind calibrate-finish schrieb</translation>
-    </message>
-    <message>
         <source>What a pass leaves of the roughness before is not known: each counts as measured.</source>
         <translation>Was ein Überschliff von der Rauheit davor lässt, ist nicht bekannt: Jeder zählt wie gemessen.</translation>
-    </message>
-    <message>
-        <source>Without measurements there is the direction of the scratches, and no roughness: fit them by beltgrind calibrate-finish.</source>
-        <translation>Ohne Messungen gibt es die Richtung der Schleifspuren und keine Rauheit: sie mit beltgrind calibrate-finish anpassen.</translation>
     </message>
     <message>
         <source>as measured</source>
@@ -5301,8 +5301,120 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <translation>verbliebene Schnittfähigkeit</translation>
     </message>
     <message>
+        <source>In tolerance, but the finish is not as called for: {} of {} zones</source>
+        <translation>In der Toleranz, aber die Oberflächengüte ist nicht wie gefordert: {} von {} Zonen</translation>
+    </message>
+    <message>
+        <source>In tolerance, but the finish of a zone is not known</source>
+        <translation>In der Toleranz, aber die Oberflächengüte einer Zone ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>95 % interval</source>
+        <translation>95-%-Bereich</translation>
+    </message>
+    <message>
+        <source>A CSV of measured roughnesses, to which a model is fitted</source>
+        <translation>Eine CSV gemessener Rauheiten, an die ein Modell angepasst wird</translation>
+    </message>
+    <message>
+        <source>By one Ra for all it would be {:.1f} %, nine of ten within {:.0f} %.</source>
+        <translation>Mit einem Ra für alle wären es {:.1f} %, neun von zehn auf {:.0f} %.</translation>
+    </message>
+    <message>
+        <source>By the grit alone it would be {:.1f} %, nine of ten within {:.0f} %.</source>
+        <translation>Allein nach der Körnung wären es {:.1f} %, neun von zehn auf {:.0f} %.</translation>
+    </message>
+    <message>
+        <source>Discard</source>
+        <translation>Verwerfen</translation>
+    </message>
+    <message>
+        <source>Fit...</source>
+        <translation>Anpassen...</translation>
+    </message>
+    <message>
+        <source>Fitted roughness</source>
+        <translation>Angepasste Rauheit</translation>
+    </message>
+    <message>
+        <source>Fitting, {:.0f} %</source>
+        <translation>Wird angepasst, {:.0f} %</translation>
+    </message>
+    <message>
+        <source>Ra at the references, µm</source>
+        <translation>Ra am Bezugspunkt, µm</translation>
+    </message>
+    <message>
+        <source>Save and use...</source>
+        <translation>Speichern und verwenden...</translation>
+    </message>
+    <message>
+        <source>Stop</source>
+        <translation>Anhalten</translation>
+    </message>
+    <message>
+        <source>Tables ({});;All files (*)</source>
+        <translation>Tabellen ({});;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>The file that Fit... or beltgrind calibrate-finish has written</source>
+        <translation>Die Datei, die Anpassen... oder beltgrind calibrate-finish geschrieben hat</translation>
+    </message>
+    <message>
+        <source>What was measured</source>
+        <translation>Was gemessen wurde</translation>
+    </message>
+    <message>
+        <source>Without measurements there is the direction of the scratches, and no roughness: Fit... takes a table of your own.</source>
+        <translation>Ohne Messungen gibt es die Richtung der Schleifspuren und keine Rauheit: Anpassen... nimmt eine eigene Tabelle.</translation>
+    </message>
+    <message>
+        <source>and by whom; the model keeps it</source>
+        <translation>und von wem; das Modell behält es</translation>
+    </message>
+    <message>
+        <source>exponent of the belt speed</source>
+        <translation>Exponent der Bandgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>exponent of the feed</source>
+        <translation>Exponent des Vorschubs</translation>
+    </message>
+    <message>
+        <source>exponent of the grit</source>
+        <translation>Exponent der Körnung</translation>
+    </message>
+    <message>
+        <source>exponent of the pressure</source>
+        <translation>Exponent des Drucks</translation>
+    </message>
+    <message>
+        <source>exponent of the remaining cut</source>
+        <translation>Exponent der verbliebenen Schnittfähigkeit</translation>
+    </message>
+    <message>
+        <source>left by a pass, share</source>
+        <translation>Rest je Überschliff, Anteil</translation>
+    </message>
+    <message>
+        <source>not varied</source>
+        <translation>nicht verändert</translation>
+    </message>
+    <message>
+        <source>{} measurements. Left out one by one, they are told with a median error of {:.1f} %, nine of ten within {:.0f} %.</source>
+        <translation>{} Messungen. Einzeln weggelassen werden sie mit einem mittleren Fehler (Median) von {:.1f} % vorhergesagt, neun von zehn auf {:.0f} %.</translation>
+    </message>
+    <message>
+        <source>{}: lay</source>
+        <translation>{}: Rillenrichtung</translation>
+    </message>
+    <message>
+        <source>{}: roughness</source>
+        <translation>{}: Rauheit</translation>
+    </message>
+    <message>
         <source>Chosen from the part: force, passes, samples, and the feed at which the allowance comes off on the mean, if K is right: K is not known before the belt is calibrated. The belt is taken as it is.</source>
-        <translation>Nach dem Bauteil gewählt: Kraft, Bahnen, Abtastung und der Vorschub, bei dem das Aufmaß im Mittel abgeht, wenn K stimmt: K ist erst bekannt, wenn das Band kalibriert ist. Das Band bleibt, wie es ist.</translation>
+        <translation type="unfinished"></translation>
     </message>
 </context>
 <context>

@@ -122,6 +122,21 @@ constexpr std::array kKinds = {
     EventKind{"not_converged", kWarning, "iterations", kLarger,
               "the contact was not solved to the tolerance asked for",
               "refine the contact grid, or raise belt_machine.contact_tolerance"},
+    EventKind{
+        "roughness_exceeded", kError, "um", kLarger,
+        "a zone is rougher than it calls for; the value is the Ra at the worst place",
+        "grind the zone once more with a finer grit, or at pressure, speed and feed that left "
+        "less in the measurements"},
+    EventKind{"wrong_lay", kError, "%", kLarger,
+              "in a zone the scratches run otherwise than it calls for; the value is on what share "
+              "of its area",
+              "lead the last pass over the zone so that the belt travels as is called for; crossed "
+              "scratches take a pass across the one before, others none"},
+    EventKind{"finish_unknown", kWarning, "%", kLarger,
+              "whether a zone has the roughness or the lay that it calls for is not known; the "
+              "value is on what share of its area, the limit what may be unknown",
+              "grind all of the zone, within what was measured; or measure further and fit again, "
+              "or give Ra before grinding"},
 };
 
 }  // namespace

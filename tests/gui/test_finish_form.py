@@ -189,3 +189,175 @@ assert zones()[0]["name"] != "other"
 """,
         window=True,
     )
+
+
+FIT = """
+made_up.write(Path("roughness.csv"), made_up.columns(40))
+
+def fit(path):
+    choose(path)
+    field("fitFinish").click()
+    settle()
+
+def fitted(path):
+    fit(path)
+    wait(lambda: visible(QtGui.QDialog, "finishFit") or field("fitFinish").text() == "Fit...")
+    return bool(visible(QtGui.QDialog, "finishFit"))
+"""
+
+
+def test_a_table_is_fitted_looked_at_saved_and_taken(freecad):
+    freecad.run(
+        START
+        + FIT
+        + """
+edit()
+assert not field("fitFinish").isEnabled()
+choose_in("finishChoice", 1)
+assert "Fit..." in field("finishNote").text()
+fit("")  # Cancel in the dialog of files
+assert not visible(QtGui.QDialog, "finishFit") and "model" not in finish()
+assert fitted("roughness.csv")
+window_ = field("finishFit")
+assert window_.width() < 700 and window_.height() < 650, window_.size()
+assert "40 measurements" in field("finishFitted").text() and "grit alone" in field("finishFitted").text()
+table = field("finishParameters")
+rows = {table.item(k, 0).text(): (table.item(k, 1).text(), table.item(k, 2).text()) for k in range(table.rowCount())}
+assert len(rows) == 7 and "left by a pass, share" in rows, rows
+for name, key in (("exponent of the grit", "grit_exponent"), ("exponent of the feed", "feed_exponent")):
+    low, high = map(float, rows[name][1].split(" … "))
+    assert low < float(rows[name][0]) < high and low < made_up.TRUTH[key] < high, rows
+for area in visible(QtGui.QScrollArea):
+    if area.isAncestorOf(field("finishNote")):
+        area.ensureWidgetVisible(field("finishNote"))
+picture("finish-fit")
+assert "mm/s" in field("finishRanges").text() and not visible(QtGui.QLabel, "finishWarnings")
+press("Discard")
+assert "model" not in finish() and not visible(QtGui.QDialog, "finishFit")
+
+there = sorted(Path.cwd().glob("*.json"))
+# Saved where it cannot be, over the table itself, not at all, and then well.
+assert fitted("roughness.csv")
+name_file(Path.cwd() / "no folder" / "model.json")
+press("Save and use...")
+assert "cannot be written" in field("finishFitNote").text() and "model" not in finish()
+name_file("")
+press("Save and use...")
+assert field("finishFit") and "model" not in finish() and sorted(Path.cwd().glob("*.json")) == there
+Path("kept.json").write_text("kept")
+asked = []
+patch(QtGui.QMessageBox, "question", staticmethod(lambda *a, **k: asked.append(a[2]) or QtGui.QMessageBox.No))
+name_file(Path.cwd() / "kept", "*.json")  # typed without a suffix: the file of that name is not the one that was asked for
+press("Save and use...")
+assert len(asked) == 1 and "kept.json" in asked[0] and Path("kept.json").read_text() == "kept"
+type_in("finishSource", "measured by nobody")
+name_file(Path.cwd() / "fitted.json")
+press("Save and use...")
+assert not visible(QtGui.QDialog, "finishFit")
+saved = json.loads(Path("fitted.json").read_text())
+assert saved["source"] == "measured by nobody" and saved["calibration"]["measurements"] == 40
+assert "model" not in finish() and field("grit").styleSheet(), "which of the grits nobody knows"
+type_in("grit", "120")
+assert finish()["model"] == saved and "measured by nobody" in field("finishNote").text()
+press("OK")
+assert doc.UndoCount == steps + 1
+before = job.Finish
+doc.undo()
+assert not job.Finish
+doc.redo()
+assert job.Finish == before
+assert not doc.UndoCount > steps + 1
+
+# It is the command's own file: read again it is the same.
+edit()
+field("dropFinishModel").click()
+read("fitted.json")
+assert finish() == json.loads(before)
+# The table's own name, as one that is no table's may have it.
+Path("table.json").write_text(Path("roughness.csv").read_text())
+assert fitted("table.json")
+name_file(Path.cwd() / "table.json")
+press("Save and use...")
+assert "is the table" in field("finishFitNote").text()
+assert Path("table.json").read_text() == Path("roughness.csv").read_text()
+press("Discard")
+press("Cancel")
+assert finish() == json.loads(before)
+""",
+        window=True,
+    )
+
+
+def test_what_a_table_does_not_tell_is_refused_or_warned_of(freecad):
+    freecad.run(
+        START
+        + FIT
+        + """
+edit()
+choose_in("finishChoice", 1)
+before = job.Finish
+few = {name: values[:5] for name, values in made_up.columns(40).items()}
+still = dict(made_up.columns(40), feed_mm_s=[0.0] * 40)
+none = {name: values for name, values in made_up.columns(40).items() if name != "Ra_um"}
+together = made_up.columns(40)
+together["feed_mm_s"] = [500 * p for p in together["pressure_MPa"]]
+made_up.write(Path("few.csv"), few)
+made_up.write(Path("still.csv"), still)
+made_up.write(Path("none.csv"), none)
+made_up.write(Path("together.csv"), together)
+Path("empty.csv").write_text("")
+Path("text.csv").write_text("Ra_um,grit\\nrough,coarse\\n")
+for name, words in (("few.csv", "too few"), ("still.csv", "line 2"), ("none.csv", "Ra_um"), ("together.csv", "undetermined"),
+                    ("empty.csv", "empty.csv"), ("text.csv", "text.csv"), ("missing.csv", "cannot be read")):
+    assert not fitted(name), name
+    told = field("finishNote").text()
+    assert name in told and words in told, told
+    assert job.Finish == before and field("fitFinish").text() == "Fit..."
+    assert field("finishNote").styleSheet() and field("readFinishModel").isEnabled()
+
+# What belts have done is told by the job's law of wear, and what does not vary by a warning.
+worn = made_up.columns(40, fixed=("belt_speed_m_s",))
+del worn["remaining_cut"]
+worn["work_J"] = [1000.0 * k for k in range(40)]
+made_up.write(Path("worn.csv"), worn)
+assert fitted("worn.csv")
+told = field("finishWarnings").text()
+assert "job's law of wear" in told and "work_J" in told and "do not vary" in told, told
+press("Discard")
+press("Cancel")
+""",
+        window=True,
+    )
+
+
+def test_a_long_fit_is_stopped_and_leaves_nothing_behind(freecad):
+    freecad.run(
+        START
+        + FIT
+        + """
+made_up.write(Path("long.csv"), made_up.columns(3000))
+edit()
+choose_in("finishChoice", 1)
+before, told = job.Finish, field("finishNote").text()
+fit("long.csv")
+assert field("fitFinish").text() == "Stop" and not field("finishChoice").isEnabled()
+assert not field("readFinishModel").isEnabled()
+wait(lambda: "Fitting, 0 %" not in field("finishNote").text())
+assert "Fitting, " in field("finishNote").text()
+type_in("initial_Ra_um", "3.2")  # the rest goes on
+press("OK")  # it would be lost
+assert Gui.Control.activeDialog() and "still being fitted" in field("note").text()
+field("fitFinish").click()
+wait(lambda: field("fitFinish").text() == "Fit...")
+assert field("finishNote").text() == told and not field("finishNote").styleSheet()
+assert finish() == {"crossing_angle_deg": 20.0, "initial_Ra_um": 3.2} and field("finishChoice").isEnabled()
+fit("long.csv")
+assert field("fitFinish").text() == "Stop"
+press("Cancel")
+assert not job.Finish
+from beltgrinding.gui.common import runner
+wait(lambda: not runner._going)
+assert not visible(QtGui.QDialog, "finishFit") and not Gui.Control.activeDialog()
+""",
+        window=True,
+    )

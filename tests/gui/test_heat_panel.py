@@ -87,6 +87,11 @@ type_in("friction2", "0.2")  # below the least
 assert field("friction2").styleSheet() and heat()["friction"] == [0.3, 0.5]
 press("OK")
 assert Gui.Control.activeDialog() and "0.2" in field("note").text(), field("note").text()
+for text in ("1e999", "", "much"):  # JSON knows no infinity
+    type_in("density_kg_m3", text)
+    assert field("density_kg_m3").styleSheet() and heat()["density_kg_m3"] > 1000, text
+    assert "no number" in field("heatNote").text(), field("heatNote").text()
+type_in("density_kg_m3", f"{heat()['density_kg_m3']:g}")
 type_in("friction2", "0,6")
 assert not field("friction2").styleSheet() and heat()["friction"] == [0.3, 0.6]
 assert field("thermalPreset").currentText() == "own values" and heat()["material"] == ""

@@ -140,6 +140,19 @@ assert set(stock_shell._outwards(part).values()) == {1.0}
 inside_out = Part.Solid(part.Shells[0].reversed())
 assert set(stock_shell._outwards(inside_out).values()) == {-1.0 if inside_out.Volume < 0 else 1.0}
 assert stock_shell._outwards(part.Faces[0]) == {}  # loose
+# A volume takes a third of a second of a cast housing: once for a solid, not for each of its 323 faces.
+volumes = []
+class Solid:
+    Faces = part.Faces
+    Volume = property(lambda self: volumes.append(1) or 1.0)
+class Casting:
+    Solids = [Solid()]
+    isEqual = lambda self, other: self is other
+casting = Casting()
+for _ in range(2):
+    stock_shell._sides = [one for one in stock_shell._sides if one[0] is casting]
+    assert len(stock_shell._outwards(casting)) == len(part.Faces) and len(volumes) == 1
+stock_shell._sides = []
 
 # As thick as the allowance, closed at its borders.
 square = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)

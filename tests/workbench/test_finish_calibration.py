@@ -8,13 +8,16 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from beltgrinding import calibration, cli  # noqa: E402
 from beltgrinding.base import schemas  # noqa: E402
 from beltgrinding.calibration import finish, finish_table  # noqa: E402
-from beltgrinding.engine import InputError  # noqa: E402
+from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
+from beltgrinding.job import load as jobs  # noqa: E402
 from support import synthetic_finish as made_up  # noqa: E402
+from test_job import plate_job  # noqa: E402
 
 TRUTH = made_up.TRUTH
 
@@ -155,10 +158,22 @@ def test_force_over_area_is_the_pressure_and_a_job_tells_what_wear_leaves():
     table["force_N"] = [100.0 * p for p in table.pop("pressure_MPa")]
     table["area_mm2"] = [100.0] * len(cut)
     remaining = lambda work, removed: np.exp(-work / 1e5)
-    model = calibration.fit_finish(table, remaining)["model"]
+    found = calibration.fit_finish(table, remaining)
+    model = found["model"]
+    assert "calibration.wear_by_job" in codes(found)
     assert model["wear_exponent"] == pytest.approx(TRUTH["wear_exponent"], abs=2e-3)
     assert model["pressure_exponent"] == pytest.approx(TRUTH["pressure_exponent"], abs=2e-3)
     assert "calibration.wear_without_job" in codes(calibration.fit_finish(table))
+    none = finish_table.wear_by(jobs.validate(plate_job()))
+    assert "calibration.no_wear_by_job" in codes(calibration.fit_finish(table, none))
+
+
+def test_a_fit_tells_how_far_it_is_and_is_cancelled():
+    context, table = core.RunContext(), made_up.columns(count=60)
+    assert calibration.fit_finish(table, context=context) and context.progress > 0.95
+    context.cancel()
+    with pytest.raises(Cancelled):
+        calibration.fit_finish(table, context=context)
 
 
 def test_the_command_writes_what_a_job_takes(tmp_path, capsys):
@@ -172,3 +187,7 @@ def test_the_command_writes_what_a_job_takes(tmp_path, capsys):
     rule = schemas.schema("job")["properties"]["finish"]["properties"]["model"]
     assert not list(schemas.problems(written, rule, "model")) and written["source"] == "SYNTHETIC"
     assert json.loads(report.read_text())["measurements"] == 40
+    # Its own files it may write again, another's only when it is told to.
+    assert cli.main(arguments) == 0 and json.loads(model.read_text())["source"] == str(table)
+    model.write_text('{"coefficient_um": 1}')
+    assert cli.main(arguments) != 0 and model.read_text() == '{"coefficient_um": 1}'

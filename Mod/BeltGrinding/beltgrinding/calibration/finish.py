@@ -43,14 +43,14 @@ LEAST_TOLD = 0.05
 OUTLIER = 3.5  # scatters
 
 
-def fit_finish(data, remaining_cut=None, source=""):
+def fit_finish(data, remaining_cut=None, source="", context=None):
     """Calibrates the finish. ``data``: path of a CSV, FinishTable, or dict of columns; ``remaining_cut``: as of
     ``finish_table.from_columns``. Returns dict(model: of a job's ``finish``, report: measurements, parameters (name,
     value, low, high (95 %), free), rest_per_pass (value, low, high) or None, scatter, left_out and plain (median, p90 of
     the relative errors: by the model, by a constant Ra, by the grit alone), outliers (lines), ranges, warnings).
-    Raises InputError for what the measurements do not tell.
+    ``context``: a core.RunContext. Raises InputError for what the measurements do not tell, and Cancelled.
     """
-    table = data
+    table, context = data, context or core.RunContext()
     if isinstance(data, dict):
         table = from_columns(data, remaining_cut=remaining_cut)
     elif not isinstance(data, FinishTable):
@@ -125,8 +125,10 @@ def fit_finish(data, remaining_cut=None, source=""):
         "rest_per_pass": told,
         "scatter": found["scatter"],
         "ln_deviation": deviation,
-        "left_out": _errors(table, _left_out(table, free, references, rest)),
-        "plain": _plain(table, references),
+        "left_out": _errors(
+            table, _left_out(table, free, references, rest, context.part(0.1, 0.8))
+        ),
+        "plain": _plain(table, references, context.part(0.8, 1.0)),
         "outliers": [int(line) for line in table.lines[outliers]],
         "ranges": ranges,
         "warnings": warnings,
@@ -339,11 +341,13 @@ def _parameters(model, found, free, quantile):
     return rows
 
 
-def _left_out(table, free, references, rest):
+def _left_out(table, free, references, rest, context):
     """(n,) um: what is told of each measurement by the others."""
     count = len(table.measured)
     told = np.empty(count)
     for i in range(count):
+        context.throw_if_cancelled()
+        context.report(i / count)
         others = table.take(np.arange(count) != i)
         own = _fit(others, free, references, rest)["parameters"]
         told[i] = math.exp(_say(table.take([i]), own, references, rest)[0])
@@ -355,12 +359,13 @@ def _errors(table, told):
     return {"median": float(np.median(relative)), "p90": float(np.quantile(relative, 0.9))}
 
 
-def _plain(table, references):
+def _plain(table, references, context):
     """Errors of left-out measurements by plainer ways: one Ra for all; one by the grit alone."""
-    one = _left_out(table, ["ln_coefficient"], references, None)
+    one = _left_out(table, ["ln_coefficient"], references, None, context.part(0.0, 0.5))
     plain = {"constant": _errors(table, one)}
     if spread_of(table.grit) > LEAST_SPREAD:
-        grit = _left_out(table, ["ln_coefficient", "grit_exponent"], references, None)
+        free = ["ln_coefficient", "grit_exponent"]
+        grit = _left_out(table, free, references, None, context.part(0.5, 1.0))
         plain["grit_only"] = _errors(table, grit)
     return plain
 

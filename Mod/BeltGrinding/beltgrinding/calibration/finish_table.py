@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..engine import InputError, core
+from ..job import law as laws
 from .table import number, small_name, split
 
 # Canonical column: other names that it goes by, in small letters.
@@ -61,6 +62,13 @@ def read(path, remaining_cut=None):
     header, rows, lines = split(Path(path), _canonical)
     columns = {name: [row[i] for row in rows] for i, name in enumerate(header)}
     return from_columns(columns, str(path), lines, remaining_cut)
+
+
+def wear_by(job):
+    """``remaining_cut`` of ``from_columns`` by a job's ``law`` and ``belt_machine``, validated."""
+    return lambda work, removed: laws.remaining_cut(
+        job, {"work": float(work), "volume": float(removed), "time": 0.0}
+    )
 
 
 def _canonical(name):
@@ -175,7 +183,9 @@ def _cut(c, path, lines, count, remaining_cut, notes):
     if used and remaining_cut is not None:
         zero = np.zeros(count)
         work, removed = (c.get(name, zero) for name in ("work_J", "removed_so_far_mm3"))
-        return np.array([remaining_cut(one, other) for one, other in zip(work, removed)])
+        found = np.array([remaining_cut(one, other) for one, other in zip(work, removed)])
+        notes.append(_of_job(", ".join(used), np.ptp(found) > 0.0))
+        return found
     if used:
         notes.append(
             core.Fact(
@@ -185,3 +195,18 @@ def _cut(c, path, lines, count, remaining_cut, notes):
             )
         )
     return np.ones(count)
+
+
+def _of_job(columns, worn):
+    """The note that a job has told how far belts were worn; ``worn``: whether it makes a difference."""
+    if not worn:
+        return core.Fact(
+            "calibration.no_wear_by_job",
+            "the job's law of wear tells no difference from {columns}: all belts are taken as equally sharp",
+            columns=columns,
+        )
+    return core.Fact(
+        "calibration.wear_by_job",
+        "how far the belts were worn is told by the job's law of wear, from {columns}",
+        columns=columns,
+    )

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from . import outputs
+from . import background, outputs
 from .messages import print_text
 
 
@@ -81,17 +81,14 @@ def _calibrate(arguments):
 
 
 def _calibrate_finish(arguments):
-    from ..calibration import calibrate as calibration, finish
-    from ..job import law as laws, load as jobs
+    from ..calibration import calibrate as calibration, finish, finish_table
+    from ..job import load as jobs
 
     outputs.check(arguments, [arguments.output, arguments.report], [arguments.table, arguments.job])
-    remaining = None
-    if arguments.job:
-        job = jobs.load(arguments.job)
-        remaining = lambda work, removed: laws.remaining_cut(
-            job, {"work": float(work), "volume": float(removed), "time": 0.0}
-        )
-    result = finish.fit_finish(arguments.table, remaining, arguments.source)
+    remaining = finish_table.wear_by(jobs.load(arguments.job)) if arguments.job else None
+    result = background.run(
+        lambda context: finish.fit_finish(arguments.table, remaining, arguments.source, context)
+    )
     report = result["report"]
     if arguments.report:
         calibration.write(report, arguments.report)

@@ -30,8 +30,8 @@ def add(commands):
     judge = commands.add_parser(
         "verdict",
         help="judge a result, also by other tolerances (docs/verification.md)",
-        description="Judges the result in a folder again, writes its verdict.json and says it in a "
-        "few lines.",
+        description="Judges the result in a folder again, writes its verdict.json, and in events.json how "
+        "zones keep their finish, and says it in a few lines.",
     )
     judge.add_argument("result", help="folder that run wrote")
     judge.add_argument("--job", help="job.json whose key inspection is taken in place of its own")
@@ -59,6 +59,7 @@ def _verdict(arguments):
         except OSError as error:
             raise cannot_be_written(arguments.output, error) from None
     else:
+        result.tell_finish(given["inspection"])
         result.update(verdict=True)
     print_text(verdict.text(result.verdict))
 

@@ -30,6 +30,8 @@ KEYS = (  # of JSON files
     {"model", "coefficient_mm2_per_N"},  # a law
     {"work_J", "removed_mm3", "hours"},  # a belt
     {"grinds", "parameters"},  # a calibration's report
+    {"coefficient_um", "reference_grit", "ranges"},  # a job's finish.model
+    {"measurements", "rest_per_pass", "left_out"},  # its report
     {"new_belts", "parts_per_belt"},  # a belt plan
 )
 ARCHIVES = ({"about.npy", "vectors.npy"}, {"about.npy", "gap.npy"})  # a surrogate, its database

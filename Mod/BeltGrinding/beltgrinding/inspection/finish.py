@@ -13,7 +13,6 @@ __all__ = [
     "crossed",
     "crossed_of",
     "figures",
-    "judge_zone",
     "notes",
     "rest_per_pass",
     "roughness",
@@ -23,7 +22,6 @@ __all__ = [
 
 SLACK = 0.03  # of a range of measurements: what counts as the same
 SEEN = 0.05  # share of an earlier pass from which its scratches are seen
-SIXTEEN_PERCENT = 0.16  # ISO 21920-3
 NORMAL_95 = 1.96  # standard deviations that hold 95 %
 OUTSIDE = ("pressure", "belt speed", "feed", "belt wear")  # as core numbers them, from 1
 CODES = {  # of the facts that name them
@@ -114,89 +112,28 @@ def _spread(values, areas):
 def _worst(field, found, known, model, motions):
     index = int(np.flatnonzero(known)[found[known].argmax()])
     factor = math.exp(NORMAL_95 * (model or {}).get("ln_deviation", 0.0))
-    motion = int(field.finish["motion"][index])
-    told = motions is not None and motion < len(motions["program"])
     return {
         "Ra_um": float(found[index]),
         "least_um": float(found[index] / factor),
         "greatest_um": float(found[index] * factor),
-        "sample": index,
-        "point_mm": [float(x) for x in field.points[index]],
-        "face": int(field.faces[index]) + 1,
+        **place(field, index, motions),
+    }
+
+
+def place(field, sample, motions):
+    """Where a sample of a field with a finish lies and which motion passed last over it, as a verdict has it; None
+    where no pass was, or where that is not known.
+    """
+    motion = int(field.finish["motion"][sample]) if field.finish["passes"][sample] else None
+    told = motions is not None and motion is not None and motion < len(motions["program"])
+    return {
+        "sample": int(sample),
+        "point_mm": [float(x) for x in field.points[sample]],
+        "face": int(field.faces[sample]) + 1,
         "motion": motion,
         "program": int(motions["program"][motion]) if told else None,
         "line": int(motions["line"][motion]) or None if told else None,
     }
-
-
-def judge_zone(job, field, asked, samples):
-    """What the finish of a zone is like, a dict; ``asked``: the zone's ``finish``, ``samples``: (k,) of the zone."""
-    areas = np.asarray(field.areas, dtype=float)[samples]
-    whole = float(areas.sum())
-    share = lambda chosen: float(areas[chosen].sum()) / whole if whole > 0.0 else 0.0
-    allowed = SIXTEEN_PERCENT if asked["acceptance"] == "T16%" else 0.0
-    computed = field.finish is not None
-    nothing = np.ones(len(samples), dtype=bool)
-    verdicts, judged = [], {"acceptance": asked["acceptance"]}
-    limit = asked.get("Ra_max_um")
-    if limit is not None:
-        values = roughness(field)[samples] if computed else np.full(len(samples), np.nan)
-        unknown = share(np.isnan(values))
-        above = share(np.nan_to_num(values) > limit)
-        known = values[np.isfinite(values)]
-        judged["Ra"] = {
-            "limit_um": limit,
-            "max_um": float(known.max()) if len(known) else None,
-            "above_share": above,
-            "unknown_share": unknown,
-            "verdict": _word(above, unknown, allowed, whole),
-        }
-        verdicts.append(judged["Ra"]["verdict"])
-    symbol = asked.get("lay")
-    if symbol is not None:
-        off, unknown = _lay(job, field, asked, samples) if computed else (~nothing, nothing)
-        judged["lay"] = {
-            "symbol": symbol,
-            "off_share": share(off),
-            "unknown_share": share(unknown),
-            "verdict": _word(share(off), share(unknown), allowed, whole),
-        }
-        verdicts.append(judged["lay"]["verdict"])
-    judged["verdict"] = next((w for w in ("fail", "unknown", "pass") if w in verdicts), "unknown")
-    return judged
-
-
-def _word(off, unknown, allowed, whole):
-    if off > allowed:
-        return "fail"
-    return "unknown" if off + unknown > allowed or not whole > 0.0 else "pass"
-
-
-def _lay(job, field, asked, samples):
-    """((k,) where the scratches are not what is asked for, (k,) where that is not known)."""
-    lay = np.asarray(field.finish["lay"], dtype=float)[samples]
-    none = ~lay.any(axis=1)
-    across = crossed_of(job, field)
-    across = None if across is None else across[samples]
-    symbol = asked["lay"]
-    if symbol in ("X", "M"):
-        return (none & False, none | True) if across is None else (~across & ~none, none)
-    normals = np.asarray(field.normals, dtype=float)[samples]
-    if symbol in ("=", "⊥"):
-        along = np.tile(np.asarray(asked["lay_direction"], dtype=float), (len(samples), 1))
-    else:
-        along = np.asarray(field.points, dtype=float)[samples] - np.asarray(asked["lay_centre_mm"])
-    along = along - np.einsum("ij,ij->i", along, normals)[:, None] * normals
-    size = np.linalg.norm(along, axis=1)
-    blind = size < 1e-6  # the direction has no trace on the surface there
-    cosine = np.abs(np.einsum("ij,ij->i", along, lay)) / np.where(blind, 1.0, size)
-    tolerance = math.radians(asked["lay_tolerance_deg"])
-    angle = np.arccos(np.clip(cosine, 0.0, 1.0))
-    off = (angle if symbol in ("=", "R") else 0.5 * math.pi - angle) > tolerance + 1e-9
-    unknown = none | blind
-    if across is not None:
-        off = off | across
-    return off & ~unknown, unknown
 
 
 def notes(job, field):
@@ -216,7 +153,18 @@ def notes(job, field):
         if found["outside_shares"][name.replace(" ", "_")] > 0.0
     ]
     unsettled = 1.0 - found["known_share"] - sum(found["outside_shares"].values())
-    if found["ground_area_mm2"] > 0.0 and unsettled > 1e-6:
+    if not (found["ground_area_mm2"] > 0.0 and unsettled > 1e-6):
+        return told
+    if "initial_Ra_um" in job["finish"]:
+        told.append(
+            core.Fact(
+                "inspection.finish_pass_before",
+                "{percent:.1f} % of the ground area has no roughness: too much is left there of a pass before the last, "
+                "which lay outside of what was measured",
+                percent=100.0 * unsettled,
+            )
+        )
+    else:
         told.append(
             core.Fact(
                 "inspection.finish_unsettled",

@@ -15,6 +15,7 @@ from ..job import resolution
 from ..job.poses import program_name
 from . import edge_profile
 from . import finish as finishes
+from . import finish_zones
 from . import heat as heats
 from .verdict_text import text
 
@@ -58,7 +59,10 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
             }
         )
     judged, thickness = [], _thicknesses(job, field, zones, found["zone"], shape, notes, context)
-    for zone, region, thick in zip([*zones, None], found["zones"], [*thickness, None]):
+    finished = finish_zones.judge_zones(job, field, found["zone"], motions)
+    for zone, region, thick, texture in zip(
+        [*zones, None], found["zones"], [*thickness, None], [*finished, None]
+    ):
         if zone is None and not region["samples"]:
             continue  # all faces lie in zones
         one = _region(region, zones, found["zone"], traced)
@@ -67,10 +71,8 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
         if not region["samples"]:
             notes.append(_empty(zone, field.spacing))
         samples = np.flatnonzero(found["zone"] == region["region"])
-        finished = None
-        if zone is not None and "finish" in zone:
-            finished = finishes.judge_zone(job, field, zone["finish"], samples)
-            one["verdict"] = _worse(one["verdict"], finished["verdict"])
+        if texture is not None:
+            one["verdict"] = _worse(one["verdict"], texture["verdict"])
         edge = None
         if zone is not None and "edge_radius_mm" in zone:
             edge = edge_profile.of_zone(field, samples, zone["edge_radius_mm"])
@@ -83,7 +85,7 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
                 **one,
                 "edge": edge,
                 "thickness": thick,
-                **({"finish": finished} if finished is not None else {}),
+                **({"finish": texture} if texture is not None else {}),
             }
         )
     notes += finishes.notes(job, field)

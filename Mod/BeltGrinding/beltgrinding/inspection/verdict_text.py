@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import finish, heat
+from . import finish, finish_zones, heat
 
 
 def text(verdict):
@@ -16,6 +16,10 @@ def text(verdict):
         lines[0] += f", {len(bad)} of {len(verdict['faces'])} faces are not in tolerance"
     for zone in failed:
         name = "elsewhere" if zone["name"] is None else f"zone '{zone['name']}'"
+        if zone.get("finish") and finish_zones.without(zone) == "pass":
+            known = "not as called for" if zone["verdict"] == "fail" else "not all known"
+            lines.append(f"  {name}: in tolerance, but its finish is {known}")
+            continue
         if zone["worst"] is None:
             lines.append(f"  {name}: nothing could be inspected")
             continue

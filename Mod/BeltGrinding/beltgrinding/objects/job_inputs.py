@@ -38,6 +38,15 @@ def belt_machine(job):
     return schemas.checked(given, rule, "belt_machine")
 
 
+def wear(job):
+    """A job's ``law`` and ``belt_machine``, validated: what it takes to tell how far a belt is worn. Raises InputError."""
+    rules, data = schemas.schema("job")["properties"], without_geometry(job)
+    return {
+        "law": schemas.checked(data["law"], rules["law"], "law"),
+        "belt_machine": belt_machine(job),
+    }
+
+
 def without_programs(job, folder):
     """The job as validated plain data, as ``to_data`` gives it, before it has paths. Raises InputError."""
     data = without_geometry(job)

@@ -11,7 +11,7 @@ from .properties import add_keys, check_limits
 from .proxy import Proxy
 from .section import Section
 from .simulation import Simulation
-from .verdict import Verdict
+from .verdict import Verdict, renew_events
 
 
 class BeltGrindingJob(Proxy):
@@ -49,7 +49,7 @@ class BeltGrindingJob(Proxy):
         """Marks the result out of date or up to date, and recolours it; never simulates. Raises
         InputError for settings that cannot be, so that the tree shows where the mistake is.
         """
-        simulation = child(obj, Simulation)
+        simulation, judged = child(obj, Simulation), _can_be_judged(obj)
         if simulation is not None and simulation.Fingerprint:
             try:
                 stale = fingerprint(obj) != simulation.Fingerprint
@@ -57,6 +57,8 @@ class BeltGrindingJob(Proxy):
                 stale = True
             simulation.OutOfDate = stale
             report_data.update(simulation, inspection(obj))
+            if judged:
+                renew_events(simulation, inspection(obj))
         for mesh in children(obj, GroundMesh):
             mesh.Proxy.update(mesh)
         for deviation in children(obj, Deviation):
@@ -64,7 +66,10 @@ class BeltGrindingJob(Proxy):
         for section in children(obj, Section):
             section.Proxy.update(section)
         for verdict in children(obj, Verdict):
-            verdict.Proxy.update(verdict)
+            if judged:
+                verdict.Proxy.update(verdict)
+            elif simulation is not None:
+                verdict.OutOfDate = simulation.OutOfDate
         for member in obj.Group:
             # A Plan or a Study, whose modules know this one.
             if {"NewFeeds", "RunsInAll"} & set(member.PropertiesList):
@@ -78,3 +83,12 @@ class BeltGrindingJob(Proxy):
                 key="ToleranceLower",
             )
         tolerances.check_zones(zones(obj), design(obj)[1], bool(obj.Finish))
+
+
+def _can_be_judged(obj):
+    """Whether the zones of a job can be: none that call for what nothing can be compared with."""
+    try:
+        tolerances.check_zones(zones(obj), (), bool(obj.Finish))
+    except InputError:
+        return False
+    return True

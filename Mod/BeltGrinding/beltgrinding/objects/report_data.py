@@ -38,7 +38,6 @@ def add(obj):
 def store(obj, result):
     """Fills them from a ``job.Result``."""
     counts = result.summary["events"]
-    obj.EventCount = len(result.events)
     obj.LawExtrapolated = sum(counts.get(kind, 0) for kind in EXTRAPOLATED)
     obj.NotConverged = counts.get("not_converged", 0)
     obj.WarningCount = len(result.summary["warnings"])

@@ -38,6 +38,7 @@ OUTPUTS = (
     Output("RemainingCut", "Float", "Result", "of the belt in the end, percent of a fresh one"),
     Output("BeltUse", "String", "Result", "what the belt did, as JSON", True),
     Output("EventData", "String", "Result", "the events as JSON", True),
+    Output("EventZones", "String", "Result", "zones by which events tell the finish, JSON", True),
     Output("VerdictData", "String", "Result", "the verdict of the run and its limits, JSON", True),
     Output("UnresolvedMotions", "Integer", "Result", "places of the programs not resolved"),
     Output("Programs", "StringList", "Result", "names of the programs", True),
@@ -45,6 +46,9 @@ OUTPUTS = (
     Output("MotionPoses", "IntegerList", "Result", "pose that every motion leads to, from 0", True),
     Output(
         "MotionLines", "IntegerList", "Result", "source line of every motion; 0: not known", True
+    ),
+    Output(
+        "MotionTimes", "FloatList", "Result", "when every motion ends, s; empty: not known", True
     ),
     Output(
         "MotionPoints", "VectorList", "Result", "contact point at the end of every motion", True
@@ -94,6 +98,7 @@ class Simulation(Proxy):
             "pose": np.array(obj.MotionPoses),
             "line": np.array(obj.MotionLines),
             "point": np.array([tuple(point) for point in obj.MotionPoints]).reshape(-1, 3),
+            **({"time": np.array(obj.MotionTimes)} if obj.MotionTimes else {}),
         }
 
     def events(self, obj):
@@ -150,7 +155,8 @@ def _store(obj, result, files):
     obj.SampleSpacing = result.field.spacing
     obj.Resolution = s.get("resolution", resolution.FULL)
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
-    obj.Events = [describe(event, result.job) for event in result.events]
+    store_events(obj, result.events, result.job)
+    obj.EventZones = json.dumps(result.judged_by().get("zones", []))
     obj.Warnings = s["warnings"]
     obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
     obj.RemainingCut = 100.0 * s["belt"]["remaining_cut"]
@@ -158,9 +164,15 @@ def _store(obj, result, files):
     during = {key: s["belt"][key] - before[key] for key in before}
     kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
     obj.BeltUse = json.dumps({"during": during, "job": kept})
-    obj.EventData = json.dumps(result.events)
     report_data.store(obj, result)
     _store_verdict(obj, result)
+
+
+def store_events(obj, events, job):
+    """Puts events into a Simulation; ``job``: of which the programs' names are asked."""
+    obj.Events = [describe(event, job) for event in events]
+    obj.EventData = json.dumps(events)
+    obj.EventCount = len(events)
 
 
 def _store_verdict(obj, result):
@@ -172,7 +184,8 @@ def _store_verdict(obj, result):
         values = [int(value) for value in motions[name]]
         setattr(obj, f"Motion{name.title()}s", values)
     obj.MotionPoints = [tuple(map(float, point)) for point in motions["point"]]
-    inspection = result.job["inspection"]
+    obj.MotionTimes = [float(time) for time in motions.get("time", ())]
+    inspection = result.judged_by()
     kept = {key: inspection.get(key, []) for key in ("tolerance_mm", "zones")}
     judged = {"inspection": kept, "verdict": result.verdict} if result.verdict else {}
     obj.VerdictData = json.dumps(judged)

@@ -1,13 +1,16 @@
 """The verdict in the document: in tolerance or not, where not, and which motions did it."""
 
 import json
+from pathlib import Path
 
+from ..cell import events as event_lists
 from ..engine import InputError
-from ..inspection import verdict as verdicts
+from ..inspection import finish_events, finish_zones, verdict as verdicts
 from .geometry import core_shape
 from .properties import Output, add_outputs
 from .proxy import Proxy
 from .fields import field_of
+from .simulation import store_events
 
 OUTPUTS = (
     Output("Overall", "String", "Verdict", "pass, fail or unknown"),
@@ -102,10 +105,52 @@ def verdict_of(job, simulation, inspection):
     if stored.get("inspection") == judged_by:
         return stored["verdict"]
     found = judge(job, simulation, judged_by)
-    for name in ("heat", "finish"):  # no tolerance changes them
-        if name in stored.get("verdict", {}):
-            found[name] = stored["verdict"][name]
+    if "heat" in stored.get("verdict", {}):  # no tolerance changes it
+        found["heat"] = stored["verdict"]["heat"]
     return found
+
+
+def finish_of_run(simulation):
+    """{"finish": what a Simulation's job had of it, as far as judging takes it}; {} where it computed none. From the run's
+    verdict: the job may have another one meanwhile.
+    """
+    told = json.loads(simulation.VerdictData or "{}").get("verdict", {}).get("finish")
+    if told is None:
+        return {}
+    keys = ("initial_Ra_um", "grit", "rest_per_pass", "crossing_angle_deg")
+    found = {key: told[key] for key in keys if told.get(key) is not None}
+    if told.get("source") is not None:
+        found["model"] = {"source": told["source"], "ln_deviation": told["ln_deviation"]}
+    return {"finish": found}
+
+
+def renew_events(simulation, inspection):
+    """Tells zones' finish anew among a Simulation's events where a job's zones are others than those by which they tell it,
+    so that they say what the verdict says.
+    """
+    given = finish_of_run(simulation)
+    if not given or not simulation.MotionTimes:
+        return  # nothing to tell, or the result of an earlier version, which has no such events
+    if json.loads(simulation.EventZones or "[]") == inspection["zones"]:
+        return
+    field = field_of(simulation)
+    if field is None:
+        return
+    job = {**given, "inspection": inspection}
+    motions = simulation.Proxy.motions(simulation)
+    judged = finish_zones.judge_zones(job, field, verdicts.zone_of_samples(job, field), motions)
+    zones = [
+        {"name": zone["name"], "finish": one}
+        for zone, one in zip(inspection["zones"], judged)
+        if one is not None
+    ]
+    events = finish_events.renewed(simulation.Proxy.events(simulation), job, zones, motions)
+    names = [{"name": Path(name).name} for name in simulation.Programs]
+    store_events(simulation, events, {"programs": names})
+    summary = json.loads(simulation.SummaryData or "{}")
+    if summary:
+        simulation.SummaryData = json.dumps({**summary, "events": event_lists.count(events)})
+    simulation.EventZones = json.dumps(inspection["zones"])
 
 
 def limits_changed(job, simulation):
@@ -127,6 +172,7 @@ def judge(job, simulation, inspection):
         "design": {},
         "programs": [{"name": name} for name in simulation.Programs],
         "inspection": inspection,
+        **finish_of_run(simulation),
     }
     shape = None
     if any("thickness_mm" in zone for zone in inspection["zones"]):
@@ -176,12 +222,14 @@ def show(obj, found):
 
 def describe(region):
     """One line for a face or a zone."""
-    if region["worst"] is None:
-        return f"{region['verdict']}, nothing was inspected"
-    worst = region["worst"]
+    worst, finish = region["worst"], ""
+    if region.get("finish"):
+        finish = f"; finish: {region['finish']['verdict']}"
+    if worst is None:
+        return f"{region['verdict']}, nothing was inspected{finish}"
     return (
         f"{region['verdict']}, {100 * region['in_share']:.2f} % in tolerance, worst "
-        f"{worst['value_mm']:+.4f} mm ({worst['beyond_mm']:+.4f} mm beyond)"
+        f"{worst['value_mm']:+.4f} mm ({worst['beyond_mm']:+.4f} mm beyond){finish}"
     )
 
 

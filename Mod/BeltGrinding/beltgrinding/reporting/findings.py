@@ -7,6 +7,7 @@ import numpy as np
 
 from ..base.messages import body, event_message, kind_text, notes, sentence, warnings
 from ..engine import core
+from ..inspection import finish_zones
 from ..job.poses import program_name
 from . import charts, facts, verdict_section
 from .convergence_section import convergence_part
@@ -57,7 +58,7 @@ def head(content, words, scale):
                 most=words.number(-deviation["min"]),
             )
         )
-    if kind == "open":
+    if kind == "open" and (content.verdict or summary)["missed_rays"]:
         said.append(words("Over some of the area no stock was found, so nothing is known there."))
     tiles = [
         (words.percent(share), words("of the area in tolerance")),
@@ -93,6 +94,11 @@ def state(content, words):
         False: ("fail", words("Not in tolerance")),
         None: ("open", words("Cannot be told")),
     }[passed(content)]
+    if content.verdict is not None and finish_zones.decides(content.verdict):
+        text = {
+            "fail": words("In tolerance, but the finish of a zone is not as called for"),
+            "open": words("In tolerance, but the finish of a zone is not known"),
+        }[kind]
     if content.result.summary.get("resolution") == "coarse":
         text = words("{verdict} (coarse resolution, for searching)", verdict=text)
     return kind, text

@@ -84,6 +84,14 @@ def load(result, title=None, notes=(), context=None):
     except InputError as error:
         shape = None
         notes.append(error.fact)
+    if result.folder is not None and "judged_by" in result.summary:
+        notes.append(
+            core.Fact(
+                "reporting.judged_by_others",
+                "The verdict is by the limits of another job, by which this result was judged since; the limits and the job "
+                "below are the run's.",
+            )
+        )
     bins = result.bins if result.bins or result.steps is None else charts.binned(result.steps)
     return Content(
         result,

@@ -13,6 +13,7 @@ from ..base.cells import numbers
 from ..base.files import cannot_be_read, json_bytes
 from ..cell import events, motions
 from ..engine import InputError, core
+from ..inspection import finish_events
 from ..job.tolerances import colour_scale
 from . import convergence_record, result_folder
 
@@ -89,17 +90,33 @@ class Result:
         """None of an older version's result."""
         return {key: self.summary[key] for key in ("run_id",) if key in self.summary}
 
+    def judged_by(self):
+        """The ``inspection`` whose limits its verdict is by: its job's, or that of another by which it was judged since."""
+        return self.summary.get("judged_by") or self.job["inspection"]
+
+    def tell_finish(self, inspection):
+        """Makes the events of zones' finish anew, by its verdict on the zones of a job's ``inspection``, and keeps by which
+        one that is.
+        """
+        self.summary.pop("judged_by", None)
+        if inspection != self.job["inspection"]:
+            self.summary["judged_by"] = inspection
+        job = {**self.job, "inspection": inspection}
+        self.events = finish_events.renewed(self.events, job, self.verdict["zones"], self.motions)
+        self.summary["events"] = events.count(self.events)
+
     def verdict_bytes(self):
         """verdict.json"""
         return json_bytes({**self.verdict, **self._run_id()})
 
     def update(self, verdict=False, measured=False, others=()):
-        """Writes what was made of a result that was read into its folder: its verdict, the heights
+        """Writes what was made of a result that was read into its folder: its verdict and events, the heights
         that a scan measured, ``others`` (bytes by file name). Raises InputError.
         """
         contents = dict(others)
         if verdict:
             contents[self.VERDICT] = self.verdict_bytes()
+            contents["events.json"] = json_bytes(self.events)
         if measured:
             contents["heightfield.h5"] = self._height_field()
         result_folder.update(self.folder, self.summary, contents)

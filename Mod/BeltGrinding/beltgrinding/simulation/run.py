@@ -222,6 +222,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
     result.influence, result.force_influence = removed, pressed
     phases.restart()
     result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
+    result.tell_finish(job["inspection"])
     phases.end("verdict")
     return result, shifts
 

@@ -39,6 +39,10 @@ USUAL = """
 """.split()
 OF_HEAT = ("heat.worst.temperature_C", "heat.worst.greatest_C", "heat.burnt_share")
 OF_FINISH = ("finish.Ra_um.mean", "finish.Ra_um.p95", "finish.Ra_um.max", "finish.crossed_share")
+OF_ZONES_FINISH = {
+    "Ra_max_um": "finish.Ra.max_um",
+    "lay": "finish.lay.off_share",
+}  # by what they call for
 OF_ZONES = ("verdict", "in_share", "above_share", "below_share")
 LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "inputs", "models")
 REST = "rest"  # the zone of all that lies in none
@@ -67,9 +71,13 @@ def of_result(result):
 
 def usual(job):
     """Names of the columns of a table, for a validated job: ``USUAL``, and what its heat, its finish and its zones have."""
-    zones = [zone["name"] for zone in job["inspection"]["zones"]]
     more = (*(OF_HEAT if "heat" in job else ()), *(OF_FINISH if "finish" in job else ()))
-    return [*USUAL, *more, *(f"zones.{zone}.{name}" for zone in zones for name in OF_ZONES)]
+    found = [*USUAL, *more]
+    for zone in job["inspection"]["zones"]:
+        asked = zone.get("finish", {})
+        texture = (name for key, name in OF_ZONES_FINISH.items() if key in asked)
+        found += (f"zones.{zone['name']}.{name}" for name in (*OF_ZONES, *texture))
+    return found
 
 
 def _flat(held, before=""):

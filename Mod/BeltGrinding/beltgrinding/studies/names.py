@@ -37,6 +37,8 @@ OF_ZONE = {
     "in_share": "zone {zone}: area in tolerance, share",
     "above_share": "zone {zone}: area with too much left, share",
     "below_share": "zone {zone}: area cut too deep, share",
+    "finish.Ra.max_um": "zone {zone}: greatest Ra, µm",
+    "finish.lay.off_share": "zone {zone}: area with a wrong lay, share",
 }
 
 
@@ -45,9 +47,11 @@ def figure(name, words):
     if name in NAMES:
         return words(NAMES[name])
     if name.startswith("zones."):
-        zone, _, last = name[len("zones.") :].rpartition(".")
-        if last in OF_ZONE and zone:
-            return words(OF_ZONE[last], zone=zone)
+        rest = name[len("zones.") :]
+        for last, text in OF_ZONE.items():
+            zone = rest.removesuffix(f".{last}")
+            if zone != rest and zone:
+                return words(text, zone=zone)
     return name
 
 

@@ -1,5 +1,6 @@
 """A verdict in a line or two, in the language of the window."""
 
+from ...inspection import finish_zones
 from .compat import translate
 
 
@@ -14,6 +15,13 @@ def headline(found):
 def _word(found):
     if found["overall"] == "pass":
         return translate("BeltGrinding", "In tolerance")
+    zones = finish_zones.decides(found)
+    if zones and found["overall"] == "fail":
+        return translate(
+            "BeltGrinding", "In tolerance, but the finish is not as called for: {} of {} zones"
+        ).format(zones, sum(bool(one.get("finish")) for one in found["zones"]))
+    if zones:
+        return translate("BeltGrinding", "In tolerance, but the finish of a zone is not known")
     if found["overall"] == "unknown":
         return translate("BeltGrinding", "Cannot be told: not everything was inspected")
     bad = sum(one["verdict"] == "fail" for one in found["faces"])

@@ -1,5 +1,6 @@
 """What the verdict's dock writes into its tables and labels."""
 
+from ...inspection import finish_zones
 from ..common.compat import QtGui, translate
 from ..common.messages import note_texts
 from ..common.theme import theme
@@ -119,19 +120,50 @@ def _regions(found, face_name):
             if len(found["zones"]) == 1:
                 continue  # there are no zones: the faces say it all
             name = translate("BeltGrinding", "elsewhere")
-        # A zone may fail by its thickness alone, which has a row of its own.
-        out = zone["above_share"] + zone["below_share"] > 0
-        verdict = zone["verdict"] if zone["worst"] is None or out else "pass"
+        # A zone may fail by its thickness or its finish alone, which have rows of their own.
+        verdict = finish_zones.heights(zone)
         rows.append((zone, [name, word(verdict), *_figures(zone), ""], _colour(verdict)))
         thick = zone["thickness"]
         if thick is not None:
             title = translate("BeltGrinding", "{}: thickness").format(name)
             rows.append((thick, [title, *_thickness(thick)], _colour(thick["verdict"])))
+        rows += _finish(name, zone.get("finish") or {})
     for face in found["faces"]:
         wave = face["waviness"]
         told = [f"{wave[name]['Wt_mm']:.4f}" if wave[name] else "–" for name in ("along", "across")]
         texts = [face_name(face["face"]), word(face["verdict"]), *_figures(face)]
         rows.append((face, [*texts, " / ".join(told)], _colour(face["verdict"])))
+    return rows
+
+
+def _finish(name, finish):
+    """[(region, texts, colour)] of what a zone calls for of its finish."""
+    titles = {
+        "Ra": translate("BeltGrinding", "{}: roughness").format(name),
+        "lay": translate("BeltGrinding", "{}: lay").format(name),
+    }
+    rows = []
+    for what, beyond in (("Ra", "above_share"), ("lay", "off_share")):
+        one = finish.get(what)
+        if one is None:
+            continue
+        worst = one.get("worst")
+        good = 1.0 - one[beyond] - one["unknown_share"]
+        texts = [
+            titles[what],
+            word(one["verdict"]),
+            f"{100 * max(good, 0.0):.2f}",
+            "",
+            "",
+            "",
+            "",
+            "",
+        ]
+        if what == "Ra" and worst is not None:
+            texts[5] = f"{worst['Ra_um']:.2f} µm"
+            texts[6] = f"{worst['Ra_um'] - one['limit_um']:+.2f} µm"
+        place = worst or (one.get("unknown") or {}).get("place")
+        rows.append(({"worst": place}, texts, _colour(one["verdict"])))
     return rows
 
 

@@ -17,6 +17,11 @@ LONG = re.compile(r"\S{20,}")  # names and paths that may be wider than the dock
 BREAK = "\u200b"  # where a line may end; it has no width
 
 
+def breakable(text):
+    """A message whose long names and paths may be broken, so that it is no wider than the dock."""
+    return LONG.sub(lambda word: word.group().replace("_", "_" + BREAK), text)
+
+
 class Panel:
     """A task panel that edits ``obj``. Subclasses fill ``self.body`` (a QVBoxLayout).
 
@@ -44,7 +49,7 @@ class Panel:
 
     def tell(self, text, error=False):
         """A message in the panel; '' hides it."""
-        self.note.setText(LONG.sub(lambda word: word.group().replace("_", "_" + BREAK), text))
+        self.note.setText(breakable(text))
         self.note.setStyleSheet(warning_style(error))
         self.note.setVisible(bool(text))
 

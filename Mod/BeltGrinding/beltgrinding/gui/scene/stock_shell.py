@@ -10,6 +10,7 @@ from .shapes3d import material, separator, triangles, unpickable
 
 COLOUR, SEE_THROUGH = (0.96, 0.72, 0.30), 0.62
 CREASE = 0.6  # rad
+_sides = []  # (shape, its ``_outwards``), the last one
 
 
 def shell(job, allowance):
@@ -44,11 +45,15 @@ def shell(job, allowance):
 
 def _outwards(shape):
     """{hash of a face: 1, or -1 where its solid is inside out} of the faces of a shape's solids."""
-    return {
-        face.hashCode(): -1.0 if solid.Volume < 0.0 else 1.0
-        for solid in shape.Solids
-        for face in solid.Faces
-    }
+    for kept, found in _sides:
+        if kept.isEqual(shape):
+            return found
+    found = {}
+    for solid in shape.Solids:
+        side = -1.0 if solid.Volume < 0.0 else 1.0  # a volume may take a second
+        found.update((face.hashCode(), side) for face in solid.Faces)
+    _sides[:] = [(shape, found)]
+    return found
 
 
 def thickened(points, faces, thickness):

@@ -5414,7 +5414,7 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     </message>
     <message>
         <source>Chosen from the part: force, passes, samples, and the feed at which the allowance comes off on the mean, if K is right: K is not known before the belt is calibrated. The belt is taken as it is.</source>
-        <translation type="unfinished"></translation>
+        <translation>Nach dem Bauteil gewählt: Kraft, Bahnen, Abtastung und der Vorschub, bei dem das Aufmaß im Mittel abgeht, wenn K stimmt: K ist erst bekannt, wenn das Band kalibriert ist. Das Band bleibt, wie es ist.</translation>
     </message>
 </context>
 <context>

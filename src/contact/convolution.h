@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <memory>
 #include <vector>
 
 namespace beltgrinding {
@@ -25,7 +26,12 @@ class RowTransform {
     void backward(const std::complex<float>* spectrum, float* values);
 
   private:
+    struct Plan;
+    /// Aligned, eight numbers at each of `length_` places.
+    float* eight_rows();
+
     int rows_ = 0, used_ = 0, length_ = 0;
+    std::shared_ptr<const Plan> plan_;
     std::vector<float> padded_;
 };
 

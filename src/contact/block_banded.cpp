@@ -18,7 +18,7 @@ constexpr int kPair = 2;   // columns that share what is loaded
 template <class Vector, int vectors, int pairs>
 [[gnu::always_inline]] inline void subtract_strip(const double* l, std::ptrdiff_t height, int depth,
                                                   int row, int column, double* to,
-                                                  std::ptrdiff_t to_height) {
+                                                  std::ptrdiff_t to_height, double sign) {
     constexpr int kLanes = sizeof(Vector) / sizeof(double);
     Vector sum[pairs][vectors] = {};
     for (int k = 0; k < depth; ++k) {
@@ -34,7 +34,7 @@ template <class Vector, int vectors, int pairs>
         for (int v = 0; v < vectors; ++v) {
             Vector old;
             std::memcpy(&old, at + v * kLanes, sizeof(Vector));
-            old -= sum[p][v];
+            old -= sign * sum[p][v];
             std::memcpy(at + v * kLanes, &old, sizeof(Vector));
         }
     }
@@ -44,15 +44,16 @@ template <class Vector, int vectors, int pairs>
 template <class Vector, int strip, int pairs>
 [[gnu::always_inline]] inline void subtract_columns(const double* l, std::ptrdiff_t height,
                                                     int depth, int first_row, int rows, int column,
-                                                    double* to, std::ptrdiff_t to_height) {
+                                                    double* to, std::ptrdiff_t to_height,
+                                                    double sign) {
     constexpr int kLanes = sizeof(Vector) / sizeof(double);
     int row = first_row;
     for (; row + strip * kLanes <= rows; row += strip * kLanes)
-        subtract_strip<Vector, strip, pairs>(l, height, depth, row, column, to, to_height);
+        subtract_strip<Vector, strip, pairs>(l, height, depth, row, column, to, to_height, sign);
     for (; row + kLanes <= rows; row += kLanes)
-        subtract_strip<Vector, 1, pairs>(l, height, depth, row, column, to, to_height);
+        subtract_strip<Vector, 1, pairs>(l, height, depth, row, column, to, to_height, sign);
     for (; row < rows; row += kFour)
-        subtract_strip<Four, 1, pairs>(l, height, depth, row, column, to, to_height);
+        subtract_strip<Four, 1, pairs>(l, height, depth, row, column, to, to_height, sign);
 }
 
 /// The lower triangle of to -= L L', for the columns from `first` to `end`; rows are padded to a
@@ -60,14 +61,15 @@ template <class Vector, int strip, int pairs>
 template <class Vector, int strip>
 [[gnu::always_inline]] inline void subtract_triangle(const double* l, std::ptrdiff_t height,
                                                      int depth, int rows, int first, int end,
-                                                     double* to, std::ptrdiff_t to_height) {
+                                                     double* to, std::ptrdiff_t to_height,
+                                                     double sign) {
     int column = first;
     for (; column + kPair <= end; column += kPair)
         subtract_columns<Vector, strip, kPair>(l, height, depth, column / kFour * kFour, rows,
-                                               column, to, to_height);
+                                               column, to, to_height, sign);
     for (; column < end; ++column)
         subtract_columns<Vector, strip, 1>(l, height, depth, column / kFour * kFour, rows, column,
-                                           to, to_height);
+                                           to, to_height, sign);
 }
 
 // GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
@@ -80,40 +82,44 @@ template <class Vector, int strip>
 #ifdef BELTGRINDING_AVX
 __attribute__((target("avx512f"))) void subtract_square_512(const double* l, std::ptrdiff_t height,
                                                             int depth, int rows, int first, int end,
-                                                            double* to, std::ptrdiff_t to_height) {
-    subtract_triangle<Eight, kStrip>(l, height, depth, rows, first, end, to, to_height);
+                                                            double* to, std::ptrdiff_t to_height,
+                                                            double sign) {
+    subtract_triangle<Eight, kStrip>(l, height, depth, rows, first, end, to, to_height, sign);
 }
 
 __attribute__((target_clones("avx2", "default")))
 #endif
 void subtract_square_256(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
-                         int end, double* to, std::ptrdiff_t to_height) {
-    subtract_triangle<Four, kStrip>(l, height, depth, rows, first, end, to, to_height);
+                         int end, double* to, std::ptrdiff_t to_height, double sign) {
+    subtract_triangle<Four, kStrip>(l, height, depth, rows, first, end, to, to_height, sign);
 }
 
 void subtract_square(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
-                     int end, double* to, std::ptrdiff_t to_height) {
+                     int end, double* to, std::ptrdiff_t to_height, double sign) {
 #ifdef BELTGRINDING_AVX
     if (__builtin_cpu_supports("avx512f"))
-        return subtract_square_512(l, height, depth, rows, first, end, to, to_height);
+        return subtract_square_512(l, height, depth, rows, first, end, to, to_height, sign);
 #endif
-    subtract_square_256(l, height, depth, rows, first, end, to, to_height);
+    subtract_square_256(l, height, depth, rows, first, end, to, to_height, sign);
 }
 
-/// Cholesky's factor of the first `columns` rows of a panel, and what that makes of the rows below.
+/// Cholesky's factor of the columns from `first` to `end` of a panel, all of one sign, and what
+/// that makes of the rows below.
 #ifdef BELTGRINDING_AVX
 __attribute__((target_clones("avx2", "default")))
 #endif
-bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows) {
+bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows,
+                       double sign) {
     for (int j = first; j < end; ++j) {
         double* column = panel + j * height;
         for (int k = first; k < j; ++k) {
             const double* before = panel + k * height;
-            const double factor = before[j];
+            const double factor = sign * before[j];
             for (int r = j; r < rows; ++r) column[r] -= factor * before[r];
         }
-        if (!(column[j] > 0.0) || !std::isfinite(column[j])) return false;
-        const double inverse = 1.0 / std::sqrt(column[j]);
+        const double pivot = sign * column[j];
+        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+        const double inverse = sign / std::sqrt(pivot);
         for (int r = j; r < rows; ++r) column[r] *= inverse;
     }
     return true;
@@ -123,8 +129,11 @@ constexpr int kBlock = 8;  // columns of a panel that are factorised at a time
 
 }  // namespace
 
-BlockBanded::BlockBanded(int count, int size)
-    : count_(count), size_(size), height_((3 * size + kFour - 1) / kFour * kFour) {
+BlockBanded::BlockBanded(int count, int size, int negative)
+    : count_(count),
+      size_(size),
+      negative_(negative),
+      height_((3 * size + kFour - 1) / kFour * kFour) {
     blocks_.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(height_) *
                        static_cast<std::size_t>(size),
                    0.0);
@@ -137,12 +146,23 @@ void BlockBanded::set_zero() {
 bool BlockBanded::factorise() {
     const int m = size_;
     const auto padded = [](int rows) { return (rows + kFour - 1) / kFour * kFour; };
+    // to -= L J L', of the columns of L before `end_depth`.
+    const auto subtract = [this](const double* l, std::ptrdiff_t height, int depth, int rows,
+                                 int first, int end, double* to) {
+        const int less = std::min(negative_, depth);
+        if (less > 0) subtract_square(l, height, less, rows, first, end, to, height, -1.0);
+        if (depth > less)
+            subtract_square(l + less * height, height, depth - less, rows, first, end, to, height,
+                            1.0);
+    };
     for (int i = 0; i < count_; ++i) {
         double* own = panel(i);
-        for (int first = 0; first < m; first += kBlock) {
-            const int end = std::min(first + kBlock, m);
-            if (first > 0) subtract_square(own, height_, first, height_, first, end, own, height_);
-            if (!factorise_columns(own, height_, first, end, height_)) return false;
+        for (int first = 0, end = 0; first < m; first = end) {
+            const bool less = first < negative_;
+            end = std::min(first + kBlock, less ? negative_ : m);
+            if (first > 0) subtract(own, height_, first, height_, first, end, own);
+            if (!factorise_columns(own, height_, first, end, height_, less ? -1.0 : 1.0))
+                return false;
         }
         // What is left of the two panels behind: their blocks (0, 0), (1, 0) and (1, 1).
         const int behind = std::min(2, count_ - 1 - i);
@@ -156,7 +176,7 @@ bool BlockBanded::factorise() {
             std::copy_n(own + std::ptrdiff_t{k} * height_ + m, behind * m, to);
             std::fill(to + behind * m, to + rows, 0.0);
         }
-        subtract_square(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data(), rows);
+        subtract(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data());
         const auto add = [&](int row, int column, double* to) {
             for (int k = 0; k < m; ++k) {
                 const double* from = corner_.data() + (std::ptrdiff_t{column} * m + k) * rows +
@@ -190,6 +210,7 @@ void BlockBanded::solve(Eigen::MatrixXd& values) const {
         for (int i = count_; i-- > 0;) {
             const int rows = m * std::min(3, count_ - i);
             double* at = x + std::ptrdiff_t{i} * m;
+            for (int k = 0; k < negative_; ++k) at[k] = -at[k];
             for (int k = m; k-- > 0;) {
                 const double* column = panel(i) + std::ptrdiff_t{k} * height_;
                 const Eigen::Map<const Eigen::VectorXd> below(column + k + 1, rows - k - 1);

@@ -26,9 +26,7 @@ class BeltBands {
     int columns() const { return columns_; }
     int splines() const { return splines_; }
     /// The block in row `i + below` and column `i`; `below`: 0 to 2.
-    Eigen::Map<Band> block(int i, int below) {
-        return {at(i, below), kDiagonals, splines_};
-    }
+    Eigen::Map<Band> block(int i, int below) { return {at(i, below), kDiagonals, splines_}; }
     /// Adds w a b' at the splines from `first` on, to the block in row `i + below`, column `i`.
     void add_product(int i, int below, int first, double w, const std::array<double, kLocal>& a,
                      const std::array<double, kLocal>& b) {

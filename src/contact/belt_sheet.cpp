@@ -1,6 +1,5 @@
 #include "belt_sheet.h"
 
-#include <algorithm>
 #include <array>
 
 namespace beltgrinding {
@@ -8,7 +7,6 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Band = BeltBands::Band;
-constexpr int kLocal = BeltSpline::kLocal;
 
 /// A form of the second derivative k along the belt and of the value c itself: 1/2 k' A k + k' B c
 /// + 1/2 c' C c.
@@ -44,35 +42,10 @@ void add_sloped(const BeltColumns& columns, int border, const Band& p, BeltBands
     if (!last) matrix.block(border - 1, 1) -= square * p;
 }
 
-/// Integral of f times the products of two splines' parts.
-template <class Row, class Column, class Values>
-void integrate(const BeltSpline& spline, const Values& f, Row row, Column column, Band& to) {
-    const auto& locals = spline.locals();
-    for (std::size_t q = 0; q < locals.size(); ++q) {
-        const auto& local = locals[q];
-        const auto &a = row(local), &b = column(local);
-        const double weight = spline.weights()[q] * f[static_cast<Eigen::Index>(q)];
-        for (std::size_t s = 0; s < kLocal; ++s)
-            for (std::size_t r = 0; r < kLocal; ++r)
-                to(kLocal - 1 + static_cast<int>(r) - static_cast<int>(s),
-                   local.first + static_cast<int>(s)) += weight * a[r] * b[s];
-    }
-}
-
 }  // namespace
 
 BeltSheet::BeltSheet(const AbrasiveBelt& belt, const BeltSpline& spline)
-    : bending_(belt.bending()), ratio_(belt.poissons_ratio), spline_(spline) {
-    leaning_.setZero(spline.count(), spline.count());
-    for (std::size_t q = 0; q < spline.places().size(); ++q) {
-        const BeltSpline::Local& b = spline.locals()[q];
-        const double weight = spline.weights()[q] * 2.0 / belt.width * spline.places()[q];
-        for (std::size_t r = 0; r < kLocal; ++r)
-            for (std::size_t s = 0; s < kLocal; ++s)
-                leaning_(b.first + static_cast<int>(r), b.first + static_cast<int>(s)) +=
-                    weight * b.value[r] * b.value[s];
-    }
-}
+    : bending_(belt.bending()), ratio_(belt.poissons_ratio), spline_(spline) {}
 
 BeltBands BeltSheet::bending(const BeltColumns& columns) const {
     const int n = columns.count(), m = spline_.count();
@@ -88,42 +61,6 @@ BeltBands BeltSheet::bending(const BeltColumns& columns) const {
     }
     for (int border = 0; border <= n; ++border) add_sloped(columns, border, twist, matrix);
     return matrix;
-}
-
-void BeltSheet::add_stress(const BeltColumns& columns, const BeltForces& forces,
-                           BeltBands& to) const {
-    const int n = columns.count(), m = spline_.count();
-    const auto value = [](const BeltSpline::Local& b) -> const auto& {
-        return b.value;
-    };
-    const auto slope = [](const BeltSpline::Local& b) -> const auto& {
-        return b.slope;
-    };
-    const auto curvature = [](const BeltSpline::Local& b) -> const auto& {
-        return b.curvature;
-    };
-    // Its work on w_xy^2 - w_xx w_yy, and on the belt's elongation.
-    Band own(BeltBands::kDiagonals, m), transposed = own;
-    for (int i = 0; i < n; ++i) {
-        const std::array<double, 3> k = columns.curvature(i);
-        if (k[1] == 0.0) continue;
-        const Eigen::ArrayXd f = -columns.apart(i) * forces.function.col(i);
-        own.setZero();
-        transposed.setZero();
-        integrate(spline_, f, value, curvature, own);
-        integrate(spline_, f, curvature, value, transposed);
-        to.block(i - 1, 1) += k[0] * transposed;
-        to.block(i, 0) += k[1] * (own + transposed);
-        to.block(i, 1) += k[2] * own;
-    }
-    const Band even = BeltBands::band_of(forces.mean * spline_.values() + forces.lean * leaning_);
-    for (int border = 0; border <= n; ++border) {
-        const Eigen::ArrayXd f = forces.function.col(std::max(border - 1, 0)) +
-                                 forces.function.col(std::min(border, n - 1));
-        own = even;
-        integrate(spline_, f, slope, slope, own);
-        add_sloped(columns, border, own, to);
-    }
 }
 
 Eigen::MatrixXd BeltSheet::path_load(const BeltPath& path) const {

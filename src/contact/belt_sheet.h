@@ -8,13 +8,6 @@
 
 namespace beltgrinding {
 
-/// A stress in the belt's plane.
-struct BeltForces {
-    double mean = 0.0;         ///< N/mm along the belt
-    double lean = 0.0;         ///< N/mm more at the edge at +y
-    Eigen::ArrayXXd function;  ///< N mm, of the stress function at the spline's `places` (rows)
-};
-
 /// The belt as a thin plate with large deflections (Foeppl and von Karman; Timoshenko,
 /// Woinowsky-Krieger: Theory of Plates and Shells, section 100): what it deflects from a path,
 /// along the path's normal, as splines across on columns along it. Its side edges are free, its
@@ -25,15 +18,12 @@ class BeltSheet {
 
     /// What bending resists with, N/mm.
     BeltBands bending(const BeltColumns& columns) const;
-    /// Adds what the stress in its plane resists with, N/mm.
-    void add_stress(const BeltColumns& columns, const BeltForces& forces, BeltBands& to) const;
     /// What the path's own turns load the belt with, as it is bent: N, (splines, columns).
     Eigen::MatrixXd path_load(const BeltPath& path) const;
 
   private:
     double bending_, ratio_;
     const BeltSpline& spline_;
-    Eigen::MatrixXd leaning_;  // integrals of 2 y / width times two splines
 };
 
 }  // namespace beltgrinding

@@ -16,11 +16,11 @@ constexpr double kAtEdge = 1.0;    // the same at its side edges
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
 constexpr double kThick = 0.2;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
-constexpr int kLineSteps = 20;       // of the search along a step
-constexpr double kFlat = 0.1;        // of the energy's slope at its beginning: where that ends
 constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
 constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, to begin with
+constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
+constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
 constexpr double kNoForce = 1e-6;  // N
 
 }  // namespace
@@ -39,7 +39,8 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
       shear_(sheet == Sheet::kThick ? 0.5 * kThick * belt.thickness * belt.thickness : 0.0),
       rows_(rows_under_belt(grid, belt.width)),
       spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
-      plate_(belt_, spline_) {
+      plate_(belt_, spline_),
+      terms_(belt.width, spline_) {
     for (const BeltRow& row : rows_) locals_.push_back(spline_.at(row.y));
 }
 
@@ -102,7 +103,7 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
                                               const BeltStress::Coupling& coupling,
                                               const Iterate& at, bool bonded) {
     Unbalanced off;
-    off.belt = path_load_ - bending_.times(at.deflection) - stress.resistance(coupling, at.stress);
+    off.belt = path_load_ - at.bent - stress.resistance(coupling, at.stress);
     const bool yield = yields(*request.problem);
     if (yield) off.work = commanded(request, at.lift);
     for (int i = 0; i < path.columns.count(); ++i) {
@@ -129,7 +130,7 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
                     force -= backing_spring(request, path.columns, i, k) * in;
                 if (!bonded) {
                     const std::uint8_t now = in > 0.0 ? 1 : 0;
-                    off.same = off.same && now == borne;
+                    off.borne = off.borne && now == borne;
                     borne = now;
                 }
             }
@@ -150,10 +151,10 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
     const BeltColumns& columns = path.columns;
     const int n = columns.count(), size = spline_.count() + BeltStress::kTerms;
     if (matrix_.count() != n || matrix_.size() != size)
-        matrix_ = BlockBanded(n, size, BeltStress::kTerms);
-    for (share_ = 1.0;; share_ = share_ > kLeastStress ? kStiffer * share_ : 0.0) {
+        matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
+    for (double share = 1.0;; share = share > kLeastStress ? kStiffer * share : 0.0) {
         bands_ = bending_;
-        plate_.add_stress(columns, stress.forces(at.stress, share_), bands_);
+        stress.stiffen(at.stress, share, bands_);
         for (int i = 0; i < n; ++i) {
             for (std::size_t k = 0; k < rows_.size(); ++k) {
                 double w = 0.0;
@@ -173,169 +174,8 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
         stress.add_to(matrix_, coupling);
         bands_.add_to(matrix_, BeltStress::kTerms);
         if (matrix_.factorise()) return true;
-        if (share_ == 0.0) return false;
+        if (share == 0.0) return false;
     }
-}
-
-BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
-                                  const BeltStress& stress, const BeltStress::Coupling& coupling,
-                                  const Unbalanced& off) {
-    const int n = path.columns.count(), m = spline_.count(), size = m + BeltStress::kTerms;
-    const bool yield = yields(*request.problem), stretches = stress.mean_stiffness() > 0.0;
-    // Beside the belt: the work's lift, the mean stress, and what of it is linear across.
-    std::vector<Eigen::MatrixXd> borders;
-    std::vector<double> own, right;
-    if (yield) {
-        Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(m, n);
-        double stiffness =
-            request.problem->force_control ? 0.0 : 1.0 / request.problem->robot_compliance;
-        for (int i = 0; i < n; ++i) {
-            const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-            for (std::size_t k = 0; k < rows_.size(); ++k) {
-                if (request.touching[cell(i, k)] == 0) continue;
-                const double w = spring(request, path.columns, i, k) * cosine;
-                stiffness += w * cosine;
-                const FaceForm form = face_form(path.columns, k, i);
-                for (int p = form.first; p <= form.last; ++p)
-                    for (int r = 0; r < BeltSpline::kLocal; ++r)
-                        pushed(locals_[k].first + r, i - 1 + p) -=
-                            w *
-                            form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
-            }
-        }
-        borders.push_back(std::move(pushed));
-        own.push_back(stiffness);
-        right.push_back(off.work);
-    }
-    if (stretches) {
-        borders.push_back(coupling.mean);
-        own.push_back(-1.0 / stress.mean_stiffness());
-        right.push_back(0.0);
-    }
-    borders.push_back(coupling.lean);
-    own.push_back(-1.0 / stress.lean_stiffness());
-    right.push_back(0.0);
-
-    const auto count = static_cast<Eigen::Index>(borders.size());
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, 1 + count);
-    const auto belt = [&](Eigen::Index c) {
-        return Eigen::Map<Eigen::MatrixXd>(all.col(c).data(), size, n).bottomRows(m);
-    };
-    belt(0) = off.belt;
-    for (Eigen::Index c = 0; c < count; ++c) belt(1 + c) = borders[static_cast<std::size_t>(c)];
-    matrix_.solve(all);
-    Eigen::MatrixXd small(count, count);
-    Eigen::VectorXd rest(count);
-    for (Eigen::Index r = 0; r < count; ++r) {
-        const Eigen::MatrixXd& border = borders[static_cast<std::size_t>(r)];
-        rest[r] = right[static_cast<std::size_t>(r)] - border.cwiseProduct(belt(0)).sum();
-        for (Eigen::Index c = 0; c < count; ++c)
-            small(r, c) = -border.cwiseProduct(belt(1 + c)).sum();
-        small(r, r) += own[static_cast<std::size_t>(r)];
-    }
-    const Eigen::VectorXd others = small.partialPivLu().solve(rest);
-    Step step;
-    step.deflection = belt(0);
-    for (Eigen::Index c = 0; c < count; ++c) step.deflection -= others[c] * belt(1 + c);
-    if (yield) step.lift = others[0];
-    return step;
-}
-
-double BeltSolver::go(const Request& request, const BeltPath& path, const BeltStress& stress,
-                      const Unbalanced& off, const Step& step, bool whole, Iterate& at) const {
-    const int n = path.columns.count();
-    const BeltStress::Shape shape = stress.shape(step.deflection);
-    // Strains are e0 + s e1 + s^2 e2 on the way.
-    BeltModes e1 = stress.product(at.shape, shape);
-    const BeltModes turned = stress.turned(step.deflection);
-    e1.function = 2.0 * e1.function + turned.function;
-    e1.mean = 2.0 * e1.mean + turned.mean;
-    e1.lean = 2.0 * e1.lean + turned.lean;
-    const BeltModes e2 = stress.product(shape, shape);
-    const BeltModes s1 = stress.stress(e1), s2 = stress.stress(e2);
-    const auto work = [](const BeltModes& s, const BeltModes& e) {
-        return s.function.cwiseProduct(e.function).sum() + s.mean * e.mean + s.lean * e.lean;
-    };
-    Eigen::ArrayXXd cells(at.cells.rows(), n);
-    for (int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            cells(static_cast<Eigen::Index>(k), i) =
-                deflection_at(path.columns, step.deflection, k, i);
-    double share = 1.0;
-    if (!whole) {
-        const double rest = stress.pull({{}, 0.0, 0.0});
-        // The energy's slope, but for what is not smooth.
-        std::array<double, 4> smooth = {
-            -path_load_.cwiseProduct(step.deflection).sum() +
-                bending_.times(at.deflection).cwiseProduct(step.deflection).sum() +
-                work(at.stress, e1) + rest * e1.mean,
-            bending_.times(step.deflection).cwiseProduct(step.deflection).sum() +
-                2.0 * work(at.stress, e2) + work(s1, e1) + 2.0 * rest * e2.mean,
-            3.0 * work(s1, e2), 2.0 * work(s2, e2)};
-        if (yields(*request.problem)) {
-            smooth[0] -= commanded(request, at.lift) * step.lift;
-            if (!request.problem->force_control)
-                smooth[1] += step.lift * step.lift / request.problem->robot_compliance;
-        }
-        const auto slope = [&](double s) {
-            double sum = smooth[0] + s * (smooth[1] + s * (smooth[2] + s * smooth[3]));
-            for (int i = 0; i < n; ++i) {
-                const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-                for (std::size_t k = 0; k < rows_.size(); ++k) {
-                    const auto row = static_cast<Eigen::Index>(k);
-                    const double du = cells(row, i), u = at.cells(row, i) + s * du;
-                    const double overlap =
-                        reach_at(request, path, i, k) + (at.lift + s * step.lift) * cosine - u;
-                    if (overlap > 0.0)
-                        sum += spring(request, path.columns, i, k) * overlap *
-                               (step.lift * cosine - du);
-                    if (request.backing == nullptr) continue;
-                    const double in = u - request.backing->rest()(row, i);
-                    if (in > 0.0) sum += backing_spring(request, path.columns, i, k) * in * du;
-                }
-            }
-            return sum;
-        };
-        const double first = -(off.belt.cwiseProduct(step.deflection).sum() + off.work * step.lift);
-        double end = slope(1.0);
-        if (end > kFlat * std::abs(first)) {
-            double low = 0.0, high = 1.0, at_low = first, at_high = end;
-            share = 0.0;
-            for (int k = 0; k < kLineSteps; ++k) {
-                // Regula falsi, kept away from the ends.
-                const double part = std::clamp(at_low / (at_low - at_high), 0.1, 0.9);
-                const double middle = k % 3 == 2 ? 0.5 * (low + high) : std::lerp(low, high, part);
-                const double value = slope(middle);
-                if (value > 0.0) {
-                    high = middle;
-                    at_high = value;
-                } else {
-                    low = middle;
-                    at_low = value;
-                }
-                share = low;
-                if (low > 0.0 && std::abs(at_low) <= kFlat * std::abs(first)) break;
-            }
-            if (share == 0.0) share = high;
-        }
-    }
-    at.deflection += share * step.deflection;
-    at.lift += share * step.lift;
-    at.cells += share * cells;
-    at.shape.x += share * shape.x;
-    at.shape.xy += share * shape.xy;
-    at.shape.xx += share * shape.xx;
-    at.shape.yy += share * shape.yy;
-    const auto add = [](BeltModes& to, double factor, const BeltModes& from) {
-        to.function += factor * from.function;
-        to.mean += factor * from.mean;
-        to.lean += factor * from.lean;
-    };
-    add(at.strain, share, e1);
-    add(at.strain, share * share, e2);
-    add(at.stress, share, s1);
-    add(at.stress, share * share, s2);
-    return share;
 }
 
 bool BeltSolver::touch(Request& request, const BeltPath& path, Iterate& at) const {
@@ -389,7 +229,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
     const double stretching =
         run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
-    const BeltStress stress(belt_, spline_, state.path, pull_of(state.path, 0.0), stretching,
+    const BeltStress stress(belt_, terms_, state.path, pull_of(state.path, 0.0), stretching,
                             run_.length);
     bending_ = plate_.bending(columns);
     path_load_ = plate_.path_load(state.path);
@@ -400,7 +240,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         request.touching.assign(all, 0);
         // What the path's rounded corners lie in; else what is nearest to it.
         const double deepest = request.gap->reach.maxCoeff();
-        const double least = deepest > 0.0 ? 0.5 * deepest : deepest - belt_.thickness;
+        const double least = std::min(0.5 * deepest, deepest - kNear * belt_.thickness);
         for (int i = 0; i < n; ++i)
             for (std::size_t k = 0; k < rows_.size(); ++k)
                 request.touching[cell(i, k)] =
@@ -413,25 +253,34 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     if (request.backing != nullptr) {
         borne_.assign(all, 0);
         for (int i = 0; i < n; ++i)
-            for (std::size_t k = 0; k < rows_.size(); ++k)
-                borne_[cell(i, k)] =
-                    std::isfinite(request.backing->rest()(static_cast<Eigen::Index>(k), i)) ? 1 : 0;
+            for (std::size_t k = 0; k < rows_.size(); ++k) {
+                const double rest = request.backing->rest()(static_cast<Eigen::Index>(k), i);
+                const bool bears = request.before != nullptr
+                                       ? at.cells(static_cast<Eigen::Index>(k), i) > rest
+                                       : std::isfinite(rest);
+                borne_[cell(i, k)] = bears ? 1 : 0;
+            }
     }
+    at.bent = bending_.times(at.deflection);
     strain(stress, at);
     // Without a place to begin with, from the first touch.
     bool bonded =
         std::find(request.touching.begin(), request.touching.end(), 1) != request.touching.end();
-    double share = 0.0;
+    double share = 0.0, before = 0.0;
     for (state.iterations = 0;; ++state.iterations) {
         const bool first = state.iterations == 0;
         BeltStress::Coupling coupling = stress.coupling(at.shape);
         Unbalanced off = unbalanced(request, state.path, stress, coupling, at, bonded);
         const auto left = [&] { return std::max(off.belt.cwiseAbs().sum(), std::abs(off.work)); };
+        // The last factor is as good where nothing has changed that it knows, and its step was
+        // good.
+        bool again = !first && share == 1.0 && off.same && left() <= kGoodStep * before;
         double bears = 0.0;
         if (!first && request.backing != nullptr && share == 1.0 &&
-            (off.same || left() <= kUnbalanced * problem.tolerance * off.total)) {
+            ((off.same && off.borne) || left() <= kUnbalanced * problem.tolerance * off.total)) {
             bears = request.backing->follow(at.cells);
             off = unbalanced(request, state.path, stress, coupling, at, false);
+            again = again && off.same;
         }
         state.converged =
             !first && left() <= std::max(kUnbalanced * problem.tolerance * off.total, kNoForce) &&
@@ -440,9 +289,11 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         if (problem.force_control && off.total == 0.0 && !bonded) {
             if (!touch(request, state.path, at)) break;
             off = unbalanced(request, state.path, stress, coupling, at, false);
+            again = false;
         }
-        if (!factorise(request, state.path, stress, coupling, at)) break;
-        const Step to = step(request, state.path, stress, coupling, off);
+        before = left();
+        if (!again && !factorise(request, state.path, stress, coupling, at)) break;
+        const Step to = step(request, state.path, stress, coupling, off, again);
         if (!to.deflection.allFinite() || !std::isfinite(to.lift)) break;
         share = go(request, state.path, stress, off, to, bonded, at);
         bonded = false;

@@ -82,6 +82,7 @@ class BeltSolver {
     /// A deflection, the work's lift, what they strain.
     struct Iterate {
         Eigen::MatrixXd deflection;  // (splines, columns), mm
+        Eigen::MatrixXd bent;        // N that bending resists it with
         Eigen::ArrayXXd cells;       // mm at the middles of rows and columns
         double lift = 0.0;           // mm
         BeltModes strain, stress;
@@ -92,7 +93,8 @@ class BeltSolver {
         Eigen::MatrixXd belt;  // N, (splines, columns)
         double work = 0.0;     // N, along z
         double total = 0.0;    // N, sum of the contact's forces
-        bool same = true;      // as before, where it touches and where the backing bears
+        bool same = true;      // as before, where it touches
+        bool borne = true;     // as before, where the backing bears
     };
     struct Step {
         Eigen::MatrixXd deflection;
@@ -107,8 +109,11 @@ class BeltSolver {
     /// positive.
     bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
                    const BeltStress::Coupling& coupling, const Iterate& at);
+    /// Newton's step by the factor; `again`: by that of a step before, as it was.
     Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
-              const BeltStress::Coupling& coupling, const Unbalanced& off);
+              const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);
+    /// What the work's lift pushes the belt with, N/mm, and the work itself.
+    Eigen::MatrixXd pushed_by_lift(const Request& request, const BeltPath& path, double& own) const;
     /// Goes along the step, up to its end, where the energy is least; the share of it.
     double go(const Request& request, const BeltPath& path, const BeltStress& stress,
               const Unbalanced& off, const Step& step, bool whole, Iterate& at) const;
@@ -149,11 +154,15 @@ class BeltSolver {
     std::vector<BeltRow> rows_;
     BeltSpline spline_;
     BeltSheet plate_;
+    BeltTerms terms_;
     std::vector<BeltSpline::Local> locals_;  // by row
     BeltBands bending_, bands_;
     Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;
-    double share_ = 1.0;               // of the stress that the matrix has
+    // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
+    // push the belt with, what it gives way by, and what they have themselves.
+    std::vector<Eigen::MatrixXd> borders_, given_;
+    Eigen::MatrixXd border_matrix_;
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <stdexcept>
 
 namespace beltgrinding {
@@ -9,6 +10,13 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 constexpr int kLocal = BeltSpline::kLocal;
+
+// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
+// the loader chooses between them.
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define BELTGRINDING_CLONES
+#endif
 
 /// Values at the spline's places of what has the coefficients `c`.
 template <class To>
@@ -30,6 +38,42 @@ Eigen::VectorXd slope_at(const BeltColumns& columns, const Matrix& c, int border
     return (c.col(border) - c.col(border - 1)) / d;
 }
 
+/// The integrals of factors times the splines' values: factors have their weights.
+void spread(const BeltSpline& spline, const Eigen::ArrayXd& factors, Eigen::VectorXd& to) {
+    to.setZero();
+    const auto& locals = spline.locals();
+    for (std::size_t q = 0; q < locals.size(); ++q)
+        for (int r = 0; r < kLocal; ++r)
+            to[locals[q].first + r] += factors[static_cast<Eigen::Index>(q)] *
+                                       locals[q].value[static_cast<std::size_t>(r)];
+}
+
+/// Of polynomials times splines' values or derivatives and factors at their places: the sums.
+#ifdef BELTGRINDING_CLONES
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void add_moments(const BeltSpline& spline, const double* factors,
+                 const std::array<double, kLocal> BeltSpline::Local::*part,
+                 const BeltTerms::Terms& weighted, BeltTerms::Terms& to) {
+    using Eight = double __attribute__((vector_size(64)));
+    const BeltSpline::Local* locals = spline.locals().data();
+    const std::size_t count = spline.locals().size();
+    std::fill_n(to.data(), to.size(), 0.0);
+    for (std::size_t q = 0; q < count; q += BeltSpline::kPlaces) {
+        Eight sums[kLocal];
+        double* at = to.data() + std::ptrdiff_t{locals[q].first} * BeltTerms::kPadded;
+        std::memcpy(sums, at, sizeof(sums));
+        for (std::size_t p = q; p < q + BeltSpline::kPlaces; ++p) {
+            Eight terms;
+            std::memcpy(&terms, weighted.data() + p * BeltTerms::kPadded, sizeof(Eight));
+            terms *= factors[p];
+            const std::array<double, kLocal>& b = locals[p].*part;
+            for (std::size_t r = 0; r < kLocal; ++r) sums[r] += b[r] * terms;
+        }
+        std::memcpy(at, sums, sizeof(sums));
+    }
+}
+
 /// mm of what is between two columns' middles, and the columns that it belongs to.
 struct Share {
     int first, last;
@@ -45,20 +89,12 @@ Share share_of(const BeltColumns& columns, int border) {
 
 }  // namespace
 
-BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const BeltPath& path,
-                       double resting, double stretching, double run_length)
-    : membrane_(belt.membrane()),
-      width_(belt.width),
-      resting_(resting),
-      stretching_(stretching),
-      leaning_(3.0 * belt.membrane() / (belt.width * run_length)),
-      spline_(spline),
-      path_(path) {
+BeltTerms::BeltTerms(double width, const BeltSpline& given) : spline(given) {
     // (1 - e^2)^2 times Legendre's polynomials of e = 2 y / width.
     const auto places = static_cast<Eigen::Index>(spline.places().size());
-    Terms curvature(kTerms, places);
-    value_.resize(kTerms, places);
-    const double by_y = 2.0 / belt.width;
+    const int m = spline.count();
+    Matrix value(kTerms, places), curvature(kTerms, places);
+    const double by_y = 2.0 / width;
     for (Eigen::Index q = 0; q < places; ++q) {
         const double e = by_y * spline.places()[static_cast<std::size_t>(q)];
         const double edge = (1.0 - e * e) * (1.0 - e * e), edge1 = -4.0 * e * (1.0 - e * e),
@@ -73,18 +109,59 @@ BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const
         }
         for (std::size_t k = 0; k < kTerms; ++k) {
             const auto row = static_cast<Eigen::Index>(k);
-            value_(row, q) = edge * l[k];
+            value(row, q) = edge * l[k];
             curvature(row, q) = by_y * by_y * (edge2 * l[k] + 2.0 * edge1 * l1[k] + edge * l2[k]);
         }
     }
     const Eigen::Map<const Eigen::VectorXd> weights(spline.weights().data(), places);
-    const Matrix a = value_ * weights.asDiagonal() * value_.transpose();
-    const Matrix b = value_ * weights.asDiagonal() * curvature.transpose();
-    const Matrix c = curvature * weights.asDiagonal() * curvature.transpose();
-    compliance_ = BlockBanded(path.columns.count(), kTerms);
+    value_value = value * weights.asDiagonal() * value.transpose();
+    value_curvature = value * weights.asDiagonal() * curvature.transpose();
+    curvature_curvature = curvature * weights.asDiagonal() * curvature.transpose();
+    weighted.setZero(kPadded, places);
+    weighted.topRows(kTerms) = value * weights.asDiagonal();
+    bent.setZero(kPadded, m);
+    even.setZero(m);
+    odd.setZero(m);
+    for (Matrix* bands : {&along, &across, &twisted})
+        bands->setZero(BeltBands::kDiagonals * m, kTerms);
+    Matrix leans = Matrix::Zero(m, m);
+    for (Eigen::Index q = 0; q < places; ++q) {
+        const BeltSpline::Local& local = spline.locals()[static_cast<std::size_t>(q)];
+        const double y = by_y * spline.places()[static_cast<std::size_t>(q)];
+        for (std::size_t c = 0; c < kLocal; ++c) {
+            const Eigen::Index s = local.first + static_cast<Eigen::Index>(c);
+            bent.col(s) += local.curvature[c] * weighted.col(q);
+            even[s] += weights[q] * local.value[c];
+            odd[s] += weights[q] * y * local.value[c];
+            for (std::size_t r = 0; r < kLocal; ++r) {
+                const Eigen::Index row = local.first + static_cast<Eigen::Index>(r);
+                const Eigen::Index at = s * BeltBands::kDiagonals + row - s + kLocal - 1;
+                const auto terms = weighted.col(q).head<kTerms>().transpose();
+                along.row(at) += local.value[r] * local.curvature[c] * terms;
+                across.row(at) += local.curvature[r] * local.value[c] * terms;
+                twisted.row(at) += local.slope[r] * local.slope[c] * terms;
+                leans(row, s) += weights[q] * y * local.value[r] * local.value[c];
+            }
+        }
+    }
+    stretched = BeltBands::band_of(spline.values());
+    leaning = BeltBands::band_of(leans);
+}
+
+BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltTerms& terms, const BeltPath& path,
+                       double resting, double stretching, double run_length)
+    : membrane_(belt.membrane()),
+      width_(belt.width),
+      resting_(resting),
+      stretching_(stretching),
+      leaning_(3.0 * belt.membrane() / (belt.width * run_length)),
+      terms_(terms),
+      spline_(terms.spline),
+      path_(path),
+      compliance_(path.columns.count(), kTerms) {
     for (int i = 0; i < path.columns.count(); ++i) {
         const double h = path.columns.width[static_cast<std::size_t>(i)];
-        compliance_.block(i, 0) += h * c;
+        compliance_.block(i, 0) += h * terms.curvature_curvature;
         const std::array<double, 3> k = path.columns.curvature(i);
         if (k[1] == 0.0) continue;
         const double apart = path.columns.apart(i);
@@ -93,28 +170,14 @@ BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const
                 auto to = compliance_.block(i - 1 + q, p - q);
                 const double kp = k[static_cast<std::size_t>(p)];
                 const double kq = k[static_cast<std::size_t>(q)];
-                to += apart * kp * kq * a;
-                if (q == 1) to += apart * kp * b;
-                if (p == 1) to += apart * kq * b.transpose();
+                to += apart * kp * kq * terms.value_value;
+                if (q == 1) to += apart * kp * terms.value_curvature;
+                if (p == 1) to += apart * kq * terms.value_curvature.transpose();
             }
         }
     }
     factor_ = compliance_;
     if (!factor_.factorise()) throw std::logic_error("BeltStress: not positive definite");
-    weighted_ = value_ * weights.asDiagonal();
-    bent_.setZero(kTerms, spline.count());
-    even_.setZero(spline.count());
-    odd_.setZero(spline.count());
-    for (Eigen::Index q = 0; q < places; ++q) {
-        const BeltSpline::Local& local = spline.locals()[static_cast<std::size_t>(q)];
-        const double y = by_y * spline.places()[static_cast<std::size_t>(q)];
-        for (std::size_t r = 0; r < kLocal; ++r) {
-            const Eigen::Index s = local.first + static_cast<Eigen::Index>(r);
-            bent_.col(s) += local.curvature[r] * weighted_.col(q);
-            even_[s] += weights[q] * local.value[r];
-            odd_[s] += weights[q] * y * local.value[r];
-        }
-    }
 }
 
 BeltStress::Shape BeltStress::shape(const Matrix& deflection) const {
@@ -139,8 +202,8 @@ BeltStress::Shape BeltStress::shape(const Matrix& deflection) const {
             shape.xx.col(i).setZero();
             continue;
         }
-        const Eigen::VectorXd curvature = k[0] * deflection.col(i - 1) +
-                                          k[1] * deflection.col(i) + k[2] * deflection.col(i + 1);
+        const Eigen::VectorXd curvature =
+            k[0] * deflection.col(i - 1) + k[1] * deflection.col(i) + k[2] * deflection.col(i + 1);
         at_places(spline_, curvature.data(), &BeltSpline::Local::value, shape.xx.col(i));
     }
     return shape;
@@ -166,9 +229,9 @@ BeltModes BeltStress::product(const Shape& a, const Shape& b) const {
         for (int i = share.first; i <= share.last; ++i) gauss.col(i) += share.length * twist;
     }
     for (int i = 0; i < n; ++i)
-        gauss.col(i) -= 0.5 * columns.apart(i) *
-                        (a.xx.col(i) * b.yy.col(i) + b.xx.col(i) * a.yy.col(i));
-    strain.function = weighted_ * gauss.matrix();
+        gauss.col(i) -=
+            0.5 * columns.apart(i) * (a.xx.col(i) * b.yy.col(i) + b.xx.col(i) * a.yy.col(i));
+    strain.function = terms_.weighted.topRows(kTerms) * gauss.matrix();
     return strain;
 }
 
@@ -181,10 +244,10 @@ BeltModes BeltStress::turned(const Matrix& deflection) const {
         const auto k = static_cast<std::size_t>(i);
         const double turn = columns.width[k] * path_.turn[k];
         if (turn == 0.0) continue;
-        strain.mean -= turn * even_.dot(deflection.col(i));
-        strain.lean -= turn * odd_.dot(deflection.col(i));
+        strain.mean -= turn * terms_.even.dot(deflection.col(i));
+        strain.lean -= turn * terms_.odd.dot(deflection.col(i));
         strain.function.col(i) =
-            -columns.apart(i) * path_.turn[k] * (bent_ * deflection.col(i));
+            -columns.apart(i) * path_.turn[k] * (terms_.bent.topRows(kTerms) * deflection.col(i));
     }
     return strain;
 }
@@ -200,73 +263,87 @@ BeltModes BeltStress::stress(const BeltModes& strain) const {
     return stress;
 }
 
-BeltForces BeltStress::forces(const BeltModes& stress, double share) const {
-    return {pull(stress), share * stress.lean,
-            share * (value_.transpose() * stress.function).array()};
+void BeltStress::stiffen(const BeltModes& stress, double share, BeltBands& sheet) const {
+    const BeltColumns& columns = path_.columns;
+    const int n = columns.count(), m = spline_.count();
+    // Its work on w_xy^2 - w_xx w_yy, and on the belt's elongation.
+    const Matrix function = share * stress.function;
+    const Matrix along = terms_.along * function, across = terms_.across * function,
+                 twisted = terms_.twisted * function;
+    using Band = BeltBands::Band;
+    const auto band = [m](const Matrix& of, int i) {
+        return Eigen::Map<const Band>(of.col(i).data(), BeltBands::kDiagonals, m);
+    };
+    for (int i = 0; i < n; ++i) {
+        const std::array<double, 3> k = columns.curvature(i);
+        if (k[1] == 0.0) continue;
+        const double apart = columns.apart(i);
+        sheet.block(i - 1, 1) -= apart * k[0] * band(across, i);
+        sheet.block(i, 0) -= apart * k[1] * (band(along, i) + band(across, i));
+        sheet.block(i, 1) -= apart * k[2] * band(along, i);
+    }
+    const Band even = pull(stress) * terms_.stretched + share * stress.lean * terms_.leaning;
+    for (int border = 0; border <= n; ++border) {
+        const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
+        const int l = std::max(border - 1, 0), r = std::min(border, n - 1);
+        const Band own = square * (even + band(twisted, l) + band(twisted, r));
+        if (border < n) sheet.block(border, 0) += own;
+        if (border > 0) sheet.block(border - 1, 0) += own;
+        if (border > 0 && border < n) sheet.block(border - 1, 1) -= own;
+    }
 }
 
 BeltStress::Coupling BeltStress::coupling(const Shape& shape) const {
     const BeltColumns& columns = path_.columns;
     const int n = columns.count(), m = spline_.count();
-    const auto& locals = spline_.locals();
     Coupling coupling;
-    coupling.function.setZero(kTerms, 3 * m * n);
+    coupling.function.setZero(BeltTerms::kPadded, 3 * m * n);
     coupling.mean.setZero(m, n);
     coupling.lean.setZero(m, n);
     // Of the function in column i by the deflection in column j.
     const auto to = [&](int i, int j) {
         return coupling.function.middleCols((3 * i + j - i + 1) * m, m);
     };
-    Terms first(kTerms, m), second(kTerms, m);
+    const auto places = static_cast<Eigen::Index>(spline_.places().size());
+    const Eigen::Map<const Eigen::ArrayXd> weights(spline_.weights().data(), places);
+    const Eigen::Map<const Eigen::ArrayXd> y(spline_.places().data(), places);
+    BeltTerms::Terms first(BeltTerms::kPadded, m), second(BeltTerms::kPadded, m);
+    Eigen::ArrayXd factor(places);
+    Eigen::VectorXd even(m), odd(m);
     for (int border = 0; border <= n; ++border) {
         const Share share = share_of(columns, border);
-        const double by =
-            2.0 * share.length / columns.between[static_cast<std::size_t>(border)];
-        first.setZero();
-        for (std::size_t q = 0; q < locals.size(); ++q) {
-            const auto place = static_cast<Eigen::Index>(q);
-            const BeltSpline::Local& local = locals[q];
-            const double weighted = spline_.weights()[q] * shape.x(place, border);
-            const double leaning = weighted * 2.0 / width_ * spline_.places()[q];
-            const double twist = by * shape.xy(place, border);
-            for (std::size_t r = 0; r < kLocal; ++r) {
-                const Eigen::Index s = local.first + static_cast<Eigen::Index>(r);
-                if (border < n) {
-                    coupling.mean(s, border) += weighted * local.value[r];
-                    coupling.lean(s, border) += leaning * local.value[r];
-                }
-                if (border > 0) {
-                    coupling.mean(s, border - 1) -= weighted * local.value[r];
-                    coupling.lean(s, border - 1) -= leaning * local.value[r];
-                }
-                first.col(s) += twist * local.slope[r] * weighted_.col(place);
-            }
-        }
+        const double by = 2.0 * share.length / columns.between[static_cast<std::size_t>(border)];
+        factor = by * shape.xy.col(border);
+        add_moments(spline_, factor.data(), &BeltSpline::Local::slope, terms_.weighted, first);
         for (int i = share.first; i <= share.last; ++i) {
             if (border > 0) to(i, border - 1) -= first;
             if (border < n) to(i, border) += first;
         }
+        factor = weights * shape.x.col(border);
+        spread(spline_, factor, even);
+        factor *= 2.0 / width_ * y;
+        spread(spline_, factor, odd);
+        if (border < n) {
+            coupling.mean.col(border) += even;
+            coupling.lean.col(border) += odd;
+        }
+        if (border > 0) {
+            coupling.mean.col(border - 1) -= even;
+            coupling.lean.col(border - 1) -= odd;
+        }
     }
     for (int i = 0; i < n; ++i) {
         const auto c = static_cast<std::size_t>(i);
-        const double width = columns.width[c], apart = columns.apart(i), turn = path_.turn[c];
-        coupling.mean.col(i) -= width * turn * even_;
-        coupling.lean.col(i) -= width * turn * odd_;
-        first.setZero();
-        second.setZero();
-        for (std::size_t q = 0; q < locals.size(); ++q) {
-            const auto place = static_cast<Eigen::Index>(q);
-            const BeltSpline::Local& local = locals[q];
-            const double xx = apart * (turn + shape.xx(place, i)), yy = apart * shape.yy(place, i);
-            for (std::size_t r = 0; r < kLocal; ++r) {
-                const Eigen::Index s = local.first + static_cast<Eigen::Index>(r);
-                first.col(s) += xx * local.curvature[r] * weighted_.col(place);
-                second.col(s) += yy * local.value[r] * weighted_.col(place);
-            }
-        }
+        const double turn = path_.turn[c], apart = columns.apart(i);
+        coupling.mean.col(i) -= columns.width[c] * turn * terms_.even;
+        coupling.lean.col(i) -= columns.width[c] * turn * terms_.odd;
+        factor = apart * (turn + shape.xx.col(i));
+        add_moments(spline_, factor.data(), &BeltSpline::Local::curvature, terms_.weighted, first);
         to(i, i) -= first;
         const std::array<double, 3> k = columns.curvature(i);
         if (k[1] == 0.0) continue;
+        factor = apart * shape.yy.col(i);
+        add_moments(spline_, factor.data(), &BeltSpline::Local::value, terms_.weighted, second);
         for (int p = 0; p < 3; ++p) to(i, i - 1 + p) -= k[static_cast<std::size_t>(p)] * second;
     }
     return coupling;
@@ -277,7 +354,9 @@ Eigen::MatrixXd BeltStress::resistance(const Coupling& coupling, const BeltModes
     Matrix result = pull(stress) * coupling.mean + stress.lean * coupling.lean;
     for (int i = 0; i < n; ++i)
         for (int j = std::max(i - 1, 0); j <= std::min(i + 1, n - 1); ++j)
-            result.col(j) += coupling.function.middleCols((3 * i + j - i + 1) * m, m).transpose() *
+            result.col(j) += coupling.function.middleCols((3 * i + j - i + 1) * m, m)
+                                 .topRows<kTerms>()
+                                 .transpose() *
                              stress.function.col(i);
     return result;
 }
@@ -285,7 +364,7 @@ Eigen::MatrixXd BeltStress::resistance(const Coupling& coupling, const BeltModes
 void BeltStress::add_to(BlockBanded& matrix, const Coupling& coupling) const {
     const int n = path_.columns.count(), m = spline_.count();
     const auto from = [&](int i, int j) {
-        return coupling.function.middleCols((3 * i + j - i + 1) * m, m);
+        return coupling.function.middleCols((3 * i + j - i + 1) * m, m).topRows<kTerms>();
     };
     for (int i = 0; i < n; ++i) {
         for (int below = 0; below < std::min(3, n - i); ++below) {

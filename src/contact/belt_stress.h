@@ -17,16 +17,36 @@ struct BeltModes {
     double lean = 0.0;         ///< N/mm more at the edge at +y; or mm mm
 };
 
+/// Polynomials across the belt, which are 0 with their slope at the side edges, and what they make
+/// of the splines.
+struct BeltTerms {
+    static constexpr int kTerms = 6;
+    static constexpr int kPadded = 8;  ///< rows, for whole registers
+    using Terms = Eigen::Matrix<double, kPadded, Eigen::Dynamic>;
+
+    BeltTerms(double width, const BeltSpline& spline);
+
+    const BeltSpline& spline;
+    Terms weighted;             ///< at the spline's places, times their weights
+    Terms bent;                 ///< integrals with splines' curvatures
+    Eigen::VectorXd even, odd;  ///< integrals of splines, and of them times 2 y / width
+    Eigen::MatrixXd value_value, value_curvature, curvature_curvature;  ///< of the polynomials
+    /// By term, the bands of its integral with the splines' values (rows) and curvatures, the other
+    /// way round, and with two slopes.
+    Eigen::MatrixXd along, across, twisted;
+    BeltBands::Band stretched, leaning;  ///< of two splines' values, and of them times 2 y / width
+};
+
 /// Stresses in the belt's plane by an Airy stress function, which is 0 with its slope at the side
 /// edges: del^4 F = E t (w_xy^2 - w_xx w_yy). What does not vanish over the width, the mean and
 /// what is linear across, comes from the belt's length between its rollers. What the sheet resists
 /// with under them is the derivative of their work on the strains: all has an energy.
 class BeltStress {
   public:
-    static constexpr int kTerms = 6;  ///< polynomials across
+    static constexpr int kTerms = BeltTerms::kTerms;
 
     /// `resting`: N/mm along the path itself; `stretching`: N/mm more for each mm of the belt.
-    BeltStress(const AbrasiveBelt& belt, const BeltSpline& spline, const BeltPath& path,
+    BeltStress(const AbrasiveBelt& belt, const BeltTerms& terms, const BeltPath& path,
                double resting, double stretching, double run_length);
 
     /// A deflection's derivatives at the spline's places: along the belt (x) and across (y), at the
@@ -43,14 +63,14 @@ class BeltStress {
     BeltModes stress(const BeltModes& strain) const;
     /// N/mm along the belt under that.
     double pull(const BeltModes& stress) const { return resting_ + stress.mean; }
-    /// What a share of a stress, and all of its mean, stiffen the sheet by.
-    BeltForces forces(const BeltModes& stress, double share) const;
+    /// Adds what a share of a stress, and all of its mean, stiffen the sheet by, N/mm.
+    void stiffen(const BeltModes& stress, double share, BeltBands& sheet) const;
 
     /// What strains change by with the deflection.
     struct Coupling {
-        /// (kTerms, 3 * splines * columns): of column i's function, by the deflection of the
+        /// (kTerms padded, 3 * splines * columns): of column i's function, by the deflection of the
         /// columns i - 1, i, i + 1.
-        Eigen::MatrixXd function;
+        BeltTerms::Terms function;
         Eigen::MatrixXd mean, lean;  ///< (splines, columns)
     };
     Coupling coupling(const Shape& shape) const;
@@ -63,14 +83,10 @@ class BeltStress {
     double lean_stiffness() const { return leaning_; }
 
   private:
-    using Terms = Eigen::Matrix<double, kTerms, Eigen::Dynamic>;
-
     double membrane_, width_, resting_, stretching_, leaning_;
+    const BeltTerms& terms_;
     const BeltSpline& spline_;
     const BeltPath& path_;
-    Terms value_, weighted_;           // (kTerms, places), of the polynomials; times weights
-    Terms bent_;                       // integrals of the polynomials times splines' curvatures
-    Eigen::VectorXd even_, odd_;       // integrals of the splines, and of them times 2 y / width
     BlockBanded compliance_, factor_;  // times E t
 };
 

@@ -14,8 +14,9 @@ class BlockBanded {
   public:
     BlockBanded() = default;
     /// `count` blocks of `size` rows in the diagonal, the first `negative` of each negative; all
-    /// zero.
-    BlockBanded(int count, int size, int negative = 0);
+    /// zero. In the second block below, what is more than `reach` rows below its column's own has
+    /// to stay so, and in the columns of negative rows all but these rows.
+    BlockBanded(int count, int size, int negative = 0, int reach = std::numeric_limits<int>::max());
 
     int count() const { return count_; }
     int size() const { return size_; }
@@ -38,13 +39,18 @@ class BlockBanded {
     void solve(Eigen::MatrixXd& values) const;
 
   private:
+    /// Rows of a panel's column that may not be zero.
+    int rows_of(int column) const {
+        return 2 * size_ +
+               std::min(size_, std::max(column + std::min(reach_, size_) + 1, negative_));
+    }
     /// The blocks of a column, one below the other, column by column.
     double* panel(int i) { return blocks_.data() + std::ptrdiff_t{i} * height_ * size_; }
     const double* panel(int i) const {
         return blocks_.data() + std::ptrdiff_t{i} * height_ * size_;
     }
 
-    int count_ = 0, size_ = 0, negative_ = 0;
+    int count_ = 0, size_ = 0, negative_ = 0, reach_ = 0;
     int height_ = 0;  // of a panel: three blocks, rounded up to whole registers
     std::vector<double> blocks_, corner_, shifted_;
 };

@@ -12,8 +12,8 @@
 namespace beltgrinding {
 namespace {
 
-constexpr int kLineSteps = 20;       // of the search along a step
-constexpr double kFlat = 0.1;        // of the energy's slope at its beginning: where that ends
+constexpr int kLineSteps = 20;  // of the search along a step
+constexpr double kFlat = 0.1;   // of the energy's slope at its beginning: where that ends
 
 }  // namespace
 
@@ -118,10 +118,9 @@ double BeltSolver::go(const Request& request, const BeltPath& path, const BeltSt
         // The energy's slope, but for what is not smooth.
         std::array<double, 4> smooth = {
             -path_load_.cwiseProduct(step.deflection).sum() +
-                at.bent.cwiseProduct(step.deflection).sum() +
-                work(at.stress, e1) + rest * e1.mean,
-            bent.cwiseProduct(step.deflection).sum() +
-                2.0 * work(at.stress, e2) + work(s1, e1) + 2.0 * rest * e2.mean,
+                at.bent.cwiseProduct(step.deflection).sum() + work(at.stress, e1) + rest * e1.mean,
+            bent.cwiseProduct(step.deflection).sum() + 2.0 * work(at.stress, e2) + work(s1, e1) +
+                2.0 * rest * e2.mean,
             3.0 * work(s1, e2), 2.0 * work(s2, e2)};
         if (yields(*request.problem)) {
             smooth[0] -= commanded(request, at.lift) * step.lift;

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <stdexcept>
+
+#include "registers.h"
 
 namespace beltgrinding {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
 constexpr int kLocal = BeltSpline::kLocal;
-
-// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
-// the loader chooses between them.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define BELTGRINDING_CLONES
-#endif
 
 /// Values at the spline's places of what has the coefficients `c`.
 template <class To>
@@ -55,22 +49,19 @@ __attribute__((target_clones("avx512f", "avx2", "default")))
 void add_moments(const BeltSpline& spline, const double* factors,
                  const std::array<double, kLocal> BeltSpline::Local::*part,
                  const BeltTerms::Terms& weighted, BeltTerms::Terms& to) {
-    using Eight = double __attribute__((vector_size(64)));
     const BeltSpline::Local* locals = spline.locals().data();
     const std::size_t count = spline.locals().size();
     std::fill_n(to.data(), to.size(), 0.0);
     for (std::size_t q = 0; q < count; q += BeltSpline::kPlaces) {
-        Eight sums[kLocal];
         double* at = to.data() + std::ptrdiff_t{locals[q].first} * BeltTerms::kPadded;
-        std::memcpy(sums, at, sizeof(sums));
+        Eight sums[kLocal];
+        for (int r = 0; r < kLocal; ++r) sums[r] = read<Eight>(at + r * BeltTerms::kPadded);
         for (std::size_t p = q; p < q + BeltSpline::kPlaces; ++p) {
-            Eight terms;
-            std::memcpy(&terms, weighted.data() + p * BeltTerms::kPadded, sizeof(Eight));
-            terms *= factors[p];
+            const Eight terms = read<Eight>(weighted.data() + p * BeltTerms::kPadded) * factors[p];
             const std::array<double, kLocal>& b = locals[p].*part;
             for (std::size_t r = 0; r < kLocal; ++r) sums[r] += b[r] * terms;
         }
-        std::memcpy(at, sums, sizeof(sums));
+        for (int r = 0; r < kLocal; ++r) write<Eight>(at + r * BeltTerms::kPadded) = sums[r];
     }
 }
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "registers.h"
 
 namespace beltgrinding {
 namespace {
 
-using Four = double __attribute__((vector_size(32)));
-using Eight = double __attribute__((vector_size(64)));
 constexpr int kFour = 4;
 constexpr int kStrip = 4;  // registers of a column that are summed at a time
 constexpr int kPair = 2;   // columns that share what is loaded
@@ -33,19 +32,13 @@ template <class Vector, int vectors, int pairs>
     for (int k = std::max(0, row - update.full); k < update.depth; ++k) {
         const double* from = update.l + k * update.height;
         Vector values[vectors];
-        for (int v = 0; v < vectors; ++v)
-            std::memcpy(&values[v], from + row + v * kLanes, sizeof(Vector));
+        for (int v = 0; v < vectors; ++v) values[v] = read<Vector>(from + row + v * kLanes);
         for (int p = 0; p < pairs; ++p)
             for (int v = 0; v < vectors; ++v) sum[p][v] += values[v] * from[column + p];
     }
     for (int p = 0; p < pairs; ++p) {
         double* at = update.to + (column + p) * update.height + row;
-        for (int v = 0; v < vectors; ++v) {
-            Vector old;
-            std::memcpy(&old, at + v * kLanes, sizeof(Vector));
-            old -= update.sign * sum[p][v];
-            std::memcpy(at + v * kLanes, &old, sizeof(Vector));
-        }
+        for (int v = 0; v < vectors; ++v) write<Vector>(at + v * kLanes) -= update.sign * sum[p][v];
     }
 }
 
@@ -69,14 +62,7 @@ template <class Vector, int strip>
     for (; column < update.end; ++column) subtract_columns<Vector, strip, 1>(update, column);
 }
 
-// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
-// the loader chooses between them.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define BELTGRINDING_AVX
-#endif
-
-#ifdef BELTGRINDING_AVX
+#ifdef BELTGRINDING_CLONES
 __attribute__((target("avx512f"))) void subtract_square_512(const Update& update) {
     subtract_triangle<Eight, kStrip>(update);
 }
@@ -88,7 +74,7 @@ void subtract_square_256(const Update& update) {
 }
 
 void subtract_square(const Update& update) {
-#ifdef BELTGRINDING_AVX
+#ifdef BELTGRINDING_CLONES
     if (__builtin_cpu_supports("avx512f")) return subtract_square_512(update);
 #endif
     subtract_square_256(update);
@@ -96,7 +82,7 @@ void subtract_square(const Update& update) {
 
 /// Cholesky's factor of the columns from `first` to `end` of a panel, all of one sign, and what
 /// that makes of the rows below.
-#ifdef BELTGRINDING_AVX
+#ifdef BELTGRINDING_CLONES
 __attribute__((target_clones("avx2", "default")))
 #endif
 bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows,
@@ -140,13 +126,8 @@ template <int together>
     Eight sum[together] = {};
     int r = from;
     for (; r + kEight <= end; r += kEight) {
-        Eight l;
-        std::memcpy(&l, column + r, sizeof(Eight));
-        for (int c = 0; c < together; ++c) {
-            Eight value;
-            std::memcpy(&value, x + c * length + r, sizeof(Eight));
-            sum[c] += l * value;
-        }
+        const Eight l = read<Eight>(column + r);
+        for (int c = 0; c < together; ++c) sum[c] += l * read<Eight>(x + c * length + r);
     }
     for (int c = 0; c < together; ++c) {
         double rest = ((sum[c][0] + sum[c][1]) + (sum[c][2] + sum[c][3])) +
@@ -177,17 +158,14 @@ template <int together>
         int row = m;
         for (; row + kEight <= rows; row += kEight) {
             Eight left[together];
-            for (int c = 0; c < together; ++c)
-                std::memcpy(&left[c], x + c * length + row, sizeof(Eight));
+            for (int c = 0; c < together; ++c) left[c] = read<Eight>(x + c * length + row);
             for (int k = row < 2 * m + factor.negative ? 0
                                                        : std::max(0, row - 2 * m - factor.reach);
                  k < m; ++k) {
-                Eight from;
-                std::memcpy(&from, l + k * height + row, sizeof(Eight));
+                const Eight from = read<Eight>(l + k * height + row);
                 for (int c = 0; c < together; ++c) left[c] -= from * x[c * length + k];
             }
-            for (int c = 0; c < together; ++c)
-                std::memcpy(x + c * length + row, &left[c], sizeof(Eight));
+            for (int c = 0; c < together; ++c) write<Eight>(x + c * length + row) = left[c];
         }
         for (; row < rows; ++row)
             for (int c = 0; c < together; ++c)
@@ -209,14 +187,14 @@ template <int together>
     }
 }
 
-#ifdef BELTGRINDING_AVX
+#ifdef BELTGRINDING_CLONES
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void substitute_four(const Factor& factor, double* values, std::ptrdiff_t length) {
     substitute<kTogether>(factor, values, length);
 }
 
-#ifdef BELTGRINDING_AVX
+#ifdef BELTGRINDING_CLONES
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void substitute_one(const Factor& factor, double* values, std::ptrdiff_t length) {

@@ -15,9 +15,13 @@ constexpr double kAtEdge = 1.0;    // the same at its side edges
 // deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
 constexpr double kThick = 0.2;
+// Of that, on a free belt: where a wrap ends, finite elements lie between a thin sheet and a thick
+// one. A fit to five of them, not a theory (docs/free-belt.md).
+constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
 constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
+constexpr double kStuck = 1e-3;    // of a step
 constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, to begin with
 constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
 constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
@@ -36,7 +40,8 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
     : belt_(belt),
       run_(run),
       face_(belt.face()),
-      shear_(sheet == Sheet::kThick ? 0.5 * kThick * belt.thickness * belt.thickness : 0.0),
+      shear_((sheet == Sheet::kThick ? 1.0 : kFree) * 0.5 * kThick * belt.thickness *
+             belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
       spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
       plate_(belt_, spline_),
@@ -147,12 +152,12 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
 }
 
 bool BeltSolver::factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
-                           const BeltStress::Coupling& coupling, const Iterate& at) {
+                           const BeltStress::Coupling& coupling, const Iterate& at, double most) {
     const BeltColumns& columns = path.columns;
     const int n = columns.count(), size = spline_.count() + BeltStress::kTerms;
     if (matrix_.count() != n || matrix_.size() != size)
         matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
-    for (double share = 1.0;; share = share > kLeastStress ? kStiffer * share : 0.0) {
+    for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
         bands_ = bending_;
         stress.stiffen(at.stress, share, bands_);
         for (int i = 0; i < n; ++i) {
@@ -266,7 +271,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     // Without a place to begin with, from the first touch.
     bool bonded =
         std::find(request.touching.begin(), request.touching.end(), 1) != request.touching.end();
-    double share = 0.0, before = 0.0;
+    double share = 0.0, before = 0.0, most = 1.0;
     for (state.iterations = 0;; ++state.iterations) {
         const bool first = state.iterations == 0;
         BeltStress::Coupling coupling = stress.coupling(at.shape);
@@ -292,11 +297,15 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
             again = false;
         }
         before = left();
-        if (!again && !factorise(request, state.path, stress, coupling, at)) break;
+        if (!again && !factorise(request, state.path, stress, coupling, at, most)) break;
         const Step to = step(request, state.path, stress, coupling, off, again);
         if (!to.deflection.allFinite() || !std::isfinite(to.lift)) break;
         share = go(request, state.path, stress, off, to, bonded, at);
         bonded = false;
+        // A step that leads nowhere: once more, by what is surely a valley; then there is no way.
+        const bool stuck = share < kStuck;
+        if (stuck && most == 0.0) break;
+        most = stuck ? 0.0 : 1.0;
     }
     state.load.setZero(rows, n);
     for (int i = 0; i < n; ++i) {

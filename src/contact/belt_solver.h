@@ -50,8 +50,8 @@ struct BeltState {
 /// springs, which are on or off, by Newton's method on a line.
 class BeltSolver {
   public:
-    /// Thin: what deflects is the middle surface, as Kirchhoff has it; thick: its face, which shear
-    /// and the thickness let deflect more under what is short against that.
+    /// Thick: the face deflects more than the middle surface, by shear and by the thickness, under
+    /// what is short against that; thin: by a quarter of that.
     enum class Sheet { kThin, kThick };
 
     BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid, Sheet sheet);
@@ -105,10 +105,10 @@ class BeltSolver {
     /// `bonded`: springs pull as well, and only where it is said to touch.
     Unbalanced unbalanced(Request& request, const BeltPath& path, const BeltStress& stress,
                           const BeltStress::Coupling& coupling, const Iterate& at, bool bonded);
-    /// The factor of the energy's second derivatives, with so much of the stress as leaves them
-    /// positive.
+    /// The factor of the energy's second derivatives, with so much of the stress, up to the share
+    /// `most`, as leaves them positive.
     bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
-                   const BeltStress::Coupling& coupling, const Iterate& at);
+                   const BeltStress::Coupling& coupling, const Iterate& at, double most);
     /// Newton's step by the factor; `again`: by that of a step before, as it was.
     Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
               const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace beltgrinding {
@@ -10,23 +11,27 @@ namespace {
 
 constexpr double kInterval = 2.0;  // mm, or cells of 1 mm or more: of the splines across the belt
 constexpr double kAtEdge = 1.0;    // the same at its side edges
-constexpr int kWarmUp = 2;         // solutions before it may have converged, the stress being new
-constexpr double kFollow = 0.7;    // share of a change of the stress that is taken
 // The face of an elastic layer of thickness t that bends under waves of wavenumber k on one face
 // deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
 constexpr double kThick = 0.2;
-constexpr double kPatience = 30.0;         // iterations after which half as much is taken
-constexpr int kHalvings = 8;               // of the way to the next state, for the least energy
-constexpr double kLeastStep = 1.0 / 64.0;  // of that way
-constexpr double kLessStress = 0.5;        // of a stress under which the sides would buckle
+// Of that, on a free belt: where a wrap ends, finite elements lie between a thin sheet and a thick
+// one. A fit to five of them, not a theory (docs/free-belt.md).
+constexpr double kFree = 0.25;
+constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
+constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
+constexpr double kLeastStress = 0.1;
+constexpr double kStuck = 1e-3;    // of a step
+constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, to begin with
+constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
+constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
+constexpr double kNoForce = 1e-6;  // N
 
 }  // namespace
 
 std::size_t BeltState::bytes() const {
     constexpr std::size_t kOfPath = 8;  // numbers a column
-    const auto numbers =
-        static_cast<std::size_t>(deflection.size() + function.size() + load.size());
+    const auto numbers = static_cast<std::size_t>(deflection.size() + load.size());
     return (numbers + kOfPath * path.x.size()) * sizeof(double);
 }
 
@@ -35,10 +40,12 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
     : belt_(belt),
       run_(run),
       face_(belt.face()),
-      shear_(sheet == Sheet::kThick ? 0.5 * kThick * belt.thickness * belt.thickness : 0.0),
+      shear_((sheet == Sheet::kThick ? 1.0 : kFree) * 0.5 * kThick * belt.thickness *
+             belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
       spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
-      plate_(belt_, spline_) {
+      plate_(belt_, spline_),
+      terms_(belt.width, spline_) {
     for (const BeltRow& row : rows_) locals_.push_back(spline_.at(row.y));
 }
 
@@ -68,55 +75,16 @@ double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::Matrix
     return sum;
 }
 
-void BeltSolver::assemble(const Request& request, const BeltState& state,
-                          const BeltForces& forces) {
-    const BeltColumns& columns = state.path.columns;
-    const int n = columns.count(), m = spline_.count();
-    if (matrix_.count() != n || matrix_.size() != m) matrix_ = BlockBanded(n, m);
-    plate_.stiffness(columns, forces, matrix_);
-    right_.setZero(static_cast<Eigen::Index>(m) * n, 2);
-    Eigen::Map<Eigen::MatrixXd> load(right_.data(), m, n), lift(right_.col(1).data(), m, n);
-    load = plate_.path_load(state.path, forces);
-    for (int i = 0; i < n; ++i) {
-        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
-        const std::array<double, 3> along = columns.curvature(i);
-        // The face's deflection is of three columns.
-        const int first = along[1] != 0.0 ? 0 : 1, last = along[1] != 0.0 ? 2 : 1;
-        const auto add = [&](std::size_t k, double w, double place, double rise) {
-            const BeltSpline::Local& b = locals_[k];
-            std::array<std::array<double, BeltSpline::kLocal>, 3> v{};
-            for (std::size_t p = 0; p < 3; ++p)
-                for (std::size_t r = 0; r < BeltSpline::kLocal; ++r)
-                    v[p][r] = (p == 1 ? b.value[r] - shear_ * b.curvature[r] : 0.0) -
-                              shear_ * along[p] * b.value[r];
-            for (int q = first; q <= last; ++q) {
-                const auto& vq = v[static_cast<std::size_t>(q)];
-                for (int r = 0; r < BeltSpline::kLocal; ++r) {
-                    const double wr = w * vq[static_cast<std::size_t>(r)];
-                    load(b.first + r, i - 1 + q) += wr * place;
-                    lift(b.first + r, i - 1 + q) += wr * rise;
-                }
-                for (int p = q; p <= last; ++p) {
-                    const auto& vp = v[static_cast<std::size_t>(p)];
-                    auto to = matrix_.block(i - 1 + q, p - q);
-                    for (int c = 0; c < BeltSpline::kLocal; ++c)
-                        for (int r = 0; r < BeltSpline::kLocal; ++r)
-                            to(b.first + r, b.first + c) += w * vp[static_cast<std::size_t>(r)] *
-                                                            vq[static_cast<std::size_t>(c)];
-                }
-            }
-        };
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const auto row = static_cast<Eigen::Index>(k);
-            if (request.touching[cell(i, k)] != 0)
-                add(k, spring(request, columns, i, k), reach_at(request, state.path, i, k), cosine);
-            if (request.backing != nullptr && borne_[cell(i, k)] != 0)
-                add(k,
-                    request.backing->stiffness() * rows_[k].width *
-                        columns.width[static_cast<std::size_t>(i)],
-                    request.backing->rest()(row, i), 0.0);
-        }
-    }
+BeltSolver::FaceForm BeltSolver::face_form(const BeltColumns& columns, std::size_t k, int i) const {
+    const BeltSpline::Local& b = locals_[k];
+    FaceForm form;
+    const std::array<double, 3> along = columns.curvature(i);
+    if (shear_ > 0.0 && along[1] != 0.0) form.first = 0, form.last = 2;
+    for (std::size_t p = 0; p < 3; ++p)
+        for (std::size_t r = 0; r < BeltSpline::kLocal; ++r)
+            form.values[p][r] = (p == 1 ? b.value[r] - shear_ * b.curvature[r] : 0.0) -
+                                shear_ * along[p] * b.value[r];
+    return form;
 }
 
 double BeltSolver::commanded(const Request& request, double lift) {
@@ -125,147 +93,135 @@ double BeltSolver::commanded(const Request& request, double lift) {
     return (problem.approach - request.depth - lift) / problem.robot_compliance;
 }
 
-double BeltSolver::lift_for(const Request& request, const BeltState& state) const {
-    const BeltColumns& columns = state.path.columns;
-    const int n = columns.count(), m = spline_.count();
-    const Eigen::MatrixXd still = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n);
-    const Eigen::MatrixXd by_lift = Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
-    double force = 0.0, rise = 0.0;
-    for (int i = 0; i < n; ++i) {
-        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            if (request.touching[cell(i, k)] == 0) continue;
-            const double w = spring(request, columns, i, k) * cosine;
-            force +=
-                w * (reach_at(request, state.path, i, k) - deflection_at(columns, still, k, i));
-            rise += w * (cosine - deflection_at(columns, by_lift, k, i));
-        }
-    }
-    const ContactProblem& problem = *request.problem;
-    if (!problem.force_control) rise += 1.0 / problem.robot_compliance;
-    return rise > 0.0 ? (commanded(request, 0.0) - force) / rise : 0.0;
+void BeltSolver::strain(const BeltStress& stress, Iterate& at) const {
+    at.shape = stress.shape(at.deflection);
+    at.strain = stress.product(at.shape, at.shape);
+    const BeltModes turned = stress.turned(at.deflection);
+    at.strain.function += turned.function;
+    at.strain.mean += turned.mean;
+    at.strain.lean += turned.lean;
+    at.stress = stress.stress(at.strain);
 }
 
-double BeltSolver::work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
-                              double deflection, double lift) const {
-    const double reach = reach_at(request, path, i, k);
-    if (!std::isfinite(reach)) return 0.0;
-    const double overlap =
-        reach + lift * std::cos(path.angle[static_cast<std::size_t>(i)]) - deflection;
-    return overlap > 0.0 ? spring(request, path.columns, i, k) * overlap : 0.0;
-}
-
-double BeltSolver::backing_force(const Request& request, const BeltPath& path, int i, std::size_t k,
-                                 double deflection) const {
-    if (request.backing == nullptr) return 0.0;
-    const double in = deflection - request.backing->rest()(static_cast<Eigen::Index>(k), i);
-    if (!(in > 0.0)) return 0.0;
-    return in * request.backing->stiffness() * rows_[k].width *
-           path.columns.width[static_cast<std::size_t>(i)];
-}
-
-BeltSolver::Cells BeltSolver::solved(const Request& request, const BeltState& state,
-                                     double lift) const {
-    const BeltPath& path = state.path;
-    const int n = path.columns.count(), m = spline_.count();
-    const Eigen::MatrixXd c = Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
-                              lift * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
-    Cells cells;
-    cells.raised = lift;
-    cells.deflection.resize(static_cast<Eigen::Index>(rows_.size()), n);
-    cells.force.setZero(cells.deflection.rows(), n);
-    for (int i = 0; i < n; ++i) {
-        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const auto row = static_cast<Eigen::Index>(k);
-            const double u = cells.deflection(row, i) = deflection_at(path.columns, c, k, i);
-            double& force = cells.force(row, i);
-            if (request.touching[cell(i, k)] != 0)
-                force += spring(request, path.columns, i, k) *
-                         (reach_at(request, path, i, k) + lift * cosine - u);
-            if (request.backing != nullptr && borne_[cell(i, k)] != 0)
-                force -= request.backing->stiffness() * rows_[k].width *
-                         path.columns.width[static_cast<std::size_t>(i)] *
-                         (u - request.backing->rest()(row, i));
-        }
-    }
-    return cells;
-}
-
-double BeltSolver::slope(const Request& request, const BeltPath& path, const Cells& from,
-                         const Cells& to, double share) const {
-    const double lift = std::lerp(from.raised, to.raised, share);
-    const double rises = to.raised - from.raised;
-    double sum = yields(*request.problem) ? -rises * commanded(request, lift) : 0.0;
+BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& path,
+                                              const BeltStress& stress,
+                                              const BeltStress::Coupling& coupling,
+                                              const Iterate& at, bool bonded) {
+    Unbalanced off;
+    off.belt = path_load_ - at.bent - stress.resistance(coupling, at.stress);
+    const bool yield = yields(*request.problem);
+    if (yield) off.work = commanded(request, at.lift);
     for (int i = 0; i < path.columns.count(); ++i) {
         const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const auto row = static_cast<Eigen::Index>(k);
-            const double u = from.deflection(row, i), step = to.deflection(row, i) - u;
-            // What the sheet itself resists with is linear on the way.
-            const double held = std::lerp(from.force(row, i), to.force(row, i), share);
-            const double work = work_force(request, path, i, k, u + share * step, lift);
-            sum += step * (held - work + backing_force(request, path, i, k, u + share * step)) +
-                   rises * cosine * work;
+            const double u = at.cells(row, i);
+            std::uint8_t& touches = request.touching[cell(i, k)];
+            double force = 0.0;
+            const double overlap = reach_at(request, path, i, k) + at.lift * cosine - u;
+            if (bonded ? touches != 0 : overlap > 0.0)
+                force = spring(request, path.columns, i, k) * overlap;
+            if (!bonded) {
+                const std::uint8_t now = overlap > 0.0 ? 1 : 0;
+                off.same = off.same && now == touches;
+                touches = now;
+            }
+            off.total += force;
+            if (yield) off.work -= force * cosine;
+            if (request.backing != nullptr) {
+                const double in = u - request.backing->rest()(row, i);
+                std::uint8_t& borne = borne_[cell(i, k)];
+                if (bonded ? borne != 0 : in > 0.0)
+                    force -= backing_spring(request, path.columns, i, k) * in;
+                if (!bonded) {
+                    const std::uint8_t now = in > 0.0 ? 1 : 0;
+                    off.borne = off.borne && now == borne;
+                    borne = now;
+                }
+            }
+            if (force == 0.0) continue;
+            const FaceForm form = face_form(path.columns, k, i);
+            for (int p = form.first; p <= form.last; ++p)
+                for (int r = 0; r < BeltSpline::kLocal; ++r)
+                    off.belt(locals_[k].first + r, i - 1 + p) +=
+                        force *
+                        form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
         }
     }
-    return sum;
+    return off;
 }
 
-double BeltSolver::least_energy(const Request& request, const BeltPath& path, const Cells& from,
-                                const Cells& to) const {
-    // The energy is convex.
-    if (slope(request, path, from, to, 1.0) <= 0.0) return 1.0;
-    double low = 0.0, high = 1.0;
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (low + high);
-        (slope(request, path, from, to, middle) > 0.0 ? high : low) = middle;
+bool BeltSolver::factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
+                           const BeltStress::Coupling& coupling, const Iterate& at, double most) {
+    const BeltColumns& columns = path.columns;
+    const int n = columns.count(), size = spline_.count() + BeltStress::kTerms;
+    if (matrix_.count() != n || matrix_.size() != size)
+        matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
+    for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
+        bands_ = bending_;
+        stress.stiffen(at.stress, share, bands_);
+        for (int i = 0; i < n; ++i) {
+            for (std::size_t k = 0; k < rows_.size(); ++k) {
+                double w = 0.0;
+                if (request.touching[cell(i, k)] != 0) w += spring(request, columns, i, k);
+                if (request.backing != nullptr && borne_[cell(i, k)] != 0)
+                    w += backing_spring(request, columns, i, k);
+                if (w == 0.0) continue;
+                const FaceForm form = face_form(columns, k, i);
+                for (int q = form.first; q <= form.last; ++q)
+                    for (int p = q; p <= form.last; ++p)
+                        bands_.add_product(i - 1 + q, p - q, locals_[k].first, w,
+                                           form.values[static_cast<std::size_t>(p)],
+                                           form.values[static_cast<std::size_t>(q)]);
+            }
+        }
+        matrix_.set_zero();
+        stress.add_to(matrix_, coupling);
+        bands_.add_to(matrix_, BeltStress::kTerms);
+        if (matrix_.factorise()) return true;
+        if (share == 0.0) return false;
     }
-    return std::max(low, kLeastStep);
 }
 
-BeltSolver::Sums BeltSolver::touch(Request& request, BeltState& state, const Cells& cells) {
-    Sums sums;
-    for (int i = 0; i < state.path.columns.count(); ++i) {
-        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+bool BeltSolver::touch(Request& request, const BeltPath& path, Iterate& at) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < path.columns.count(); ++i) {
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const auto row = static_cast<Eigen::Index>(k);
-            const double u = cells.deflection(row, i);
-            const double now = work_force(request, state.path, i, k, u, state.lift);
-            const std::uint8_t touches = now > 0.0 ? 1 : 0;
-            sums.same = sums.same && touches == request.touching[cell(i, k)];
-            request.touching[cell(i, k)] = touches;
-            sums.total += now;
-            sums.along_z += now * cosine;
-            sums.change += std::abs(now - state.load(row, i));
-            state.load(row, i) = now;
-            if (request.backing == nullptr) continue;
-            const std::uint8_t borne = backing_force(request, state.path, i, k, u) > 0.0 ? 1 : 0;
-            sums.same = sums.same && borne == borne_[cell(i, k)];
-            borne_[cell(i, k)] = borne;
+            const double open = at.cells(static_cast<Eigen::Index>(k), i) -
+                                reach_at(request, path, i, k) - at.lift * cosine;
+            least = std::min(least, open / cosine);
         }
     }
-    return sums;
+    if (!std::isfinite(least)) return false;
+    at.lift += least + kTouch;
+    return true;
 }
 
-double BeltSolver::follow_length(const Request& request, BeltState& state,
-                                 const BeltStress& stress) const {
-    const auto places = static_cast<Eigen::Index>(spline_.places().size());
-    const Eigen::Map<const Eigen::ArrayXd> weights(spline_.weights().data(), places);
-    const Eigen::Map<const Eigen::ArrayXd> y(spline_.places().data(), places);
-    const Eigen::ArrayXd longer = stress.elongation(state.deflection);
-    const double pull = pull_of(state.path, (weights * longer).sum() / belt_.width);
-    const double lean = 6.0 / (belt_.width * belt_.width) * belt_.membrane() / run_.length *
-                        (weights * y * longer).sum();
-    // Under a given force, a larger pull lets the belt in less, which makes it shorter.
-    const double slope = std::max(state.path.left_angle, state.path.right_angle);
-    const bool stretches = run_.rollers == BeltRun::Rollers::kFixed;
-    const double gain =
-        yields(*request.problem) && stretches ? belt_.membrane() * slope * slope / state.pull : 0.0;
-    const double change = (pull - state.pull) / (1.0 + gain);
-    state.pull += change;
-    state.lean += kFollow * (lean - state.lean);
-    return change;
+void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
+    const BeltColumns& columns = state.path.columns;
+    const int n = columns.count(), m = spline_.count();
+    at.deflection.setZero(m, n);
+    if (request.before != nullptr && request.before->deflection.rows() == m &&
+        request.before->deflection.cols() > 1) {
+        // Between the columns that were there.
+        const BeltState& before = *request.before;
+        const std::vector<double>& x = before.path.x;
+        for (int i = 0; i < n; ++i) {
+            const double here = state.path.x[static_cast<std::size_t>(i)];
+            const auto after =
+                std::clamp<std::ptrdiff_t>(std::lower_bound(x.begin(), x.end(), here) - x.begin(),
+                                           1, static_cast<std::ptrdiff_t>(x.size()) - 1);
+            const auto k = static_cast<std::size_t>(after);
+            const double t = std::clamp((here - x[k - 1]) / (x[k] - x[k - 1]), 0.0, 1.0);
+            at.deflection.col(i) =
+                (1.0 - t) * before.deflection.col(after - 1) + t * before.deflection.col(after);
+        }
+    }
+    at.cells.resize(static_cast<Eigen::Index>(rows_.size()), n);
+    for (int i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            at.cells(static_cast<Eigen::Index>(k), i) = deflection_at(columns, at.deflection, k, i);
 }
 
 BeltState BeltSolver::solve(BeltPath path, Request request) {
@@ -273,29 +229,23 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     state.path = std::move(path);
     const ContactProblem& problem = *request.problem;
     const BeltColumns& columns = state.path.columns;
-    const int n = columns.count(), m = spline_.count();
+    const int n = columns.count();
     const auto rows = static_cast<Eigen::Index>(rows_.size());
-    const BeltStress stress(belt_, spline_, state.path);
-    state.deflection = Eigen::MatrixXd::Zero(m, n);
-    const bool follows = request.before != nullptr &&
-                         request.before->path.cell == state.path.cell &&
-                         request.before->function.cols() == n;
-    if (follows) {
-        state.function = request.before->function;
-        state.pull = request.before->pull;
-        state.lean = request.before->lean;
-        state.load = request.before->load;
-    } else {
-        state.function = Eigen::MatrixXd::Zero(BeltStress::kTerms, n);
-        state.pull = pull_of(state.path, 0.0);
-        state.load.setZero(rows, n);
-    }
+    const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
+    const double stretching =
+        run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
+    const BeltStress stress(belt_, terms_, state.path, pull_of(state.path, 0.0), stretching,
+                            run_.length);
+    bending_ = plate_.bending(columns);
+    path_load_ = plate_.path_load(state.path);
+    Iterate at;
+    start(request, state, at);
     const std::size_t all = rows_.size() * static_cast<std::size_t>(n);
     if (request.touching.size() != all) {
         request.touching.assign(all, 0);
         // What the path's rounded corners lie in; else what is nearest to it.
         const double deepest = request.gap->reach.maxCoeff();
-        const double least = deepest > 0.0 ? 0.5 * deepest : deepest - belt_.thickness;
+        const double least = std::min(0.5 * deepest, deepest - kNear * belt_.thickness);
         for (int i = 0; i < n; ++i)
             for (std::size_t k = 0; k < rows_.size(); ++k)
                 request.touching[cell(i, k)] =
@@ -308,56 +258,69 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     if (request.backing != nullptr) {
         borne_.assign(all, 0);
         for (int i = 0; i < n; ++i)
-            for (std::size_t k = 0; k < rows_.size(); ++k)
-                borne_[cell(i, k)] =
-                    std::isfinite(request.backing->rest()(static_cast<Eigen::Index>(k), i)) ? 1 : 0;
+            for (std::size_t k = 0; k < rows_.size(); ++k) {
+                const double rest = request.backing->rest()(static_cast<Eigen::Index>(k), i);
+                const bool bears = request.before != nullptr
+                                       ? at.cells(static_cast<Eigen::Index>(k), i) > rest
+                                       : std::isfinite(rest);
+                borne_[cell(i, k)] = bears ? 1 : 0;
+            }
     }
-
-    Cells cells;
-    for (state.iterations = 1; state.iterations <= problem.max_iterations; ++state.iterations) {
-        if (problem.force_control && std::find(request.touching.begin(), request.touching.end(),
-                                               1) == request.touching.end())
-            break;
-        const BeltForces forces = stress.forces(state.function, state.pull, state.lean);
-        assemble(request, state, forces);
-        if (!matrix_.factorise()) {
-            state.function *= kLessStress;
-            continue;
-        }
-        matrix_.solve(right_);
-        Cells now = solved(request, state, yields(problem) ? lift_for(request, state) : 0.0);
-        const Eigen::MatrixXd whole =
-            Eigen::Map<const Eigen::MatrixXd>(right_.data(), m, n) +
-            now.raised * Eigen::Map<const Eigen::MatrixXd>(right_.col(1).data(), m, n);
-        double share = 1.0;
-        if (cells.deflection.size() > 0) share = least_energy(request, state.path, cells, now);
-        if (share < 1.0) {
-            now.deflection = cells.deflection + share * (now.deflection - cells.deflection);
-            now.force = cells.force + share * (now.force - cells.force);
-            now.raised = std::lerp(cells.raised, now.raised, share);
-        }
-        state.deflection += share * (whole - state.deflection);
-        state.lift = now.raised;
-        const Sums sums = touch(request, state, now);
+    at.bent = bending_.times(at.deflection);
+    strain(stress, at);
+    // Without a place to begin with, from the first touch.
+    bool bonded =
+        std::find(request.touching.begin(), request.touching.end(), 1) != request.touching.end();
+    double share = 0.0, before = 0.0, most = 1.0;
+    for (state.iterations = 0;; ++state.iterations) {
+        const bool first = state.iterations == 0;
+        BeltStress::Coupling coupling = stress.coupling(at.shape);
+        Unbalanced off = unbalanced(request, state.path, stress, coupling, at, bonded);
+        const auto left = [&] { return std::max(off.belt.cwiseAbs().sum(), std::abs(off.work)); };
+        // The last factor is as good where nothing has changed that it knows, and its step was
+        // good.
+        bool again = !first && share == 1.0 && off.same && left() <= kGoodStep * before;
         double bears = 0.0;
-        if (request.backing != nullptr && sums.same) {
-            bears = request.backing->follow(now.deflection);
-            touch(request, state, now);
+        if (!first && request.backing != nullptr && share == 1.0 &&
+            ((off.same && off.borne) || left() <= kUnbalanced * problem.tolerance * off.total)) {
+            bears = request.backing->follow(at.cells);
+            off = unbalanced(request, state.path, stress, coupling, at, false);
+            again = again && off.same;
         }
-        cells = std::move(now);
-        const double stretch = follow_length(request, state, stress);
-        // Less and less where the belt's sides are near to buckling.
-        const double follow = kFollow / (1.0 + state.iterations / kPatience);
-        if (request.backing == nullptr || sums.same)
-            state.function += follow * (stress.function(state.deflection) - state.function);
-        const double force = yields(problem) ? std::abs(commanded(request, state.lift)) : 0.0;
-        const double off = yields(problem) ? std::abs(sums.along_z - force) : 0.0;
-        state.converged = state.iterations > (follows ? 1 : kWarmUp) && sums.same &&
-                          sums.change <= problem.tolerance * sums.total &&
-                          off <= problem.tolerance * force && bears <= problem.tolerance &&
-                          std::abs(stretch) <= problem.tolerance * state.pull;
-        if (state.converged) break;
+        state.converged =
+            !first && left() <= std::max(kUnbalanced * problem.tolerance * off.total, kNoForce) &&
+            bears <= problem.tolerance;
+        if (state.converged || state.iterations >= problem.max_iterations) break;
+        if (problem.force_control && off.total == 0.0 && !bonded) {
+            if (!touch(request, state.path, at)) break;
+            off = unbalanced(request, state.path, stress, coupling, at, false);
+            again = false;
+        }
+        before = left();
+        if (!again && !factorise(request, state.path, stress, coupling, at, most)) break;
+        const Step to = step(request, state.path, stress, coupling, off, again);
+        if (!to.deflection.allFinite() || !std::isfinite(to.lift)) break;
+        share = go(request, state.path, stress, off, to, bonded, at);
+        bonded = false;
+        // A step that leads nowhere: once more, by what is surely a valley; then there is no way.
+        const bool stuck = share < kStuck;
+        if (stuck && most == 0.0) break;
+        most = stuck ? 0.0 : 1.0;
     }
+    state.load.setZero(rows, n);
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const double overlap = reach_at(request, state.path, i, k) + at.lift * cosine -
+                                   at.cells(static_cast<Eigen::Index>(k), i);
+            if (overlap > 0.0)
+                state.load(static_cast<Eigen::Index>(k), i) =
+                    spring(request, columns, i, k) * overlap;
+        }
+    }
+    state.pull = stress.pull(at.stress);
+    state.lift = at.lift;
+    state.deflection = std::move(at.deflection);
     return state;
 }
 

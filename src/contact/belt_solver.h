@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "belt_path.h"
 #include "belt_sheet.h"
 #include "belt_spline.h"
+#include "belt_stress.h"
 #include "beltgrinding/belt_machine.h"
 #include "beltgrinding/contact_model.h"
 #include "block_banded.h"
@@ -34,11 +36,9 @@ class BeltBacking {
 struct BeltState {
     BeltPath path;
     Eigen::MatrixXd deflection;  ///< (splines, columns), mm
-    Eigen::MatrixXd function;    ///< of the stress, as of `BeltStress`
     Eigen::ArrayXXd load;        ///< N a cell of rows and columns, along the path's normal
     double lift = 0.0;           ///< mm, what the work was raised by from where it was mapped
     double pull = 0.0;           ///< N/mm along the belt
-    double lean = 0.0;           ///< N/mm more at the edge at +y
     int iterations = 0;
     bool converged = false;
 
@@ -46,12 +46,12 @@ struct BeltState {
     std::size_t bytes() const;
 };
 
-/// Solves the contact of a belt about a path: Newton's method on where it touches (the face's
-/// springs are on or off), while its stress and its length follow.
+/// Solves the contact of a belt about a path: the least of the energy of bending, stress and face
+/// springs, which are on or off, by Newton's method on a line.
 class BeltSolver {
   public:
-    /// Thin: what deflects is the middle surface, as Kirchhoff has it; thick: its face, which shear
-    /// and the thickness let deflect more under what is short against that.
+    /// Thick: the face deflects more than the middle surface, by shear and by the thickness, under
+    /// what is short against that; thin: by a quarter of that.
     enum class Sheet { kThin, kThick };
 
     BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const ContactGrid& grid, Sheet sheet);
@@ -73,43 +73,66 @@ class BeltSolver {
         double depth = 0.0;  ///< mm that the work has been raised by in that gap
         /// Where pressure is expected, row by row of each column; empty: nothing is known.
         std::vector<std::uint8_t> touching = {};
-        const BeltState* before = nullptr;  ///< to start from, if its columns are the same
+        const BeltState* before = nullptr;  ///< to start from
         BeltBacking* backing = nullptr;
     };
     BeltState solve(BeltPath path, Request request);
 
   private:
-    /// mm by row and column, and the forces there under the deflection, N: the work's less the
-    /// backing's. `raised` is that by which the work has been lifted.
-    struct Cells {
-        Eigen::ArrayXXd deflection, force;
-        double raised = 0.0;
+    /// A deflection, the work's lift, what they strain.
+    struct Iterate {
+        Eigen::MatrixXd deflection;  // (splines, columns), mm
+        Eigen::MatrixXd bent;        // N that bending resists it with
+        Eigen::ArrayXXd cells;       // mm at the middles of rows and columns
+        double lift = 0.0;           // mm
+        BeltModes strain, stress;
+        BeltStress::Shape shape;
     };
-    struct Sums {
-        double total = 0.0, change = 0.0, along_z = 0.0;  // N
-        bool same = true;
+    /// What the energy falls by where the belt and the work give way, and where it touches.
+    struct Unbalanced {
+        Eigen::MatrixXd belt;  // N, (splines, columns)
+        double work = 0.0;     // N, along z
+        double total = 0.0;    // N, sum of the contact's forces
+        bool same = true;      // as before, where it touches
+        bool borne = true;     // as before, where the backing bears
     };
-    void assemble(const Request& request, const BeltState& state, const BeltForces& forces);
+    struct Step {
+        Eigen::MatrixXd deflection;
+        double lift = 0.0;
+    };
+    void start(const Request& request, BeltState& state, Iterate& at);
+    void strain(const BeltStress& stress, Iterate& at) const;
+    /// `bonded`: springs pull as well, and only where it is said to touch.
+    Unbalanced unbalanced(Request& request, const BeltPath& path, const BeltStress& stress,
+                          const BeltStress::Coupling& coupling, const Iterate& at, bool bonded);
+    /// The factor of the energy's second derivatives, with so much of the stress, up to the share
+    /// `most`, as leaves them positive.
+    bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
+                   const BeltStress::Coupling& coupling, const Iterate& at, double most);
+    /// Newton's step by the factor; `again`: by that of a step before, as it was.
+    Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
+              const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);
+    /// What the work's lift pushes the belt with, N/mm, and the work itself.
+    Eigen::MatrixXd pushed_by_lift(const Request& request, const BeltPath& path, double& own) const;
+    /// Goes along the step, up to its end, where the energy is least; the share of it.
+    double go(const Request& request, const BeltPath& path, const BeltStress& stress,
+              const Unbalanced& off, const Step& step, bool whole, Iterate& at) const;
+    /// Lifts the work until it touches the belt. False: there is none.
+    bool touch(Request& request, const BeltPath& path, Iterate& at) const;
     /// N that the work is pressed with where it has been lifted by so much.
     static double commanded(const Request& request, double lift);
-    /// mm that the work must rise for the force.
-    double lift_for(const Request& request, const BeltState& state) const;
-    /// What the last solution deflects by, and the forces of the springs that were on.
-    Cells solved(const Request& request, const BeltState& state, double lift) const;
-    /// The share of the way from one state to the other, up to 1, at which the energy is least.
-    double least_energy(const Request& request, const BeltPath& path, const Cells& from,
-                        const Cells& to) const;
-    /// The derivative of the energy on that way, N mm.
-    double slope(const Request& request, const BeltPath& path, const Cells& from, const Cells& to,
-                 double share) const;
-    /// Where belt and work overlap now, and where the backing bears.
-    Sums touch(Request& request, BeltState& state, const Cells& cells);
-    double work_force(const Request& request, const BeltPath& path, int i, std::size_t k,
-                      double deflection, double lift) const;
-    double backing_force(const Request& request, const BeltPath& path, int i, std::size_t k,
-                         double deflection) const;
-    /// The change of the pull.
-    double follow_length(const Request& request, BeltState& state, const BeltStress& stress) const;
+    double backing_spring(const Request& request, const BeltColumns& columns, int i,
+                          std::size_t k) const {
+        return request.backing->stiffness() * rows_[k].width *
+               columns.width[static_cast<std::size_t>(i)];
+    }
+    /// The face's deflection at a cell by the splines of the columns from `first` to `last`, of
+    /// i - 1, i and i + 1.
+    struct FaceForm {
+        int first = 1, last = 1;
+        std::array<std::array<double, BeltSpline::kLocal>, 3> values{};
+    };
+    FaceForm face_form(const BeltColumns& columns, std::size_t k, int i) const;
     std::size_t cell(int column, std::size_t row) const {
         return static_cast<std::size_t>(column) * rows_.size() + row;
     }
@@ -131,10 +154,16 @@ class BeltSolver {
     std::vector<BeltRow> rows_;
     BeltSpline spline_;
     BeltSheet plate_;
+    BeltTerms terms_;
     std::vector<BeltSpline::Local> locals_;  // by row
+    BeltBands bending_, bands_;
+    Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;
+    // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
+    // push the belt with, what it gives way by, and what they have themselves.
+    std::vector<Eigen::MatrixXd> borders_, given_;
+    Eigen::MatrixXd border_matrix_;
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
-    Eigen::MatrixXd right_;            // loads, then deflections: as it lies; by a lift of 1 mm
 };
 
 }  // namespace beltgrinding

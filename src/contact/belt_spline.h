@@ -10,7 +10,8 @@ namespace beltgrinding {
 /// edges, where the belt curls. All ones is the constant 1 (de Boor: A Practical Guide to Splines).
 class BeltSpline {
   public:
-    static constexpr int kLocal = 4;  // splines that are not 0 at a place
+    static constexpr int kLocal = 4;   // splines that are not 0 at a place
+    static constexpr int kPlaces = 3;  // of Gauss's rule in an interval of the knots
 
     /// `interval`: mm, largest distance of the knots; `finest`: at the side edges.
     BeltSpline(double width, double interval, double finest);
@@ -25,7 +26,7 @@ class BeltSpline {
     /// At y, mm from the belt's middle.
     Local at(double y) const;
 
-    /// Places (mm) and weights of Gauss's rule, three to an interval of the knots.
+    /// Places (mm) and weights of Gauss's rule, kPlaces to an interval of the knots, in turn.
     const std::vector<double>& places() const { return places_; }
     const std::vector<double>& weights() const { return weights_; }
     /// The splines at `places`.

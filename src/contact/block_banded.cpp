@@ -2,129 +2,215 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "registers.h"
 
 namespace beltgrinding {
 namespace {
 
-using Four = double __attribute__((vector_size(32)));
-using Eight = double __attribute__((vector_size(64)));
 constexpr int kFour = 4;
 constexpr int kStrip = 4;  // registers of a column that are summed at a time
 constexpr int kPair = 2;   // columns that share what is loaded
 
-/// to[rows, columns] -= L[rows, :] L[columns, :]', `pairs` columns of one strip of so many
-/// `Vector`s of rows; both have the outer stride `height`.
+/// The lower triangle of to -= sign L L', for the columns from `first` to `end`; both have the
+/// outer stride `height`, and rows are padded to a multiple of four.
+struct Update {
+    const double* l;
+    std::ptrdiff_t height;
+    int depth;  // columns of L
+    int rows, first, end;
+    double* to;
+    double sign;
+    int full;  // row k + full of L and those below are 0 in the columns before k
+};
+
+/// `pairs` columns of one strip of so many `Vector`s of rows.
 template <class Vector, int vectors, int pairs>
-[[gnu::always_inline]] inline void subtract_strip(const double* l, std::ptrdiff_t height, int depth,
-                                                  int row, int column, double* to,
-                                                  std::ptrdiff_t to_height) {
+[[gnu::always_inline]] inline void subtract_strip(const Update& update, int row, int column) {
     constexpr int kLanes = sizeof(Vector) / sizeof(double);
     Vector sum[pairs][vectors] = {};
-    for (int k = 0; k < depth; ++k) {
-        const double* from = l + k * height;
+    for (int k = std::max(0, row - update.full); k < update.depth; ++k) {
+        const double* from = update.l + k * update.height;
         Vector values[vectors];
-        for (int v = 0; v < vectors; ++v)
-            std::memcpy(&values[v], from + row + v * kLanes, sizeof(Vector));
+        for (int v = 0; v < vectors; ++v) values[v] = read<Vector>(from + row + v * kLanes);
         for (int p = 0; p < pairs; ++p)
             for (int v = 0; v < vectors; ++v) sum[p][v] += values[v] * from[column + p];
     }
     for (int p = 0; p < pairs; ++p) {
-        double* at = to + (column + p) * to_height + row;
-        for (int v = 0; v < vectors; ++v) {
-            Vector old;
-            std::memcpy(&old, at + v * kLanes, sizeof(Vector));
-            old -= sum[p][v];
-            std::memcpy(at + v * kLanes, &old, sizeof(Vector));
-        }
+        double* at = update.to + (column + p) * update.height + row;
+        for (int v = 0; v < vectors; ++v) write<Vector>(at + v * kLanes) -= update.sign * sum[p][v];
     }
 }
 
 /// `strip` vectors of rows at a time, then one, then single registers of four.
 template <class Vector, int strip, int pairs>
-[[gnu::always_inline]] inline void subtract_columns(const double* l, std::ptrdiff_t height,
-                                                    int depth, int first_row, int rows, int column,
-                                                    double* to, std::ptrdiff_t to_height) {
+[[gnu::always_inline]] inline void subtract_columns(const Update& update, int column) {
     constexpr int kLanes = sizeof(Vector) / sizeof(double);
-    int row = first_row;
-    for (; row + strip * kLanes <= rows; row += strip * kLanes)
-        subtract_strip<Vector, strip, pairs>(l, height, depth, row, column, to, to_height);
-    for (; row + kLanes <= rows; row += kLanes)
-        subtract_strip<Vector, 1, pairs>(l, height, depth, row, column, to, to_height);
-    for (; row < rows; row += kFour)
-        subtract_strip<Four, 1, pairs>(l, height, depth, row, column, to, to_height);
+    int row = column / kFour * kFour;
+    for (; row + strip * kLanes <= update.rows; row += strip * kLanes)
+        subtract_strip<Vector, strip, pairs>(update, row, column);
+    for (; row + kLanes <= update.rows; row += kLanes)
+        subtract_strip<Vector, 1, pairs>(update, row, column);
+    for (; row < update.rows; row += kFour) subtract_strip<Four, 1, pairs>(update, row, column);
 }
 
-/// The lower triangle of to -= L L', for the columns from `first` to `end`; rows are padded to a
-/// multiple of four.
 template <class Vector, int strip>
-[[gnu::always_inline]] inline void subtract_triangle(const double* l, std::ptrdiff_t height,
-                                                     int depth, int rows, int first, int end,
-                                                     double* to, std::ptrdiff_t to_height) {
-    int column = first;
-    for (; column + kPair <= end; column += kPair)
-        subtract_columns<Vector, strip, kPair>(l, height, depth, column / kFour * kFour, rows,
-                                               column, to, to_height);
-    for (; column < end; ++column)
-        subtract_columns<Vector, strip, 1>(l, height, depth, column / kFour * kFour, rows, column,
-                                           to, to_height);
+[[gnu::always_inline]] inline void subtract_triangle(const Update& update) {
+    int column = update.first;
+    for (; column + kPair <= update.end; column += kPair)
+        subtract_columns<Vector, strip, kPair>(update, column);
+    for (; column < update.end; ++column) subtract_columns<Vector, strip, 1>(update, column);
 }
 
-// GCC's spelling of clones, which Clang does not read; and the sanitizers are not yet there when
-// the loader chooses between them.
-#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define BELTGRINDING_AVX
-#endif
-
-#ifdef BELTGRINDING_AVX
-__attribute__((target("avx512f"))) void subtract_square_512(const double* l, std::ptrdiff_t height,
-                                                            int depth, int rows, int first, int end,
-                                                            double* to, std::ptrdiff_t to_height) {
-    subtract_triangle<Eight, kStrip>(l, height, depth, rows, first, end, to, to_height);
+#ifdef BELTGRINDING_CLONES
+__attribute__((target("avx512f"))) void subtract_square_512(const Update& update) {
+    subtract_triangle<Eight, kStrip>(update);
 }
 
 __attribute__((target_clones("avx2", "default")))
 #endif
-void subtract_square_256(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
-                         int end, double* to, std::ptrdiff_t to_height) {
-    subtract_triangle<Four, kStrip>(l, height, depth, rows, first, end, to, to_height);
+void subtract_square_256(const Update& update) {
+    subtract_triangle<Four, kStrip>(update);
 }
 
-void subtract_square(const double* l, std::ptrdiff_t height, int depth, int rows, int first,
-                     int end, double* to, std::ptrdiff_t to_height) {
-#ifdef BELTGRINDING_AVX
-    if (__builtin_cpu_supports("avx512f"))
-        return subtract_square_512(l, height, depth, rows, first, end, to, to_height);
+void subtract_square(const Update& update) {
+#ifdef BELTGRINDING_CLONES
+    if (__builtin_cpu_supports("avx512f")) return subtract_square_512(update);
 #endif
-    subtract_square_256(l, height, depth, rows, first, end, to, to_height);
+    subtract_square_256(update);
 }
 
-/// Cholesky's factor of the first `columns` rows of a panel, and what that makes of the rows below.
-#ifdef BELTGRINDING_AVX
+/// Cholesky's factor of the columns from `first` to `end` of a panel, all of one sign, and what
+/// that makes of the rows below.
+#ifdef BELTGRINDING_CLONES
 __attribute__((target_clones("avx2", "default")))
 #endif
-bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows) {
+bool factorise_columns(double* panel, std::ptrdiff_t height, int first, int end, int rows,
+                       double sign) {
     for (int j = first; j < end; ++j) {
         double* column = panel + j * height;
         for (int k = first; k < j; ++k) {
             const double* before = panel + k * height;
-            const double factor = before[j];
+            const double factor = sign * before[j];
             for (int r = j; r < rows; ++r) column[r] -= factor * before[r];
         }
-        if (!(column[j] > 0.0) || !std::isfinite(column[j])) return false;
-        const double inverse = 1.0 / std::sqrt(column[j]);
+        const double pivot = sign * column[j];
+        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+        const double inverse = sign / std::sqrt(pivot);
         for (int r = j; r < rows; ++r) column[r] *= inverse;
     }
     return true;
+}
+
+/// A factor's panels, one behind the other.
+struct Factor {
+    const double* blocks;
+    int count, size, negative, reach;
+    std::ptrdiff_t height;
+
+    /// Rows of column k of panel i that may not be 0.
+    int rows(int i, int k) const {
+        const int two = size * std::min(2, count - i);
+        return i + 2 < count ? two + std::min(size, std::max(k + reach + 1, negative)) : two;
+    }
+};
+
+constexpr int kEight = 8;
+constexpr int kTogether = 4;  // right-hand sides that are solved for at a time
+
+/// The sums of L[:, from to end]' x of several right-hand sides, `length` apart.
+template <int together>
+[[gnu::always_inline]] inline void add_dots(const double* column, const double* x,
+                                            std::ptrdiff_t length, int from, int end,
+                                            double* sums) {
+    Eight sum[together] = {};
+    int r = from;
+    for (; r + kEight <= end; r += kEight) {
+        const Eight l = read<Eight>(column + r);
+        for (int c = 0; c < together; ++c) sum[c] += l * read<Eight>(x + c * length + r);
+    }
+    for (int c = 0; c < together; ++c) {
+        double rest = ((sum[c][0] + sum[c][1]) + (sum[c][2] + sum[c][3])) +
+                      ((sum[c][4] + sum[c][5]) + (sum[c][6] + sum[c][7]));
+        for (int k = r; k < end; ++k) rest += column[k] * x[c * length + k];
+        sums[c] += rest;
+    }
+}
+
+/// Solves by the factor for several right-hand sides, `length` apart.
+template <int together>
+[[gnu::always_inline]] inline void substitute(const Factor& factor, double* values,
+                                              std::ptrdiff_t length) {
+    const int m = factor.size;
+    const std::ptrdiff_t height = factor.height;
+    for (int i = 0; i < factor.count; ++i) {
+        const double* l = factor.blocks + std::ptrdiff_t{i} * height * m;
+        double* x = values + std::ptrdiff_t{i} * m;
+        const int rows = m * std::min(3, factor.count - i);
+        for (int k = 0; k < m; ++k) {
+            const double* column = l + k * height;
+            for (int c = 0; c < together; ++c) {
+                double* own = x + c * length;
+                const double value = own[k] /= column[k];
+                for (int r = k + 1; r < m; ++r) own[r] -= value * column[r];
+            }
+        }
+        int row = m;
+        for (; row + kEight <= rows; row += kEight) {
+            Eight left[together];
+            for (int c = 0; c < together; ++c) left[c] = read<Eight>(x + c * length + row);
+            for (int k = row < 2 * m + factor.negative ? 0
+                                                       : std::max(0, row - 2 * m - factor.reach);
+                 k < m; ++k) {
+                const Eight from = read<Eight>(l + k * height + row);
+                for (int c = 0; c < together; ++c) left[c] -= from * x[c * length + k];
+            }
+            for (int c = 0; c < together; ++c) write<Eight>(x + c * length + row) = left[c];
+        }
+        for (; row < rows; ++row)
+            for (int c = 0; c < together; ++c)
+                for (int k = 0; k < m; ++k)
+                    x[c * length + row] -= l[k * height + row] * x[c * length + k];
+    }
+    for (int i = factor.count; i-- > 0;) {
+        const double* l = factor.blocks + std::ptrdiff_t{i} * height * m;
+        double* x = values + std::ptrdiff_t{i} * m;
+        for (int k = m; k-- > 0;) {
+            const double* column = l + k * height;
+            double sums[together] = {};
+            add_dots<together>(column, x, length, m, factor.rows(i, k), sums);
+            add_dots<together>(column, x, length, k + 1, m, sums);
+            const double sign = k < factor.negative ? -1.0 : 1.0;
+            for (int c = 0; c < together; ++c)
+                x[c * length + k] = (sign * x[c * length + k] - sums[c]) / column[k];
+        }
+    }
+}
+
+#ifdef BELTGRINDING_CLONES
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void substitute_four(const Factor& factor, double* values, std::ptrdiff_t length) {
+    substitute<kTogether>(factor, values, length);
+}
+
+#ifdef BELTGRINDING_CLONES
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void substitute_one(const Factor& factor, double* values, std::ptrdiff_t length) {
+    substitute<1>(factor, values, length);
 }
 
 constexpr int kBlock = 8;  // columns of a panel that are factorised at a time
 
 }  // namespace
 
-BlockBanded::BlockBanded(int count, int size)
-    : count_(count), size_(size), height_((3 * size + kFour - 1) / kFour * kFour) {
+BlockBanded::BlockBanded(int count, int size, int negative, int reach)
+    : count_(count),
+      size_(size),
+      negative_(negative),
+      reach_(std::min(reach, size)),
+      height_((3 * size + kFour - 1) / kFour * kFour) {
     blocks_.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(height_) *
                        static_cast<std::size_t>(size),
                    0.0);
@@ -137,12 +223,26 @@ void BlockBanded::set_zero() {
 bool BlockBanded::factorise() {
     const int m = size_;
     const auto padded = [](int rows) { return (rows + kFour - 1) / kFour * kFour; };
+    // `second`: the row of L at which the second block below begins.
+    const auto subtract = [this](const double* l, std::ptrdiff_t height, int depth, int rows,
+                                 int first, int end, double* to, int second) {
+        const int less = std::min(negative_, depth);
+        if (less > 0)
+            subtract_square({l, height, less,
+                             std::min(rows, (second + negative_ + kFour - 1) / kFour * kFour),
+                             first, end, to, -1.0, second + reach_ + negative_});
+        if (depth > less)
+            subtract_square({l + less * height, height, depth - less, rows, first, end, to, 1.0,
+                             second + reach_ + negative_});
+    };
     for (int i = 0; i < count_; ++i) {
         double* own = panel(i);
-        for (int first = 0; first < m; first += kBlock) {
-            const int end = std::min(first + kBlock, m);
-            if (first > 0) subtract_square(own, height_, first, height_, first, end, own, height_);
-            if (!factorise_columns(own, height_, first, end, height_)) return false;
+        for (int first = 0, end = 0; first < m; first = end) {
+            const bool less = first < negative_;
+            end = std::min(first + kBlock, less ? negative_ : m);
+            const int rows = padded(rows_of(end - 1));
+            if (first > 0) subtract(own, height_, first, rows, first, end, own, 2 * m);
+            if (!factorise_columns(own, height_, first, end, rows, less ? -1.0 : 1.0)) return false;
         }
         // What is left of the two panels behind: their blocks (0, 0), (1, 0) and (1, 1).
         const int behind = std::min(2, count_ - 1 - i);
@@ -156,7 +256,7 @@ bool BlockBanded::factorise() {
             std::copy_n(own + std::ptrdiff_t{k} * height_ + m, behind * m, to);
             std::fill(to + behind * m, to + rows, 0.0);
         }
-        subtract_square(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data(), rows);
+        subtract(shifted_.data(), rows, m, rows, 0, behind * m, corner_.data(), m);
         const auto add = [&](int row, int column, double* to) {
             for (int k = 0; k < m; ++k) {
                 const double* from = corner_.data() + (std::ptrdiff_t{column} * m + k) * rows +
@@ -175,28 +275,11 @@ bool BlockBanded::factorise() {
 }
 
 void BlockBanded::solve(Eigen::MatrixXd& values) const {
-    const int m = size_;
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-        double* x = values.data() + c * values.rows();
-        for (int i = 0; i < count_; ++i) {
-            const int rows = m * std::min(3, count_ - i);
-            double* at = x + std::ptrdiff_t{i} * m;
-            for (int k = 0; k < m; ++k) {
-                const double* column = panel(i) + std::ptrdiff_t{k} * height_;
-                const double value = at[k] /= column[k];
-                for (int r = k + 1; r < rows; ++r) at[r] -= value * column[r];
-            }
-        }
-        for (int i = count_; i-- > 0;) {
-            const int rows = m * std::min(3, count_ - i);
-            double* at = x + std::ptrdiff_t{i} * m;
-            for (int k = m; k-- > 0;) {
-                const double* column = panel(i) + std::ptrdiff_t{k} * height_;
-                const Eigen::Map<const Eigen::VectorXd> below(column + k + 1, rows - k - 1);
-                const Eigen::Map<const Eigen::VectorXd> known(at + k + 1, rows - k - 1);
-                at[k] = (at[k] - below.dot(known)) / column[k];
-            }
-        }
+    for (Eigen::Index c = 0; c < values.cols();) {
+        const bool together = c + kTogether <= values.cols();
+        const Factor factor = {blocks_.data(), count_, size_, negative_, reach_, height_};
+        (together ? substitute_four : substitute_one)(factor, values.col(c).data(), values.rows());
+        c += together ? kTogether : 1;
     }
 }
 

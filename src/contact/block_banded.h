@@ -5,14 +5,18 @@
 
 namespace beltgrinding {
 
-/// A symmetric, positive definite matrix of square blocks, of which the diagonal ones and the two
-/// below are not zero: what finite differences of the fourth order along one direction make of
-/// columns of unknowns. Bits are the same on every machine: nothing is fused, sums have one order.
+/// A symmetric matrix of square blocks, of which the diagonal ones and the two below are not zero:
+/// what finite differences of the fourth order along one direction make of columns of unknowns. It
+/// is positive definite, or a saddle: negative in the first rows of each block and, with these
+/// eliminated, positive in the others. Bits are the same on every machine: nothing is fused, sums
+/// have one order.
 class BlockBanded {
   public:
     BlockBanded() = default;
-    /// `count` blocks of `size` rows in the diagonal; all zero.
-    BlockBanded(int count, int size);
+    /// `count` blocks of `size` rows in the diagonal, the first `negative` of each negative; all
+    /// zero. In the second block below, what is more than `reach` rows below its column's own has
+    /// to stay so, and in the columns of negative rows all but these rows.
+    BlockBanded(int count, int size, int negative = 0, int reach = std::numeric_limits<int>::max());
 
     int count() const { return count_; }
     int size() const { return size_; }
@@ -23,20 +27,30 @@ class BlockBanded {
         return {panel(i) + std::ptrdiff_t{below} * size_, size_, size_,
                 Eigen::OuterStride<>(height_)};
     }
+    Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> block(int i, int below) const {
+        return {panel(i) + std::ptrdiff_t{below} * size_, size_, size_,
+                Eigen::OuterStride<>(height_)};
+    }
 
-    /// The factor of Cholesky in place of the matrix. False if that is not positive definite.
+    /// The factor of Cholesky in place of the matrix, L J L' with J = -1 in negative rows, else 1.
+    /// False if there is none.
     bool factorise();
     /// Solves for the columns of `values`, with the factor.
     void solve(Eigen::MatrixXd& values) const;
 
   private:
+    /// Rows of a panel's column that may not be zero.
+    int rows_of(int column) const {
+        return 2 * size_ +
+               std::min(size_, std::max(column + std::min(reach_, size_) + 1, negative_));
+    }
     /// The blocks of a column, one below the other, column by column.
     double* panel(int i) { return blocks_.data() + std::ptrdiff_t{i} * height_ * size_; }
     const double* panel(int i) const {
         return blocks_.data() + std::ptrdiff_t{i} * height_ * size_;
     }
 
-    int count_ = 0, size_ = 0;
+    int count_ = 0, size_ = 0, negative_ = 0, reach_ = 0;
     int height_ = 0;  // of a panel: three blocks, rounded up to whole registers
     std::vector<double> blocks_, corner_, shifted_;
 };

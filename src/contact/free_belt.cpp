@@ -17,11 +17,18 @@ namespace {
 
 constexpr double kMargin = 2.0;       // bending lengths beside the contact with fine columns
 constexpr double kMarginCells = 5.0;  // the same at least, in cells
-constexpr int kMostPaths = 6;         // until the path that is linearised about is the belt's
+constexpr int kMostPaths = 12;        // until the path that is linearised about is the belt's
 constexpr double kSamePath = 0.004;   // rad that a free run may turn from the path's
 constexpr int kCoarsen = 32;     // cells of a side, of grids that are first solved on half as many
 constexpr double kRough = 0.02;  // tolerance there
 constexpr int kSearch = 40;      // halvings, for a first guess of the depth
+
+/// mm at which the flat belt touches the ridge; infinite: never.
+double first_touch(const std::vector<RidgePoint>& ridge) {
+    double touch = std::numeric_limits<double>::infinity();
+    for (const RidgePoint& p : ridge) touch = std::min(touch, -p.z);
+    return touch;
+}
 
 /// The belt over the work on one grid.
 class PreparedFreeBelt final : public PreparedContact {
@@ -116,9 +123,8 @@ Eigen::ArrayXd PreparedFreeBelt::rough(const ContactProblem& problem, double& de
 
 double PreparedFreeBelt::first_depth(const ContactProblem& problem,
                                      const std::vector<RidgePoint>& ridge) const {
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const RidgePoint& p : ridge) highest = std::max(highest, p.z);
-    if (!std::isfinite(highest)) return 0.0;
+    const double touch = first_touch(ridge);
+    if (!std::isfinite(touch)) return 0.0;
     // Of a string over the ridge, whose force rises with the depth.
     BeltPathRequest request;
     request.obstacle = ridge;
@@ -129,7 +135,7 @@ double PreparedFreeBelt::first_depth(const ContactProblem& problem,
         return solver_.pull_of(path, 0.0) * belt_.width *
                (std::sin(path.left_angle) + std::sin(path.right_angle));
     };
-    double low = -highest, high = low + 0.5 * run_.length;
+    double low = touch, high = low + 0.5 * run_.length;
     for (int k = 0; k < kSearch && high - low > 1e-3; ++k) {
         const double middle = 0.5 * (low + high);
         (force(middle) < problem.force ? low : high) = middle;
@@ -181,12 +187,21 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
     if (warm) before = std::move(last_.state);
     last_.pressure.resize(0);
     int iterations = 0;
+    double last_lift = 0.0, part = 1.0;
     for (int k = 0;; ++k) {
         BeltPath path = belt_path(run_, path_request(ridge, depth, pull));
         if (path.columns.count() == 0) {
-            if (problem.force_control || depth >= problem.approach) return nothing;
-            depth = problem.approach;  // where a robot that gave way stands without the work
+            if (problem.force_control) {
+                if (!std::isfinite(first_touch(ridge))) return nothing;
+                if (k == 0) depth = first_depth(problem, ridge);
+            } else {
+                if (depth >= problem.approach) return nothing;
+                depth = problem.approach;  // where a robot that gave way stands without the work
+            }
             path = belt_path(run_, path_request(ridge, depth, pull));
+            // A part may touch beside the ridge before a string does.
+            if (path.columns.count() == 0 && problem.force_control)
+                path = straight_path(run_, grid().ds, grid().nx);
             if (path.columns.count() == 0) return nothing;
         }
         const BeltGap gap = surface.seen_from(path, depth);
@@ -195,17 +210,22 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
         request.gap = &gap;
         request.depth = depth;
         if (guess.size() > 0) request.touching = pressed(path, guess);
-        if (before.function.size() > 0) request.before = &before;
+        if (before.deflection.size() > 0) request.before = &before;
         state = solver_.solve(std::move(path), std::move(request));
         iterations += state.iterations;
         const double nearest = std::min(-state.path.left, state.path.right);
-        depth += state.lift;
         pull = state.pull;
-        if (std::abs(state.lift) <= kSamePath * nearest) break;
-        if (k + 1 == kMostPaths) {
-            state.converged = false;
+        const bool same = std::abs(state.lift) <= kSamePath * nearest;
+        if (same || k + 1 == kMostPaths) {
+            depth += state.lift;
+            state.converged = state.converged && same;
             break;
         }
+        // One path may press more, the next one less: towards what is between them.
+        if (state.lift * last_lift < 0.0 && std::abs(state.lift) > 0.5 * std::abs(last_lift))
+            part *= 0.5;
+        last_lift = state.lift;
+        depth += part * state.lift;
         guess = on_grid(problem, state, depth).pressure;
         before = std::move(state);
     }

@@ -1,5 +1,6 @@
 #include "contact/platen.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,6 +21,8 @@ namespace {
 constexpr double kFlat = 1000.0;          // mm
 constexpr double kFlatThicknesses = 100;  // the same, in thicknesses
 constexpr int kPlatenIterations = 4;      // times those that a problem allows: the layers follow
+constexpr std::size_t kMixed = 3;         // of the last pressures, for the next one
+constexpr double kRegular = 1e-10;        // of their products' diagonal
 constexpr double kSpring = 1.4;           // times the layers' stiffness under even pressure
 
 /// The layers under the belt. Their pressure is that of springs, about as stiff as the layers
@@ -65,7 +68,7 @@ class LayerBacking final : public BeltBacking {
             },
             nx);
         const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
-        pressure_ = std::move(now);
+        pressure_ = accelerated(now);
         follow_pressure();
         return change;
     }
@@ -82,6 +85,37 @@ class LayerBacking final : public BeltBacking {
             },
             nx);
     }
+    /// The pressure that is followed next: by Anderson's mixing of the last ones (Journal of the
+    /// ACM 12, 1965), for the springs come to rest by a constant share each time.
+    Eigen::ArrayXd accelerated(const Eigen::ArrayXd& now) {
+        const Eigen::ArrayXd off = now - pressure_;
+        Eigen::ArrayXd next = now;
+        if (last_off_.size() == off.size()) {
+            changes_of_.emplace_back(off - last_off_);
+            changes_.emplace_back(now - last_now_);
+            if (changes_.size() > kMixed) {
+                changes_of_.erase(changes_of_.begin());
+                changes_.erase(changes_.begin());
+            }
+            const auto count = static_cast<Eigen::Index>(changes_.size());
+            Eigen::MatrixXd products(count, count);
+            Eigen::VectorXd right(count);
+            for (Eigen::Index a = 0; a < count; ++a) {
+                const Eigen::ArrayXd& of = changes_of_[static_cast<std::size_t>(a)];
+                right[a] = (of * off).sum();
+                for (Eigen::Index b = 0; b < count; ++b)
+                    products(a, b) = (of * changes_of_[static_cast<std::size_t>(b)]).sum();
+            }
+            products.diagonal() *= 1.0 + kRegular;
+            const Eigen::VectorXd shares = products.ldlt().solve(right);
+            if (shares.allFinite())
+                for (Eigen::Index a = 0; a < count; ++a)
+                    next -= shares[a] * changes_[static_cast<std::size_t>(a)];
+        }
+        last_off_ = off;
+        last_now_ = now;
+        return next.max(0.0);
+    }
     template <class Visit>
     void for_cells(Visit visit, int nx) const {
         for (std::size_t i = 0; i < cell_.size(); ++i) {
@@ -96,6 +130,9 @@ class LayerBacking final : public BeltBacking {
     std::vector<int> cell_;         // of the grid along x, by column
     std::vector<std::uint8_t> on_;  // by column: the platen is there
     Eigen::ArrayXd pressure_, sunk_, ones_;
+    // Of the last mixings: what was off, what it became, and how both have changed.
+    Eigen::ArrayXd last_off_, last_now_;
+    std::vector<Eigen::ArrayXd> changes_of_, changes_;
 };
 
 class PreparedPlaten final : public PreparedContact {

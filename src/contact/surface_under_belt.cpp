@@ -11,6 +11,7 @@ namespace {
 constexpr double kNothing = -std::numeric_limits<double>::infinity();
 constexpr double kSteepest = 0.25;  // cosine: surfaces that face the belt less do not meet it
 constexpr int kPasses = 4;          // of Newton's method along a normal
+constexpr double kExact = 1e-9;     // mm: close enough; straight down at once
 constexpr double kLayer = 1.0;      // mm/mm: a greater step between rows is no slope
 
 /// Difference quotient of what exists on either side, 0 where nothing does.
@@ -134,7 +135,7 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
                 }
                 const double off = path.z[c] + u * cosine - h.z - lift;
                 u -= off / facing;
-                if (sine == 0.0) break;  // straight down: exact
+                if (sine == 0.0 || std::abs(off) < kExact) break;
             }
             if (!(h.cover > 0.0)) continue;
             // The middle surface lies half a thickness off, along the surface's own normal.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -20,6 +21,13 @@ constexpr double kBeside = std::numeric_limits<double>::infinity();  // mm: no w
 /// mm that a circle lies below its highest point.
 inline double circle(double radius, double x) {
     return std::abs(x) < radius ? radius - std::sqrt(radius * radius - x * x) : kBeside;
+}
+
+/// mm by which a circle of that curvature, 1/mm, has gone down; negative: a hollow, level beyond
+/// its radius.
+inline double arc(double curvature, double x) {
+    if (curvature < 0.0) return std::max(-circle(-1.0 / curvature, x), 1.0 / curvature);
+    return curvature > 0.0 ? circle(1.0 / curvature, x) : 0.0;
 }
 
 /// The belt of the finite-element references.

@@ -1,0 +1,192 @@
+// A step of Newton's method on the belt's energy, and the way along it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "belt_solver.h"
+
+namespace beltgrinding {
+namespace {
+
+constexpr int kLineSteps = 20;  // of the search along a step
+constexpr double kFlat = 0.1;   // of the energy's slope at its beginning: where that ends
+
+}  // namespace
+
+Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPath& path,
+                                           double& own) const {
+    const int n = path.columns.count();
+    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(spline_.count(), n);
+    own = request.problem->force_control ? 0.0 : 1.0 / request.problem->robot_compliance;
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            if (request.touching[cell(i, k)] == 0) continue;
+            const double w = spring(request, path.columns, i, k) * cosine;
+            own += w * cosine;
+            const FaceForm form = face_form(path.columns, k, i);
+            for (int p = form.first; p <= form.last; ++p)
+                for (int r = 0; r < BeltSpline::kLocal; ++r)
+                    pushed(locals_[k].first + r, i - 1 + p) -=
+                        w * form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
+        }
+    }
+    return pushed;
+}
+
+BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
+                                  const BeltStress& stress, const BeltStress::Coupling& coupling,
+                                  const Unbalanced& off, bool again) {
+    const int n = path.columns.count(), m = spline_.count(), size = m + BeltStress::kTerms;
+    const bool yield = yields(*request.problem);
+    std::vector<double> own;
+    if (!again) {
+        borders_.clear();
+        given_.clear();
+        if (yield) {
+            own.push_back(0.0);
+            borders_.push_back(pushed_by_lift(request, path, own.back()));
+        }
+        if (stress.mean_stiffness() > 0.0) {
+            borders_.push_back(coupling.mean);
+            own.push_back(-1.0 / stress.mean_stiffness());
+        }
+        borders_.push_back(coupling.lean);
+        own.push_back(-1.0 / stress.lean_stiffness());
+    }
+    const auto count = static_cast<Eigen::Index>(borders_.size());
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, again ? 1 : 1 + count);
+    const auto belt = [&](Eigen::Index c) {
+        return Eigen::Map<Eigen::MatrixXd>(all.col(c).data(), size, n).bottomRows(m);
+    };
+    belt(0) = off.belt;
+    if (!again)
+        for (Eigen::Index c = 0; c < count; ++c)
+            belt(1 + c) = borders_[static_cast<std::size_t>(c)];
+    matrix_.solve(all);
+    if (!again) {
+        border_matrix_.resize(count, count);
+        for (Eigen::Index c = 0; c < count; ++c) {
+            given_.emplace_back(belt(1 + c));
+            for (Eigen::Index r = 0; r < count; ++r)
+                border_matrix_(r, c) =
+                    -borders_[static_cast<std::size_t>(r)].cwiseProduct(given_.back()).sum();
+            border_matrix_(c, c) += own[static_cast<std::size_t>(c)];
+        }
+    }
+    Step step;
+    step.deflection = belt(0);
+    Eigen::VectorXd rest(count);
+    for (Eigen::Index r = 0; r < count; ++r)
+        rest[r] = -borders_[static_cast<std::size_t>(r)].cwiseProduct(step.deflection).sum();
+    if (yield) rest[0] += off.work;
+    const Eigen::VectorXd others = border_matrix_.partialPivLu().solve(rest);
+    for (Eigen::Index c = 0; c < count; ++c)
+        step.deflection -= others[c] * given_[static_cast<std::size_t>(c)];
+    if (yield) step.lift = others[0];
+    return step;
+}
+
+double BeltSolver::go(const Request& request, const BeltPath& path, const BeltStress& stress,
+                      const Unbalanced& off, const Step& step, bool whole, Iterate& at) const {
+    const int n = path.columns.count();
+    const BeltStress::Shape shape = stress.shape(step.deflection);
+    // Strains are e0 + s e1 + s^2 e2 on the way.
+    BeltModes e1 = stress.product(at.shape, shape);
+    const BeltModes turned = stress.turned(step.deflection);
+    e1.function = 2.0 * e1.function + turned.function;
+    e1.mean = 2.0 * e1.mean + turned.mean;
+    e1.lean = 2.0 * e1.lean + turned.lean;
+    const BeltModes e2 = stress.product(shape, shape);
+    const BeltModes s1 = stress.stress(e1), s2 = stress.stress(e2);
+    const auto work = [](const BeltModes& s, const BeltModes& e) {
+        return s.function.cwiseProduct(e.function).sum() + s.mean * e.mean + s.lean * e.lean;
+    };
+    Eigen::ArrayXXd cells(at.cells.rows(), n);
+    for (int i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            cells(static_cast<Eigen::Index>(k), i) =
+                deflection_at(path.columns, step.deflection, k, i);
+    const Eigen::MatrixXd bent = bending_.times(step.deflection);
+    double share = 1.0;
+    if (!whole) {
+        const double rest = stress.pull({{}, 0.0, 0.0});
+        // The energy's slope, but for what is not smooth.
+        std::array<double, 4> smooth = {
+            -path_load_.cwiseProduct(step.deflection).sum() +
+                at.bent.cwiseProduct(step.deflection).sum() + work(at.stress, e1) + rest * e1.mean,
+            bent.cwiseProduct(step.deflection).sum() + 2.0 * work(at.stress, e2) + work(s1, e1) +
+                2.0 * rest * e2.mean,
+            3.0 * work(s1, e2), 2.0 * work(s2, e2)};
+        if (yields(*request.problem)) {
+            smooth[0] -= commanded(request, at.lift) * step.lift;
+            if (!request.problem->force_control)
+                smooth[1] += step.lift * step.lift / request.problem->robot_compliance;
+        }
+        const auto slope = [&](double s) {
+            double sum = smooth[0] + s * (smooth[1] + s * (smooth[2] + s * smooth[3]));
+            for (int i = 0; i < n; ++i) {
+                const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+                for (std::size_t k = 0; k < rows_.size(); ++k) {
+                    const auto row = static_cast<Eigen::Index>(k);
+                    const double du = cells(row, i), u = at.cells(row, i) + s * du;
+                    const double overlap =
+                        reach_at(request, path, i, k) + (at.lift + s * step.lift) * cosine - u;
+                    if (overlap > 0.0)
+                        sum += spring(request, path.columns, i, k) * overlap *
+                               (step.lift * cosine - du);
+                    if (request.backing == nullptr) continue;
+                    const double in = u - request.backing->rest()(row, i);
+                    if (in > 0.0) sum += backing_spring(request, path.columns, i, k) * in * du;
+                }
+            }
+            return sum;
+        };
+        const double first = -(off.belt.cwiseProduct(step.deflection).sum() + off.work * step.lift);
+        double end = slope(1.0);
+        if (end > kFlat * std::abs(first)) {
+            double low = 0.0, high = 1.0, at_low = first, at_high = end;
+            share = 0.0;
+            for (int k = 0; k < kLineSteps; ++k) {
+                // Regula falsi, kept away from the ends.
+                const double part = std::clamp(at_low / (at_low - at_high), 0.1, 0.9);
+                const double middle = k % 3 == 2 ? 0.5 * (low + high) : std::lerp(low, high, part);
+                const double value = slope(middle);
+                if (value > 0.0) {
+                    high = middle;
+                    at_high = value;
+                } else {
+                    low = middle;
+                    at_low = value;
+                }
+                share = low;
+                if (low > 0.0 && std::abs(at_low) <= kFlat * std::abs(first)) break;
+            }
+            if (share == 0.0) share = high;
+        }
+    }
+    at.deflection += share * step.deflection;
+    at.bent += share * bent;
+    at.lift += share * step.lift;
+    at.cells += share * cells;
+    at.shape.x += share * shape.x;
+    at.shape.xy += share * shape.xy;
+    at.shape.xx += share * shape.xx;
+    at.shape.yy += share * shape.yy;
+    const auto add = [](BeltModes& to, double factor, const BeltModes& from) {
+        to.function += factor * from.function;
+        to.mean += factor * from.mean;
+        to.lean += factor * from.lean;
+    };
+    add(at.strain, share, e1);
+    add(at.strain, share * share, e2);
+    add(at.stress, share, s1);
+    add(at.stress, share * share, s2);
+    return share;
+}
+
+}  // namespace beltgrinding

@@ -75,8 +75,8 @@ TEST_P(Passes, TheGreatestTemperaturesAreThoseOfGreensFunction) {
             const auto share = [](double at, double half) {
                 return std::clamp(std::min(at + 0.5, half) - std::max(at - 0.5, -half), 0.0, 1.0);
             };
-            conduction.add(k, kFlux * share(p.x() - pose.x, kSide) *
-                                  share(p.y() - pose.y, kHalfWidth));
+            conduction.add(
+                k, kFlux * share(p.x() - pose.x, kSide) * share(p.y() - pose.y, kHalfWidth));
         }
         conduction.advance(pose.end - pose.begin, 0);
     }

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <mutex>
 
 namespace beltgrinding {
 namespace {
@@ -104,22 +104,25 @@ double thickness_of(int k) {
            std::pow(DepthModes::kThick / DepthModes::kThin, k / (kThicknesses - 1.0));
 }
 
+/// The table's entry, fitted when it is first asked for, which few of them are.
+const DepthModes::Weights& fitted_at(int k, bool opposite) {
+    struct Entry {
+        std::once_flag made;
+        DepthModes::Weights weights;
+    };
+    static std::array<Entry, 2 * kThicknesses> table;
+    Entry& entry = table[static_cast<std::size_t>(2 * k + (opposite ? 1 : 0))];
+    std::call_once(entry.made, [&] { entry.weights = fitted(thickness_of(k), opposite); });
+    return entry.weights;
+}
+
 DepthModes::Weights interpolated(double thickness, bool opposite) {
-    static const auto tables = [] {
-        std::array<std::vector<DepthModes::Weights>, 2> made;
-        for (int k = 0; k < kThicknesses; ++k) {
-            made[0].push_back(fitted(thickness_of(k), false));
-            made[1].push_back(fitted(thickness_of(k), true));
-        }
-        return made;
-    }();
-    const auto& table = tables[opposite ? 1 : 0];
     const double d = std::clamp(thickness, DepthModes::kThin, DepthModes::kThick);
     const double at = std::log(d / DepthModes::kThin) /
                       std::log(DepthModes::kThick / DepthModes::kThin) * (kThicknesses - 1);
     const int k = std::clamp(static_cast<int>(at), 0, kThicknesses - 2);
     const auto u = static_cast<float>(at - k);
-    const DepthModes::Weights &a = table[k], &b = table[k + 1];
+    const DepthModes::Weights &a = fitted_at(k, opposite), &b = fitted_at(k + 1, opposite);
     DepthModes::Weights weights;
     for (int j = 0; j < kModes; ++j) weights.modes[j] = (1 - u) * a.modes[j] + u * b.modes[j];
     weights.modes[0] = static_cast<float>(1.0 / d);  // what is stored in the section, exactly
@@ -140,7 +143,8 @@ const std::array<double, kModes>& DepthModes::rates() {
 }
 
 DepthModes::Weights DepthModes::own(double thickness) {
-    return thickness < kThick ? interpolated(thickness, false) : half_space();
+    static const Weights thick = half_space();
+    return thickness < kThick ? interpolated(thickness, false) : thick;
 }
 
 DepthModes::Weights DepthModes::opposite(double thickness) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/heat.h"
 #include "heat/thermal_nodes.h"
@@ -9,6 +10,7 @@
 namespace beltgrinding {
 namespace {
 
+constexpr std::size_t kBlock = 4096;     // of samples, for a thread
 constexpr double kSamplesPerNode = 1.5;  // of the field's spacing, at least
 
 void check(double value, const char* name) {
@@ -22,6 +24,10 @@ void check(double value, const char* name) {
 std::vector<Vec3f> gradients(const ThermalNodes& nodes, const std::vector<float>& values) {
     std::vector<Vec3f> found(nodes.size(), Vec3f::Zero());
     for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        bool flat = true;
+        for (std::uint32_t e = nodes.first[k]; e < nodes.first[k + 1]; ++e)
+            flat = flat && values[nodes.neighbour[e]] == values[k];
+        if (flat) continue;
         const Vec3 n = nodes.normal[k].cast<double>();
         // Along the normal nothing is known: 0.
         Eigen::Matrix3d square = n * n.transpose();
@@ -41,6 +47,30 @@ std::vector<Vec3f> gradients(const ThermalNodes& nodes, const std::vector<float>
         found[k] = (square.inverse() * right).cast<float>();
     }
     return found;
+}
+
+/// At a point, of which `node` is the nearest: modified Shepard weights, each node with its plane
+/// (Franke & Nielson 1980), never beyond what the nodes have.
+float between(const ThermalNodes& nodes, const std::vector<float>& values,
+              const std::vector<Vec3f>& slope, std::uint32_t node, const Vec3& point) {
+    const double reach = 2.0 * nodes.spacing;
+    float least = values[node], most = least;
+    double sum = 0.0, weights = 0.0;
+    const auto add = [&](std::uint32_t k) {
+        const Vec3 way = point - nodes.point[k];
+        const double away = std::max(way.norm(), 1e-6 * reach);
+        const double share = std::max(reach - away, 0.0) / (reach * away);
+        const double weight = share * share;
+        sum += weight * (values[k] + slope[k].cast<double>().dot(way));
+        weights += weight;
+        least = std::min(least, values[k]);
+        most = std::max(most, values[k]);
+    };
+    add(node);
+    for (std::uint32_t e = nodes.first[node]; e < nodes.first[node + 1]; ++e)
+        add(nodes.neighbour[e]);
+    const auto value = weights > 0.0 ? static_cast<float>(sum / weights) : values[node];
+    return std::clamp(value, least, most);
 }
 
 }  // namespace
@@ -114,32 +144,16 @@ void PartHeat::keep(HeightField& field) const {
         throw InputError("heat.other_field", "the heat is of another height field");
     }
     const std::vector<Vec3f> slope = gradients(nodes, state_.peak);
-    field.heat.rise.resize(field.size());
-    field.heat.motion.resize(field.size());
-    const double reach = 2.0 * nodes.spacing;
-    for (std::size_t s = 0; s < field.size(); ++s) {
-        const std::uint32_t node = nodes.node_of[s];
-        float least = state_.peak[node], most = least;
-        double sum = 0.0, weights = 0.0;
-        const auto add = [&](std::uint32_t k) {
-            const Vec3 way = field.point[s] - nodes.point[k];
-            // Modified Shepard weights, each node with its plane (Franke & Nielson 1980).
-            const double away = std::max(way.norm(), 1e-6 * reach);
-            const double share = std::max(reach - away, 0.0) / (reach * away);
-            const double weight = share * share;
-            sum += weight * (state_.peak[k] + slope[k].cast<double>().dot(way));
-            weights += weight;
-            least = std::min(least, state_.peak[k]);
-            most = std::max(most, state_.peak[k]);
-        };
-        add(node);
-        for (std::uint32_t e = nodes.first[node]; e < nodes.first[node + 1]; ++e)
-            add(nodes.neighbour[e]);
-        const auto value = weights > 0.0 ? static_cast<float>(sum / weights) : state_.peak[node];
-        const bool any = state_.source[node] != HeatState::kNever;
-        field.heat.rise[s] = any ? std::clamp(value, least, most) : 0.0f;
-        field.heat.motion[s] = state_.source[node];
-    }
+    field.heat.rise.assign(field.size(), 0.0f);
+    field.heat.motion.assign(field.size(), HeatState::kNever);
+    parallel_blocks(field.size(), kBlock, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::uint32_t node = nodes.node_of[s];
+            if (state_.source[node] == HeatState::kNever) continue;
+            field.heat.motion[s] = state_.source[node];
+            field.heat.rise[s] = between(nodes, state_.peak, slope, node, field.point[s]);
+        }
+    });
 }
 
 }  // namespace beltgrinding

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,17 +14,19 @@ namespace beltgrinding {
 /// that a look must cost next to nothing.
 class PointHash {
   public:
-    using Cube = std::array<std::int32_t, 3>;
+    struct Cube {
+        std::int32_t x = 0, y = 0, z = 0;
+        bool operator==(const Cube&) const = default;
+    };
 
     /// `side`: mm, of a cube.
     explicit PointHash(double side) : side_(side), slots_(kFirst) {}
 
     Cube cube(const Vec3& point) const {
-        Cube c;
-        for (int k = 0; k < 3; ++k)
-            c[static_cast<std::size_t>(k)] =
-                static_cast<std::int32_t>(std::floor(point[k] / side_));
-        return c;
+        const auto of = [this](double x) {
+            return static_cast<std::int32_t>(std::floor(x / side_));
+        };
+        return {of(point.x()), of(point.y()), of(point.z())};
     }
     void add(std::uint32_t number, const Vec3& point) {
         if (2 * (used_ + 1) > slots_.size()) grow();
@@ -46,7 +47,7 @@ class PointHash {
         for (int i = -rings; i <= rings; ++i)
             for (int j = -rings; j <= rings; ++j)
                 for (int k = -rings; k <= rings; ++k) {
-                    const Slot& slot = slots_[place({cube[0] + i, cube[1] + j, cube[2] + k})];
+                    const Slot& slot = slots_[place({cube.x + i, cube.y + j, cube.z + k})];
                     for (std::uint32_t link = slot.first; link != kNone; link = links_[link].next)
                         found.push_back(links_[link].number);
                 }
@@ -66,7 +67,7 @@ class PointHash {
     /// The slot of a cube, or the free one where it would be.
     std::size_t place(const Cube& cube) const {
         std::uint64_t h = 0;
-        for (const std::int32_t k : cube)
+        for (const std::int32_t k : {cube.x, cube.y, cube.z})
             h = (h ^ static_cast<std::uint32_t>(k)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 32;
         const std::size_t mask = slots_.size() - 1;
         std::size_t at = static_cast<std::size_t>(h) & mask;

@@ -2,117 +2,124 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
+#include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "point_hash.h"
+#include "voronoi_cell.h"
 
 namespace beltgrinding {
 namespace {
 
-constexpr float kSameSide = 0.5f;    // least cosine between normals that heat flows between
-constexpr float kOtherSide = -0.5f;  // greatest, of a section's two sides
-constexpr double kLeastArea = 0.1;   // of spacing^2, of a cell
-constexpr int kHalvings = 24;        // for the border of a cell
+constexpr float kSameSide = 0.5f;     // least cosine between normals that heat flows between
+constexpr float kOtherSide = -0.5f;   // greatest, of a section's two sides
+constexpr double kLeastArea = 0.1;    // of spacing^2, of a cell
+constexpr int kHalvings = 24;         // for the border of a cell
+constexpr std::size_t kBlock = 1024;  // of nodes, for a thread
 
-/// A convex polygon in the plane, whose sides know what they are borders to.
-struct Polygon {
-    std::vector<Eigen::Vector2d> corner;
-    std::vector<std::int64_t> side;  // from each corner to the next; negative: to nothing
+/// Nodes near each, and how far they are.
+struct Near {
+    struct Other {
+        std::uint32_t number;
+        double distance;  // mm
+    };
+    std::vector<std::size_t> first;
+    std::vector<Other> others;  // by their distance, then their number
 
-    double area() const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < corner.size(); ++k) {
-            const Eigen::Vector2d &a = corner[k], &b = corner[(k + 1) % corner.size()];
-            sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
-        }
-        return sum;
+    std::span<const Other> of(std::uint32_t node) const {
+        return {others.data() + first[node], others.data() + first[node + 1]};
     }
-    /// Keeps what has direction . x <= limit.
-    Polygon cut(const Eigen::Vector2d& direction, double limit, std::int64_t number) const {
-        Polygon kept;
-        for (std::size_t k = 0; k < corner.size(); ++k) {
-            const Eigen::Vector2d &a = corner[k], &b = corner[(k + 1) % corner.size()];
-            const double at_a = direction.dot(a) - limit, at_b = direction.dot(b) - limit;
-            if (at_a <= 0.0) {
-                kept.corner.push_back(a);
-                kept.side.push_back(side[k]);
+};
+
+/// Calls visit(k) for all nodes of blocks, on all threads.
+template <class Visit>
+void for_nodes(std::size_t count, Visit visit) {
+    parallel_blocks(count, kBlock, {}, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) visit(static_cast<std::uint32_t>(k));
+    });
+}
+
+PointHash hash_of(const ThermalNodes& nodes, double side) {
+    PointHash hash(side);
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) hash.add(k, nodes.point[k]);
+    return hash;
+}
+
+/// All up to twice the spacing away.
+Near find_near(const ThermalNodes& nodes) {
+    const double reach = 2.0 * nodes.spacing;
+    const PointHash hash = hash_of(nodes, reach);
+    const std::size_t blocks = (nodes.size() + kBlock - 1) / kBlock;
+    std::vector<std::vector<Near::Other>> parts(blocks);
+    Near near;
+    near.first.assign(nodes.size() + 1, 0);
+    parallel_blocks(nodes.size(), kBlock, {}, [&](std::size_t begin, std::size_t end) {
+        std::vector<Near::Other>& part = parts[begin / kBlock];
+        std::vector<std::uint32_t> found;
+        PointHash::Cube looked{};
+        for (std::size_t k = begin; k < end; ++k) {
+            const PointHash::Cube cube = hash.cube(nodes.point[k]);
+            if (k == begin || cube != looked) hash.near(looked = cube, 1, found);
+            const std::size_t before = part.size();
+            for (const std::uint32_t other : found) {
+                const double squared = (nodes.point[other] - nodes.point[k]).squaredNorm();
+                if (other != k && squared <= 1.0001 * reach * reach) {
+                    const double distance = std::sqrt(squared);
+                    if (distance <= reach) part.push_back({other, distance});
+                }
             }
-            if ((at_a <= 0.0) == (at_b <= 0.0)) continue;
-            kept.corner.emplace_back(a + at_a / (at_a - at_b) * (b - a));
-            kept.side.push_back(at_a <= 0.0 ? number : side[k]);
+            std::sort(part.begin() + static_cast<std::ptrdiff_t>(before), part.end(),
+                      [](const Near::Other& a, const Near::Other& b) {
+                          return std::tie(a.distance, a.number) < std::tie(b.distance, b.number);
+                      });
+            near.first[k + 1] = part.size() - before;
         }
-        return kept;
-    }
-    bool open() const {
-        return std::any_of(side.begin(), side.end(), [](std::int64_t s) { return s < 0; });
-    }
-};
+    });
+    for (std::size_t k = 0; k < nodes.size(); ++k) near.first[k + 1] += near.first[k];
+    near.others.reserve(near.first.back());
+    for (const auto& part : parts) near.others.insert(near.others.end(), part.begin(), part.end());
+    return near;
+}
 
-/// The cell of a node between the others, round it as the origin.
-class Cell {
-  public:
-    Cell(const ThermalNodes& nodes, std::uint32_t node, const std::vector<std::uint32_t>& near)
-        : nodes_(nodes), node_(node) {
-        const double h = nodes.spacing;
-        polygon_.corner = {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
-        polygon_.side = {-1, -1, -1, -1};
-        const Vec3 n = nodes.normal[node].cast<double>();
-        const Vec3 e = n.unitOrthogonal(), f = n.cross(e);
-        struct Other {
-            double distance;
-            Eigen::Vector2d at;
-            std::uint32_t number;
-        };
-        std::vector<Other> others;
-        for (const std::uint32_t k : near) {
-            if (k == node || nodes.normal[k].dot(nodes.normal[node]) < kSameSide) continue;
-            const Vec3 way = nodes.point[k] - nodes.point[node];
-            const double distance = way.norm();
-            const Eigen::Vector2d flat(way.dot(e), way.dot(f));
-            // What lies behind or before the surface is another layer of it.
-            if (distance > 2.0 * h || flat.norm() < 0.5 * distance) continue;
-            others.push_back({distance, flat * (distance / flat.norm()), k});
-        }
-        std::sort(others.begin(), others.end(), [](const Other& a, const Other& b) {
-            return std::tie(a.distance, a.number) < std::tie(b.distance, b.number);
-        });
-        for (const Other& other : others) {
-            mean_ += other.at / other.distance;
-            polygon_ = polygon_.cut(other.at / other.distance, 0.5 * other.distance, other.number);
-        }
+/// The cell of a node between those near it, round it as the origin. On the border of what is
+/// sampled it ends where it has the area of its samples, `sampled` mm2.
+VoronoiCell cell_of(const ThermalNodes& nodes, std::uint32_t node,
+                    std::span<const Near::Other> near, double sampled) {
+    VoronoiCell cell(nodes.spacing);
+    const Vec3 n = nodes.normal[node].cast<double>();
+    const Vec3 e = n.unitOrthogonal(), f = n.cross(e);
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    double radius = cell.radius();
+    for (const Near::Other& other : near) {
+        if (nodes.normal[other.number].dot(nodes.normal[node]) < kSameSide) continue;
+        const Vec3 way = nodes.point[other.number] - nodes.point[node];
+        const Eigen::Vector2d flat(way.dot(e), way.dot(f));
+        const double length = flat.norm();
+        // What lies behind or before the surface is another layer of it.
+        if (length < 0.5 * other.distance) continue;
+        mean += flat / length;
+        if (0.5 * other.distance > radius) continue;
+        cell.cut(flat / length, 0.5 * other.distance, other.number);
+        radius = cell.radius();
     }
-    /// On the border of what is sampled the cell ends where it has the area of its samples, mm2.
-    void end_at(double area) {
-        if (!polygon_.open() || mean_.norm() == 0.0) return;
-        const Eigen::Vector2d out = -mean_.normalized();
-        double low = 0.0, high = 2.0 * nodes_.spacing;
-        for (int k = 0; k < kHalvings; ++k) {
-            const double middle = 0.5 * (low + high);
-            (polygon_.cut(out, middle, -1).area() < area ? low : high) = middle;
-        }
-        polygon_ = polygon_.cut(out, low, -1);
+    if (!cell.open() || mean.norm() == 0.0) return cell;
+    const Eigen::Vector2d out = -mean.normalized();
+    const auto ended = [&](double at) {
+        VoronoiCell one = cell;
+        one.cut(out, at, VoronoiCell::kNothing);
+        return one;
+    };
+    double low = 0.0, high = 2.0 * nodes.spacing;
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (ended(middle).area() < sampled ? low : high) = middle;
     }
-    double area() const { return polygon_.area(); }
-    /// Calls visit(neighbour, length of the border over the distance).
-    template <class Visit>
-    void for_borders(Visit visit) const {
-        const auto& corner = polygon_.corner;
-        for (std::size_t k = 0; k < corner.size(); ++k) {
-            if (polygon_.side[k] < 0) continue;
-            const auto other = static_cast<std::uint32_t>(polygon_.side[k]);
-            const double length = (corner[(k + 1) % corner.size()] - corner[k]).norm();
-            visit(other, length / (nodes_.point[other] - nodes_.point[node_]).norm());
-        }
-    }
-
-  private:
-    const ThermalNodes& nodes_;
-    std::uint32_t node_;
-    Polygon polygon_;
-    Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
-};
+    return ended(low);
+}
 
 /// The nearest of `near` on the same side; kNone if all are `most` mm away or more.
 std::uint32_t nearest(const ThermalNodes& nodes, const std::vector<std::uint32_t>& near,
@@ -124,12 +131,6 @@ std::uint32_t nearest(const ThermalNodes& nodes, const std::vector<std::uint32_t
         if (away < least && nodes.normal[k].dot(normal) >= kSameSide) least = away, found = k;
     }
     return found;
-}
-
-PointHash hash_of(const ThermalNodes& nodes) {
-    PointHash hash(nodes.spacing);
-    for (std::uint32_t k = 0; k < nodes.size(); ++k) hash.add(k, nodes.point[k]);
-    return hash;
 }
 
 void choose(ThermalNodes& nodes, const HeightField& field) {
@@ -160,65 +161,99 @@ void choose(ThermalNodes& nodes, const HeightField& field) {
         }
         covering[s] = last;
     }
-    // The nearest is less than twice the spacing from one that covers.
-    std::vector<std::size_t> first = {0};
-    std::vector<std::uint32_t> others;
-    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
-        hash.near(hash.cube(nodes.point[k]), 2, near);
-        std::sort(near.begin(), near.end());
-        for (const std::uint32_t other : near) {
-            const double away = (nodes.point[other] - nodes.point[k]).norm();
-            if (other != k && away < 2.0 * nodes.spacing) others.push_back(other);
-        }
-        first.push_back(others.size());
-    }
     nodes.node_of = std::move(covering);
-    for (std::uint32_t s = 0; s < field.size(); ++s) {
+}
+
+/// The nearest is less than twice the spacing from one that covers.
+void move_to_nearest(ThermalNodes& nodes, const HeightField& field, const Near& near) {
+    for_nodes(field.size(), [&](std::uint32_t s) {
         const std::uint32_t from = nodes.node_of[s];
         double least = (nodes.point[from] - field.point[s]).squaredNorm();
-        for (std::size_t e = first[from]; e < first[from + 1]; ++e) {
-            const std::uint32_t other = others[e];
+        const double there = std::sqrt(least);
+        double reach = 2.0 * there;
+        for (const auto& [other, distance] : near.of(from)) {
+            if (distance > reach) break;
             const double away = (nodes.point[other] - field.point[s]).squaredNorm();
-            if (away < least && nodes.normal[other].dot(field.normal[s]) >= kSameSide)
-                least = away, nodes.node_of[s] = other;
+            if (away >= least || nodes.normal[other].dot(field.normal[s]) < kSameSide) continue;
+            least = away;
+            nodes.node_of[s] = other;
+            reach = there + std::sqrt(least);
         }
+    });
+}
+
+void join(ThermalNodes& nodes, const HeightField& field, const Near& near) {
+    std::vector<double> sampled(nodes.size(), 0.0);
+    for (std::size_t s = 0; s < field.size(); ++s) sampled[nodes.node_of[s]] += field.area[s];
+    struct Border {
+        std::uint32_t other;
+        float half;
+    };
+    const std::size_t blocks = (nodes.size() + kBlock - 1) / kBlock;
+    std::vector<std::vector<Border>> parts(blocks);
+    std::vector<std::uint32_t> count(nodes.size());  // of each one's own cell
+    nodes.area.resize(nodes.size());
+    const double least = kLeastArea * nodes.spacing * nodes.spacing;
+    for_nodes(nodes.size(), [&](std::uint32_t k) {
+        const VoronoiCell cell = cell_of(nodes, k, near.of(k), std::max(sampled[k], least));
+        nodes.area[k] = static_cast<float>(std::max(cell.area(), least));
+        auto& part = parts[k / kBlock];
+        const std::size_t before = part.size();
+        cell.for_sides([&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, std::int64_t side) {
+            if (side < 0) return;
+            const auto other = static_cast<std::uint32_t>(side);
+            const double share = (b - a).norm() / (nodes.point[other] - nodes.point[k]).norm();
+            part.push_back({other, static_cast<float>(0.5 * share)});
+        });
+        count[k] = static_cast<std::uint32_t>(part.size() - before);
+    });
+    // Both cells have a say, which differ where the surface is bent.
+    std::vector<std::size_t> end(nodes.size() + 1, 0);
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) end[k + 1] = count[k];
+    for (const auto& part : parts)
+        for (const Border& border : part) ++end[border.other + 1];
+    for (std::size_t k = 0; k < nodes.size(); ++k) end[k + 1] += end[k];
+    std::vector<Border> borders(end.back());
+    std::size_t at = 0;  // in a part
+    const std::vector<std::size_t> begin(end.begin(), end.end() - 1);
+    end.pop_back();
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        if (k % kBlock == 0) at = 0;
+        for (std::uint32_t n = 0; n < count[k]; ++n, ++at) {
+            const Border border = parts[k / kBlock][at];
+            borders[end[k]++] = border;
+            borders[end[border.other]++] = {k, border.half};
+        }
+    }
+    nodes.first.assign(1, 0);
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        const auto from = borders.begin() + static_cast<std::ptrdiff_t>(begin[k]),
+                   to = borders.begin() + static_cast<std::ptrdiff_t>(end[k]);
+        std::sort(from, to, [](const Border& a, const Border& b) { return a.other < b.other; });
+        for (auto border = from; border != to; ++border) {
+            if (border != from && border->other == nodes.neighbour.back()) {
+                nodes.conductance.back() += border->half;
+                continue;
+            }
+            nodes.neighbour.push_back(border->other);
+            nodes.conductance.push_back(border->half);
+        }
+        nodes.first.push_back(static_cast<std::uint32_t>(nodes.neighbour.size()));
     }
 }
 
-void join(ThermalNodes& nodes, const HeightField& field) {
-    std::vector<double> sampled(nodes.size(), 0.0);
-    for (std::size_t s = 0; s < field.size(); ++s) sampled[nodes.node_of[s]] += field.area[s];
-    const PointHash hash = hash_of(nodes);
-    std::vector<std::uint32_t> near;
-    std::vector<std::tuple<std::uint32_t, std::uint32_t, float>> borders;
-    nodes.area.resize(nodes.size());
-    const double least = kLeastArea * nodes.spacing * nodes.spacing;
+/// By Taylor's series: the mean of cos^4 is 3 / 8, and 4! = 24.
+double dispersion_of(const ThermalNodes& nodes) {
+    double sum = 0.0;
     for (std::uint32_t k = 0; k < nodes.size(); ++k) {
-        hash.near(hash.cube(nodes.point[k]), 2, near);
-        Cell cell(nodes, k, near);
-        cell.end_at(std::max(sampled[k], least));
-        nodes.area[k] = static_cast<float>(std::max(cell.area(), least));
-        // Both cells have a say, which differ where the surface is bent.
-        cell.for_borders([&](std::uint32_t other, double share) {
-            const auto half = static_cast<float>(0.5 * share);
-            borders.emplace_back(k, other, half);
-            borders.emplace_back(other, k, half);
-        });
-    }
-    std::sort(borders.begin(), borders.end());
-    nodes.first.assign(nodes.size() + 1, 0);
-    std::uint32_t from = ThermalNodes::kNone;
-    for (const auto& [a, b, share] : borders) {
-        if (a == from && nodes.neighbour.back() == b) {
-            nodes.conductance.back() += share;
-            continue;
+        double fourth = 0.0;
+        for (std::uint32_t e = nodes.first[k]; e < nodes.first[k + 1]; ++e) {
+            const Vec3 way = nodes.point[nodes.neighbour[e]] - nodes.point[k];
+            fourth += nodes.conductance[e] * way.squaredNorm() * way.squaredNorm();
         }
-        from = a;
-        nodes.neighbour.push_back(b);
-        nodes.conductance.push_back(share);
-        ++nodes.first[a + 1];
+        sum += fourth / (64.0 * nodes.area[k]);
     }
-    for (std::size_t k = 0; k < nodes.size(); ++k) nodes.first[k + 1] += nodes.first[k];
+    return sum / static_cast<double>(nodes.size());
 }
 
 }  // namespace
@@ -234,7 +269,10 @@ ThermalNodes make_thermal_nodes(const HeightField& field, double spacing) {
     ThermalNodes nodes;
     nodes.spacing = spacing;
     choose(nodes, field);
-    join(nodes, field);
+    const Near near = find_near(nodes);
+    move_to_nearest(nodes, field, near);
+    join(nodes, field, near);
+    nodes.dispersion = dispersion_of(nodes);
     set_thickness(nodes, std::vector<float>(nodes.size(), NAN));
     return nodes;
 }
@@ -249,25 +287,30 @@ void set_thickness(ThermalNodes& nodes, const std::vector<float>& thickness) {
     nodes.opposite.assign(nodes.size(), ThermalNodes::kNone);
     nodes.own.resize(nodes.size());
     nodes.other.resize(nodes.size());
-    const PointHash hash = hash_of(nodes);
-    std::vector<std::uint32_t> near;
-    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
-        float& d = nodes.thickness[k];
+    const double reach = 2.0 * nodes.spacing;
+    std::optional<PointHash> hash;
+    for (float& d : nodes.thickness) {
         if (d <= 0.0f) throw InputError("heat.thickness", "a section has no thickness");
         if (!(d < DepthModes::kThick)) d = HUGE_VALF;
-        nodes.own[k] = DepthModes::own(d);
-        nodes.other[k] = DepthModes::opposite(d);
-        if (!std::isfinite(d)) continue;
-        const Vec3 inwards = -nodes.normal[k].cast<double>();
-        const Vec3 there = nodes.point[k] + d * inwards;
-        hash.near(hash.cube(there), 2, near);
-        double least = 2.0 * nodes.spacing;
-        for (const std::uint32_t other : near) {
-            const double away = (nodes.point[other] - there).norm();
-            if (away < least && nodes.normal[other].dot(nodes.normal[k]) <= kOtherSide)
-                least = away, nodes.opposite[k] = other;
-        }
+        if (std::isfinite(d) && !hash) hash = hash_of(nodes, reach);
     }
+    parallel_blocks(nodes.size(), kBlock, {}, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> near;
+        for (std::size_t k = begin; k < end; ++k) {
+            const float d = nodes.thickness[k];
+            nodes.own[k] = DepthModes::own(d);
+            nodes.other[k] = DepthModes::opposite(d);
+            if (!std::isfinite(d)) continue;
+            const Vec3 there = nodes.point[k] - d * nodes.normal[k].cast<double>();
+            hash->near(hash->cube(there), 1, near);
+            double least = reach;
+            for (const std::uint32_t other : near) {
+                const double away = (nodes.point[other] - there).norm();
+                if (away < least && nodes.normal[other].dot(nodes.normal[k]) <= kOtherSide)
+                    least = away, nodes.opposite[k] = other;
+            }
+        }
+    });
 }
 
 }  // namespace beltgrinding

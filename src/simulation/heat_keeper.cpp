@@ -1,5 +1,7 @@
 #include "heat_keeper.h"
 
+#include <algorithm>
+
 namespace beltgrinding {
 
 HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, double belt_speed)
@@ -14,7 +16,9 @@ HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, d
       work_(request.part->size(), 0.0) {
     const auto& node_of = request.part->node_of();
     const auto samples = blocks.samples();
-    node_.resize(samples.size());
+    // Of whole blocks: the last one may have lanes without a sample.
+    constexpr std::size_t kLanes = SampleBlocks::kLanes;
+    node_.assign((samples.size() + kLanes - 1) / kLanes * kLanes, ThermalNodes::kNone);
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const std::uint32_t node = node_of[samples[k]];
         node_[k] = node;
@@ -27,13 +31,31 @@ HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, d
 void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, double force,
                        double duration) {
     constexpr auto kLanes = SampleBlocks::kLanes;
-    map.for_pressed(pressure, [this](std::size_t position, double value) {
-        const std::uint32_t node = node_[position];
+    const auto press = [this](std::uint32_t node, double force_there) {
+        if (!(force_there > 0.0)) return;  // its samples stand for nothing
+        if (force_[node] == 0.0) pressed_.push_back(node);
+        force_[node] += force_there;
+    };
+    // Samples of one node often follow each other.
+    const auto press_block = [&](std::size_t first, const float* values) {
+        const auto& area = blocks_.block(static_cast<std::uint32_t>(first / kLanes)).area;
+        std::uint32_t node = ThermalNodes::kNone;
+        double sum = 0.0;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::uint32_t next = node_[first + lane];
+            if (next != node) {
+                press(node, sum);
+                node = next;
+                sum = 0.0;
+            }
+            sum += double{values[lane]} * double{std::max(area[lane], 0.0f)};
+        }
+        press(node, sum);
+    };
+    map.for_pressed_blocks(pressure, press_block, [&](std::size_t position, double value) {
         const float area =
             blocks_.block(static_cast<std::uint32_t>(position / kLanes)).area[position % kLanes];
-        if (!(area > 0.0f)) return;  // it stands for nothing
-        if (force_[node] == 0.0) pressed_.push_back(node);
-        force_[node] += value * area;
+        press(node_[position], value * std::max(area, 0.0f));
     });
     // Their samples' mean pressure is the nodes'. The force is the contact's, to the last bit.
     const ThermalNodes& nodes = request_.part->nodes();

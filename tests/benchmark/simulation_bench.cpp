@@ -243,7 +243,8 @@ void finish_cost(benchmark::State& state) {
 }
 BENCHMARK(finish_cost)->Unit(benchmark::kMillisecond)->Iterations(2);
 
-// What heat adds to a run, with its nodes: processor time with and without, in turns.
+// What heat adds to a run, with its nodes: processor time and wall time with and without, in turns.
+// Of the former, milliseconds for what is done once.
 void heat_cost(benchmark::State& state) {
     const double side = kSpacing * 1000.0;
     const HeightField before = testing::plate(side, side, kSpacing, 0.3);
@@ -255,28 +256,39 @@ void heat_cost(benchmark::State& state) {
     const ToolPath path = overlapping_passes(side);
     const HeatMaterial steel{15.0, 500.0, 7900.0}, aluminium{191.0, 911.0, 2700.0};
     const std::array materials = {steel, aluminium};
-    std::array<double, 3> seconds{};
-    double nodes = 0.0, bytes = 0.0;
+    const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+    const auto wall_now = [] {
+        const auto since = std::chrono::steady_clock::now().time_since_epoch();
+        return std::chrono::duration<double>(since).count();
+    };
+    std::array<double, 3> seconds{}, wall{};
+    double once = 0.0, steps = 0.0;
     for (auto _ : state) {
         for (std::size_t k = 0; k < 3; ++k) {  // without, and with either material
             HeightField field = before;
-            const std::clock_t start = std::clock();
+            const double start = now(), wall_start = wall_now();
             std::optional<PartHeat> part;
             if (k > 0) {
                 part.emplace(field, options.resolution.contact_spacing, materials[k - 1]);
                 part->set_thickness(std::vector<float>(part->size(), 8.0f));
-                nodes = static_cast<double>(part->size());
-                bytes = static_cast<double>(part->bytes()) / static_cast<double>(field.size());
+                state.counters["nodes"] = static_cast<double>(part->size());
+                state.counters["bytes_a_sample"] =
+                    static_cast<double>(part->bytes()) / static_cast<double>(field.size());
+                once += now() - start;
             }
             options.heat = {part ? &*part : nullptr, 0.5, 0.7};
-            benchmark::DoNotOptimize(simulate(field, path, foundation, law, options));
-            seconds[k] += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+            const SimulationResult result = simulate(field, path, foundation, law, options);
+            seconds[k] += now() - start;
+            wall[k] += wall_now() - wall_start;
+            if (k == 0) steps += static_cast<double>(result.steps.size());
         }
     }
     state.counters["ratio_steel"] = seconds[1] / seconds[0];
     state.counters["ratio_aluminium"] = seconds[2] / seconds[0];
-    state.counters["nodes"] = nodes;
-    state.counters["bytes_a_sample"] = bytes;
+    state.counters["step_us"] = 1e6 * seconds[0] / steps;
+    state.counters["wall_ratio_steel"] = wall[1] / wall[0];
+    state.counters["wall_ratio_aluminium"] = wall[2] / wall[0];
+    state.counters["once_ms"] = 1e3 * once / (2.0 * static_cast<double>(state.iterations()));
 }
 BENCHMARK(heat_cost)->Unit(benchmark::kMillisecond)->Iterations(2);
 

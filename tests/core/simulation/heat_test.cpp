@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/threads.h"
 #include "beltgrinding/heat.h"
 #include "beltgrinding/simulation.h"
 #include "contact/wheel_rim.h"
@@ -59,6 +60,16 @@ TEST(Heat, ASampleWithoutAreaSpoilsNothing) {
         ++seen;
     }
     EXPECT_GT(seen, 50);
+}
+
+TEST(Heat, IsTheSameOnOneAndTwoThreads) {
+    const auto all = [](const Vec3&) { return false; };
+    set_threads(1);
+    const std::vector<float> one = rise(all);
+    set_threads(2);
+    const std::vector<float> two = rise(all);
+    set_threads(0);
+    EXPECT_EQ(one, two);
 }
 
 }  // namespace

@@ -132,14 +132,22 @@ class GapMap {
     /// Calls visit(position, MPa) for the pressure at each sample, where there is some.
     template <class Visit>
     void for_pressed(const DisplacedPressure& pressure, Visit visit) const {
+        const auto visit_block = [&visit](std::size_t first, const float* values) {
+            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
+                if (values[lane] > 0.0f) visit(first + lane, values[lane]);
+        };
+        for_pressed_blocks(pressure, visit_block, visit);
+    }
+    /// The same, with visit_block(first position, values) for the positions of a whole block, some
+    /// of which have none.
+    template <class VisitBlock, class Visit>
+    void for_pressed_blocks(const DisplacedPressure& pressure, VisitBlock visit_block,
+                            Visit visit) const {
         tabulate(pressure.pressure, 1.0);
         float values[kBlockLanes];
         for (std::size_t k = 0; k < placed_count_; ++k) {
-            if (!interpolate(placed_[k], table_.data(), 0.0f, values)) continue;
-            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-                if (values[lane] > 0.0f)
-                    visit(std::size_t{placed_[k].block} * kBlockLanes + lane, values[lane]);
-            }
+            if (interpolate(placed_[k], table_.data(), 0.0f, values))
+                visit_block(std::size_t{placed_[k].block} * kBlockLanes, values);
         }
         for (const Footprint& f : footprints_) {
             if (!f.nearest || !(f.inside > 0.0f)) continue;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "beltgrinding/heat.h"
+#include "heat/heat_patch.h"
 #include "heat/thermal_nodes.h"
 
 namespace beltgrinding {
@@ -39,53 +41,76 @@ class Conduction {
     const HeatState& settle();
 
   private:
-    /// Some nodes and the ways between them.
-    struct Patch {
-        std::vector<std::uint32_t> nodes;             // ascending
-        std::vector<std::uint32_t> first, neighbour;  // the latter: numbers in `nodes`
-        // What a K of difference does: 1/s, or 1 if for an interval of the way's own.
-        std::vector<float> rate;
-        std::vector<float> mean_rate;  // of the first mode, by the sections' thickness
-        double most = 0.0;             // greatest sum of a node's rates
+    static constexpr std::size_t kSpans = 5;  // of a sweep's time
+    static constexpr std::uint8_t kOutside = 255;
+    using Row = DepthModes::Row;
+    /// What the modes do in some time.
+    struct Factors {
+        double duration = -1.0;  // s
+        Row decay{}, gain{};     // the latter: K of a flux of 1 N/(mm s) and a weight of 1 / mm
     };
-    /// Fills `patch.nodes`' ways; interval(node, node) is a factor on each, 0: no way.
-    template <class Interval>
-    void join(Patch& patch, Interval interval);
-    void conduct(const Patch& patch, double duration);
-    void decay(std::uint32_t node, double duration);
-    void set_duration(double duration);
+
+    const Factors& factors(double duration);
     void heat(double duration);
+    float flux(std::uint32_t node) const;
+    void inject(const Row& gain);
+    void forget_direct();
     bool zone_holds() const;
     void make_zone();
-    /// Brings those to `now` that are due, all of the zone and of `must`, or `everything`; a way is
-    /// conducted through for the time since one of its ends was due, so that nothing is lost.
-    void sweep(double now, std::span<const std::uint32_t> must, bool everything);
-    void set_levels(double now);
-    /// The zone is given up, and what is due brought to the state's time.
-    void catch_up();
+    void find_zone(std::vector<std::uint32_t>& beside);
+    void join_zone();
+    /// What is beyond the zone goes back to the state, with what flowed there; and comes from it.
+    void put_beyond_back();
+    void take_beyond();
+    /// All goes back to the state.
     void leave_zone();
-    void note_peaks(std::span<const std::uint32_t> nodes, bool heated);
+    /// Brings those outside the zone to `now` that are due, all round it and of `must`, or
+    /// `everything`. A way is conducted through for the time since one of its ends was due, so
+    /// that nothing is lost.
+    void sweep(double now, std::span<const std::uint32_t> must, bool everything);
+    void find_due(double now, std::span<const std::uint32_t> must, bool everything);
+    void find_beside(double now);
+    double span_length(std::size_t span) const;
+    void divide(double now);
+    void conduct(HeatPatch& patch);
+    std::uint8_t level_of(std::uint32_t node, double now) const;
+    /// What is due is brought to the state's time; the zone is given up.
+    void catch_up();
+    bool in_zone(std::uint32_t node) const { return ring_[node] != kOutside; }
+    void note_peak(std::uint32_t node, float rise);
 
     const ThermalNodes& nodes_;
     int rings_;
     HeatMaterial material_;
     double diffusivity_;  // mm2/s
-    double longest_;      // s, that a zone is kept, or a step takes
+    double unit_;         // s, of the sweeps' intervals
     HeatState state_;
-    std::vector<double> power_;           // N mm/s, by node
-    std::vector<std::uint32_t> powered_;  // those with some
-    Patch zone_, swept_;
-    std::vector<std::uint8_t> ring_;    // by node: from the heat; kOutside: not in the zone
-    std::vector<std::uint32_t> place_;  // by node: in the patch that is being made
-    std::vector<float> direct_;         // K, by node: what is faster than the modes
-    std::vector<float> rows_[3];        // K, of a patch
-    DepthModes::Row decay_{}, gain_{};  // after a `duration_` s
-    double duration_ = -1.0;
-    std::vector<std::uint8_t> level_;  // by node: swept every longest_ times 2^level s
-    int sweeps_ = 0;
-    std::vector<std::uint8_t> due_;  // by node: in the sweep
-    double zone_time_;               // s: what the zone is brought to
-    double zone_made_;               // s: when
+    std::vector<float> rate_, mean_rate_;  // 1/s, of all ways, as in `HeatPatch`
+    std::vector<double> power_;            // N mm/s, by node
+    std::vector<std::uint32_t> powered_;   // those with some
+
+    HeatPatch zone_;
+    std::vector<float> zone_rows_,
+        zone_sums_;                        // K, of the zone, then beyond, then what flowed there
+    std::vector<std::uint32_t> beyond_;    // neighbours of the zone's, outside
+    std::vector<std::uint32_t> thin_;      // of the zone's: with a node on the other side
+    std::vector<std::uint32_t> heated_;    // that heat flowed into last, from either side
+    std::vector<std::uint8_t> ring_;       // by node: from the heat; kOutside: not in the zone
+    std::vector<std::uint8_t> next_ring_;  // the same of the zone that is being made
+    std::vector<std::uint32_t> place_;     // by node: in the zone
+    std::vector<float> direct_;            // K, by node: what is faster than the modes
+    double zone_time_;                     // s: what all outside the zone and it is brought to
+
+    std::vector<std::uint8_t> level_;     // by node: swept every unit_ times 2^level s
+    std::vector<std::uint8_t> due_;       // by node: kDue or kBeside in the sweep
+    std::vector<std::uint8_t> fast_;      // by node of the sweep: has more than the slow modes
+    std::vector<std::uint32_t> touched_;  // nodes of the sweep
+    std::vector<std::uint32_t> there_;    // by node: in the patch that is being made
+    std::array<HeatPatch, kSpans> swept_;
+    std::vector<float> rows_, sums_;  // K, of a patch
+    double last_sweep_;               // s: when
+    RowConductor conductor_;
+    std::array<Factors, 64> known_;  // by their duration
     double hottest_ = 0.0;
     std::uint32_t hottest_node_ = 0;
 };

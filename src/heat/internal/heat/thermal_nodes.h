@@ -26,6 +26,7 @@ struct ThermalNodes {
     std::vector<std::uint32_t> first;        ///< (nodes + 1), of `neighbour` and `conductance`
     std::vector<std::uint32_t> neighbour;    ///< ascending for each
     std::vector<float> conductance;          ///< length of the common border over the distance
+    double dispersion = 0.0;                 ///< mm2: see `make_thermal_nodes`
     std::vector<float> thickness;            ///< mm, of the section; infinite: a half-space
     std::vector<std::uint32_t> opposite;     ///< node on the section's other side, or kNone
     std::vector<DepthModes::Weights> own;    ///< of each thickness
@@ -35,7 +36,9 @@ struct ThermalNodes {
     std::size_t bytes() const;
 };
 
-/// Chooses the nodes in the order of the samples; all are half-spaces.
+/// Chooses the nodes in the order of the samples; all are half-spaces. Waves of the wave number k
+/// are conducted by 1 - k^2 `dispersion` of what they should be, in the mean over directions and
+/// nodes.
 ThermalNodes make_thermal_nodes(const HeightField& field, double spacing);
 
 /// Gives the sections their thickness (mm, by node; NaN: a half-space), and finds the other sides.

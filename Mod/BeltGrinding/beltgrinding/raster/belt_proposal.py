@@ -77,12 +77,13 @@ def _unfit(clearing, job, frames, areas, width=None):
         job["belt_machine"]["free_run"]["width_mm"] = width
         clearing = clearing.with_wheel(job)
     fits = clearing.fits_upright(frames)
-    left = frames[~fits, :3, 3]
-    if not len(left):
-        return 0.0
-    apart = 2.0 * math.sqrt(np.median(areas))
-    under = clearing.tool.under(left, frames[fits], apart, OFF * clearing.tool.width)
-    return float(areas[~fits][~under].sum() / max(areas.sum(), 1e-12))
+    left, there = frames[~fits, :3, 3], frames[fits]
+    way = left[:, None] - there[None, :, :3, 3]
+    along, across, off = (abs(np.einsum("nkx,kx->nk", way, there[:, :3, k])) for k in range(3))
+    apart, half = math.sqrt(np.median(areas)), 0.5 * clearing.tool.width
+    # A place stands for all that is nearer to it than to the next.
+    reached = (along <= 2.0 * apart) & (across <= half + 0.5 * apart) & (off <= 2.0 * OFF * half)
+    return float(areas[~fits][~reached.any(axis=1)].sum() / max(areas.sum(), 1e-12))
 
 
 def _does_not_fit(job, clearing, standing, look):

@@ -84,7 +84,7 @@ def propose(job, context=None):
         force = machine["force_N"] = _round(force)
         laid = raster(job, settings, context)
         feed = _feed(job, settings, laid, allowance)
-        if not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]:
+        if _ground_share(laid) > 0.0 and not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]:
             notes.append(
                 core.Fact(
                     "raster.proposed_feed",

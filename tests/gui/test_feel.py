@@ -295,8 +295,9 @@ told, painted = [], []
 progress = simulation_panel.SimulationPanel.progress
 def tell(self, share):
     painted.clear()
+    now = time.monotonic()  # painting takes its time, more or less
     progress(self, share)
-    told.append((time.monotonic(), list(painted), self.bar.value()))
+    told.append((now, list(painted), self.bar.value()))
 patch(simulation_panel.SimulationPanel, "progress", tell)
 class Look(QtCore.QObject):
     def eventFilter(self, widget, event):

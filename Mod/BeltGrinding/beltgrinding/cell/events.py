@@ -4,6 +4,7 @@ The kinds stand in the core (src/events/event_kinds.cpp); events.schema.json is 
 """
 
 from ..base import schemas
+from ..base.messages import fact_data
 from ..engine import InputError, core
 
 SEVERITIES = ("error", "warning", "info")  # the worst first
@@ -28,6 +29,29 @@ NOTHING = {
 def kinds():
     """{code: dict(severity, unit, meaning, advice)} in the order of the manual."""
     return {kind.pop("code"): kind for kind in core.event_kinds()}
+
+
+def momentary(kind, code, facts, *, time, pose, line, value=0.0, limit=None, point=None, face=None):
+    """An event without a duration that is found after a run, as the core gives those that it finds, but for its program.
+    ``kind``: of ``kinds``; ``facts``: core.Fact, one after the other."""
+    return {
+        "kind": code,
+        "severity": kind["severity"],
+        "pose": pose,
+        "line": line,
+        "time": time,
+        "duration": 0.0,
+        "worst_time": time,
+        "value": value,
+        "limit": limit,
+        "unit": kind["unit"],
+        "point": point,
+        "face": face,
+        "bodies": [],
+        "message": "; ".join(str(fact) for fact in facts),
+        "facts": [fact_data(fact) for fact in facts],
+        "advice": kind["advice"],
+    }
 
 
 def schema():

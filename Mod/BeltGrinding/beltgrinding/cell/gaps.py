@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ..base.messages import fact_data
 from ..engine import core
-from .events import kinds
+from .events import kinds, momentary
 
 
 def events(path, gaps):
@@ -23,25 +22,15 @@ def events(path, gaps):
             first=first,
             last=line,
         )
-        time = float(times[pose])
         found.append(
-            {
-                "kind": "program_gap",
-                "severity": kind["severity"],
-                "pose": pose,
-                "line": line,
-                "time": time,
-                "duration": 0.0,
-                "worst_time": time,
-                "value": 0.0,
-                "limit": None,
-                "unit": kind["unit"],
-                "point": contacts[pose, :3, 3].tolist(),
-                "face": None,
-                "bodies": [],
-                "message": str(fact),
-                "facts": [fact_data(fact)],
-                "advice": kind["advice"],
-            }
+            momentary(
+                kind,
+                "program_gap",
+                [fact],
+                time=float(times[pose]),
+                pose=pose,
+                line=line,
+                point=contacts[pose, :3, 3].tolist(),
+            )
         )
     return found

@@ -2,9 +2,8 @@
 the same.
 """
 
-from ..base.messages import fact_data
 from ..cell import motions as ways
-from ..cell.events import kinds
+from ..cell.events import kinds, momentary
 from ..engine import core
 from . import finish_zones
 from .finish import SEEN, rest_per_pass
@@ -94,26 +93,19 @@ def _event(known, motions, code, value, limit, place, facts):
     else:
         program, pose = int(motions["program"][motion]), int(motions["pose"][motion])
         line, time = int(motions["line"][motion]), ways.time_at(motions, motion, place["point_mm"])
-    time = round(time, DIGITS)
-    return {
-        "program": program,
-        "kind": code,
-        "severity": kind["severity"],
-        "pose": pose,
-        "line": line,
-        "time": time,
-        "duration": 0.0,
-        "worst_time": time,
-        "value": float(value),
-        "limit": float(limit),
-        "unit": kind["unit"],
-        "point": place and place["point_mm"],
-        "face": place and place["face"],
-        "bodies": [],
-        "message": "; ".join(str(fact) for fact in facts),
-        "facts": [fact_data(fact) for fact in facts],
-        "advice": kind["advice"],
-    }
+    event = momentary(
+        kind,
+        code,
+        facts,
+        time=round(time, DIGITS),
+        pose=pose,
+        line=line,
+        value=float(value),
+        limit=float(limit),
+        point=place and place["point_mm"],
+        face=place and place["face"],
+    )
+    return {"program": program, **event}
 
 
 def _of_roughness(job, zone, acceptance, judged, asked):

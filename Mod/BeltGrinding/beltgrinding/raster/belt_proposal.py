@@ -57,11 +57,12 @@ def direction(job, shape, field, along, look, notes, context):
     if np.linalg.norm(mean) > LEAST_LOOKS and np.linalg.norm(square) > 0.1:
         ways.append(np.round(square / np.linalg.norm(square), 4) + 0.0)
     clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
-    unfit = [_unfit(clearing, job, *look["standing"](field, way)) for way in ways]
+    standing = [look["standing"](field, way) for way in ways]
+    unfit = [_unfit(clearing, job, *places) for places in standing]
     good = [k for k in range(len(ways)) if unfit[k] <= min(unfit) + look["as_good"]]
     best = min(good, key=lambda k: _bent(*look["bends"](ways[k])))
     if unfit[best] > look["unfit"]:
-        notes.append(_does_not_fit(job, clearing, look["standing"](field, ways[best]), look))
+        notes.append(_does_not_fit(job, clearing, standing[best], unfit[best], look))
     return ways[best]
 
 
@@ -77,6 +78,8 @@ def _unfit(clearing, job, frames, areas, width=None):
         job["belt_machine"]["free_run"]["width_mm"] = width
         clearing = clearing.with_wheel(job)
     fits = clearing.fits_upright(frames)
+    if fits.all():
+        return 0.0
     left, there = frames[~fits, :3, 3], frames[fits]
     way = left[:, None] - there[None, :, :3, 3]
     along, across, off = (abs(np.einsum("nkx,kx->nk", way, there[:, :3, k])) for k in range(3))
@@ -86,10 +89,9 @@ def _unfit(clearing, job, frames, areas, width=None):
     return float(areas[~fits][~reached.any(axis=1)].sum() / max(areas.sum(), 1e-12))
 
 
-def _does_not_fit(job, clearing, standing, look):
-    """Fact: on how much the belt does not fit, and the widest that does, or of those the best."""
+def _does_not_fit(job, clearing, standing, share, look):
+    """Fact: to what ``share`` of the area the belt does not get, and the widest that does, or of those the best."""
     width = job["belt_machine"]["free_run"]["width_mm"]
-    share = _unfit(clearing, job, *standing)
     tried = {}
     for one in sorted((w for w in look["widths"] if w < width), reverse=True):
         tried[one] = _unfit(clearing, job, *standing, one)

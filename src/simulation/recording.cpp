@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "base/parallel.h"
 #include "beltgrinding/error.h"
 
 namespace beltgrinding {
@@ -49,30 +51,6 @@ class Latest {
 
 }  // namespace
 
-std::size_t ChangeLog::bytes() const {
-    return runs_.size() * sizeof(Run) + height_.size() * sizeof(float) + ends_.size() * sizeof(End);
-}
-
-void ChangeLog::append(const ChangeLog& other, std::size_t from) {
-    const End before = other.begin(from);
-    const std::size_t runs = runs_.size(), heights = height_.size();
-    const auto since = [](const auto& all, std::size_t first) {
-        return all.begin() + static_cast<std::ptrdiff_t>(first);
-    };
-    runs_.insert(runs_.end(), since(other.runs_, before.run), other.runs_.end());
-    height_.insert(height_.end(), since(other.height_, before.height), other.height_.end());
-    for (std::size_t block = from; block < other.blocks(); ++block) {
-        const End& end = other.ends_[block];
-        ends_.push_back({end.run - before.run + runs, end.height - before.height + heights});
-    }
-}
-
-void ChangeLog::shrink_to_fit() {
-    runs_.shrink_to_fit();
-    height_.shrink_to_fit();
-    ends_.shrink_to_fit();
-}
-
 Recording::Recording(std::size_t max_bytes) : max_bytes_(max_bytes) {
     clear();
 }
@@ -82,7 +60,6 @@ void Recording::clear() {
     order_.clear();
     log_ = keys_ = {};
     key_end_.clear();
-    open_changes_ = 0;
     times_.assign(1, 0.0);
     steps_.assign(1, 0);
     stride_ = 1;
@@ -126,7 +103,7 @@ void Recording::add_step(const SampleBlocks& blocks, std::span<const SampleBlock
 void Recording::end(const SampleBlocks& blocks) {
     if (pending_steps_ > 0) close_frame(blocks);
     log_.shrink_to_fit();
-    keys_.shrink_to_fit();
+    make_key_frames();
 }
 
 void Recording::close_frame(const SampleBlocks& blocks) {
@@ -134,10 +111,16 @@ void Recording::close_frame(const SampleBlocks& blocks) {
     log_.begin_block();
     for (const std::uint32_t number : pending_blocks_) {
         const auto& height = blocks.block(number).height;
-        for (std::uint64_t lanes = pending_[number]; lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            log_.add(number * SampleBlocks::kLanes + static_cast<std::uint32_t>(lane),
-                     static_cast<float>(height[static_cast<std::size_t>(lane)]));
+        std::size_t lane = 0;
+        for (std::uint64_t lanes = pending_[number]; lanes != 0;) {
+            const auto skipped = static_cast<std::size_t>(std::countr_zero(lanes));
+            lanes >>= skipped;
+            lane += skipped;
+            const auto count = static_cast<std::size_t>(std::countr_one(lanes));
+            log_.add(static_cast<std::uint32_t>(number * SampleBlocks::kLanes + lane),
+                     std::span(height).subspan(lane, count));
+            lanes = count < SampleBlocks::kLanes ? lanes >> count : 0;
+            lane += count;
         }
         pending_[number] = 0;
     }
@@ -146,11 +129,7 @@ void Recording::close_frame(const SampleBlocks& blocks) {
     steps_.push_back(static_cast<std::uint32_t>(total_steps_));
     pending_blocks_.clear();
     pending_steps_ = 0;
-    if (log_.bytes() > max_bytes_ && last() > 1) {
-        halve();
-    } else {
-        count_frame(last());
-    }
+    if (log_.bytes() > max_bytes_ && last() > 1) halve();
 }
 
 void Recording::Part::append(const Part& next) {
@@ -178,7 +157,6 @@ Recording::Part Recording::part_since(std::size_t frames, std::size_t stride) co
     part.whole = stride != stride_;
     const std::size_t from = part.whole ? 0 : frames;
     part.log.append(log_, from);
-    part.log.shrink_to_fit();
     const auto after = static_cast<std::ptrdiff_t>(from + 1);  // the time of no frame is the first
     part.times.assign(times_.begin() + after, times_.end());
     part.steps.assign(steps_.begin() + after, steps_.end());
@@ -214,29 +192,32 @@ void Recording::restore(const SampleBlocks& blocks, std::span<const Part* const>
         pending_blocks_.push_back(block);
         pending_[block] = lanes;
     }
-    count_frames();
-}
-
-void Recording::count_frames() {
     keys_ = {};
     key_end_.clear();
-    open_changes_ = 0;
-    for (std::size_t frame = 1; frame <= last(); ++frame) count_frame(frame);
 }
 
-void Recording::count_frame(std::size_t frame) {
-    open_changes_ += log_.changes(frame - 1);
-    if (open_changes_ >= kKeyFrameChanges) close_key_frame(frame);
-}
-
-void Recording::close_key_frame(std::size_t frame) {
-    Latest latest(samples());
-    for (std::size_t k = key_end_.empty() ? 0 : key_end_.back(); k < frame; ++k) {
-        log_.visit(k, [&](std::uint32_t s, float h) { latest.set(s, h); });
+void Recording::make_key_frames() {
+    std::size_t begun = key_end_.empty() ? 0 : key_end_.back();
+    const std::size_t made = key_end_.size();
+    std::size_t changes = 0;
+    std::vector<std::size_t> begins;
+    for (std::size_t frame = begun; frame < last(); ++frame) {
+        changes += log_.changes(frame);
+        if (changes < kKeyFrameChanges) continue;
+        begins.push_back(begun);
+        begun = frame + 1;
+        key_end_.push_back(static_cast<std::uint32_t>(begun));
+        changes = 0;
     }
-    latest.take(keys_);
-    key_end_.push_back(static_cast<std::uint32_t>(frame));
-    open_changes_ = 0;
+    std::vector<ChangeLog> keys(begins.size());
+    parallel_blocks(keys.size(), 1, {}, [&](std::size_t key, std::size_t) {
+        Latest latest(samples());
+        for (std::size_t frame = begins[key]; frame < key_end_[made + key]; ++frame)
+            log_.visit(frame, [&](std::uint32_t s, float h) { latest.set(s, h); });
+        latest.take(keys[key]);
+        keys[key].shrink_to_fit();
+    });
+    for (const ChangeLog& key : keys) keys_.append(key);
 }
 
 void Recording::halve() {
@@ -249,6 +230,7 @@ void Recording::halve() {
         for (std::size_t i = k; i < next; ++i) {
             log_.visit(i, [&](std::uint32_t s, float h) { latest.set(s, h); });
         }
+        log_.forget_before(next);
         latest.take(log);
         times.push_back(times_[next]);
         steps.push_back(steps_[next]);
@@ -257,7 +239,8 @@ void Recording::halve() {
     times_ = std::move(times);
     steps_ = std::move(steps);
     stride_ *= 2;
-    count_frames();
+    keys_ = {};
+    key_end_.clear();
 }
 
 std::size_t Recording::frame_at(double time) const {

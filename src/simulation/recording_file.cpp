@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "beltgrinding/error.h"
 #include "heightfield/hdf5_io.h"
@@ -24,24 +27,42 @@ Fact within(const std::string& path) {
 
 /// The only one that sees a recording's arrays. Key frames are no part of the file: they follow.
 struct RecordingFile {
-    template <class Log, class Visit>
-    static void each_array(Log& r, Visit&& visit) {
-        static_assert(sizeof(ChangeLog::Run) == 2 * sizeof(std::uint32_t));
-        static_assert(sizeof(ChangeLog::End) == 2 * sizeof(std::uint64_t));
+    static_assert(sizeof(ChangeLog::Run) == 2 * sizeof(std::uint32_t));
+    static_assert(sizeof(ChangeLog::End) == 2 * sizeof(std::uint64_t));
+
+    /// Calls visit(name, data, their type, values in a row) for all arrays.
+    template <class Record, class Log, class Visit>
+    static void each_array(Record& r, Log& log, Visit&& visit) {
         visit("start_height", r.start_, H5T_NATIVE_FLOAT, hsize_t{1});
-        visit("run", r.log_.runs_, H5T_NATIVE_UINT32, hsize_t{2});
-        visit("height", r.log_.height_, H5T_NATIVE_FLOAT, hsize_t{1});
-        visit("frame_end", r.log_.ends_, H5T_NATIVE_UINT64, hsize_t{2});
+        visit("run", log.runs, H5T_NATIVE_UINT32, hsize_t{2});
+        visit("height", log.height, H5T_NATIVE_FLOAT, hsize_t{1});
+        visit("frame_end", log.ends, H5T_NATIVE_UINT64, hsize_t{2});
         visit("time", r.times_, H5T_NATIVE_DOUBLE, hsize_t{1});
         visit("steps", r.steps_, H5T_NATIVE_UINT32, hsize_t{1});
     }
+
+    /// The pieces of a log, as they follow one another.
+    struct Pieces {
+        std::vector<std::span<const ChangeLog::Run>> runs;
+        std::vector<std::span<const float>> height;
+        std::vector<ChangeLog::End> ends;
+        explicit Pieces(const ChangeLog& log) {
+            log.for_pieces([&](auto some_runs, auto heights, auto some_ends, auto before) {
+                runs.push_back(some_runs);
+                height.push_back(heights);
+                for (const ChangeLog::End& end : some_ends)
+                    ends.push_back({before.run + end.run, before.height + end.height});
+            });
+        }
+    };
 
     static void write(const Recording& r, hid_t file, const std::string& attributes) {
         write_scalar(file, "recording_format", H5T_NATIVE_INT, &kFormat);
         write_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
         const auto stride = static_cast<std::uint64_t>(r.stride_);
         write_scalar(file, "steps_per_frame", H5T_NATIVE_UINT64, &stride);
-        each_array(r, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
+        const Pieces log(r.log_);
+        each_array(r, log, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
             write_array(file, name, data, type, row);
         });
         write_array(file, kOrder, r.order_, H5T_NATIVE_UINT32, 1);
@@ -55,20 +76,21 @@ struct RecordingFile {
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
         read_scalar(file, "steps_per_frame", H5T_NATIVE_UINT64, &stride);
         r.stride_ = static_cast<std::size_t>(stride);
-        each_array(r, [&](const char* name, auto& data, hid_t type, hsize_t row) {
+        ChangeLog::Arrays log;
+        each_array(r, log, [&](const char* name, auto& data, hid_t type, hsize_t row) {
             read_array(file, name, data, type, row);
         });
         if (H5Lexists(file, kOrder, H5P_DEFAULT) > 0)
             read_array(file, kOrder, r.order_, H5T_NATIVE_UINT32, 1);
-        check(r);
-        for (std::size_t frame = 1; frame <= r.last(); ++frame) r.count_frame(frame);
+        check(r, log);
+        r.log_ = ChangeLog(std::move(log));
+        r.make_key_frames();
         r.total_steps_ = r.steps_.back();
         if (attributes != nullptr) *attributes = read_text(file, "attributes");
         return r;
     }
 
-    static void check(const Recording& r) {
-        const ChangeLog& log = r.log_;
+    static void check(const Recording& r, const ChangeLog::Arrays& log) {
         std::vector<bool> there(r.order_.size(), false);
         for (const std::uint32_t sample : r.order_) {
             require(sample < there.size() && !there[sample], "recording.order",
@@ -79,7 +101,7 @@ struct RecordingFile {
                 "has samples in no order");
         require(r.stride_ > 0 && std::isfinite(r.duration_), "recording.no_duration",
                 "has no duration");
-        require(r.times_.size() == log.blocks() + 1 && r.steps_.size() == log.blocks() + 1 &&
+        require(r.times_.size() == log.ends.size() + 1 && r.steps_.size() == log.ends.size() + 1 &&
                     r.times_[0] == 0.0 && r.steps_[0] == 0 &&
                     std::all_of(r.times_.begin(), r.times_.end(),
                                 [](double t) { return std::isfinite(t); }) &&
@@ -87,23 +109,23 @@ struct RecordingFile {
                     std::is_sorted(r.steps_.begin(), r.steps_.end()),
                 "recording.no_time", "has frames without a time");
         std::size_t run = 0, height = 0;
-        for (const ChangeLog::End& end : log.ends_) {
-            require(end.run >= run && end.run <= log.runs_.size(), "recording.cut_off",
+        for (const ChangeLog::End& end : log.ends) {
+            require(end.run >= run && end.run <= log.runs.size(), "recording.cut_off",
                     "has a frame that is cut off");
             for (; run < end.run; ++run) {
-                const ChangeLog::Run& r0 = log.runs_[run];
+                const ChangeLog::Run& r0 = log.runs[run];
                 require(std::uint64_t{r0.first} + r0.count <= r.start_.size(),
                         "recording.no_such_sample", "names a sample that is not there");
                 height += r0.count;
             }
-            require(end.height == height && height <= log.height_.size(), "recording.cut_off",
+            require(end.height == height && height <= log.height.size(), "recording.cut_off",
                     "has a frame that is cut off");
         }
-        require(run == log.runs_.size() && height == log.height_.size(), "recording.no_frame",
+        require(run == log.runs.size() && height == log.height.size(), "recording.no_frame",
                 "has heights of no frame");
         const auto finite = [](float h) { return std::isfinite(h); };
         require(std::all_of(r.start_.begin(), r.start_.end(), finite) &&
-                    std::all_of(log.height_.begin(), log.height_.end(), finite),
+                    std::all_of(log.height.begin(), log.height.end(), finite),
                 "recording.height", "has a height that is not finite");
     }
 };

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -107,6 +108,26 @@ inline void write_array(hid_t file, const char* name, const std::vector<T>& data
     if (!data.empty()) {
         require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
                 "hdf5.not_writable", "cannot write it");
+    }
+}
+
+/// The same of arrays that follow one another.
+template <class T>
+inline void write_array(hid_t file, const char* name, const std::vector<std::span<const T>>& parts,
+                        hid_t type, hsize_t row) {
+    hsize_t rows = 0;
+    for (const auto& part : parts) rows += part.size();
+    const Handle set = create_array(file, name, type, rows, row);
+    const Handle space(H5Dget_space(set), H5Sclose);
+    hsize_t start[2] = {0, 0};
+    for (const auto& part : parts) {
+        if (part.empty()) continue;
+        const hsize_t count[2] = {part.size(), row};
+        const Handle memory(H5Screate_simple(row == 1 ? 1 : 2, count, nullptr), H5Sclose);
+        require(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
+                    H5Dwrite(set, type, memory, space, H5P_DEFAULT, part.data()) >= 0,
+                "hdf5.not_writable", "cannot write it");
+        start[0] += count[0];
     }
 }
 

@@ -10,59 +10,9 @@
 
 #include "beltgrinding/height_field.h"
 #include "heightfield/sample_blocks.h"
+#include "simulation/change_log.h"
 
 namespace beltgrinding {
-
-/// Blocks of changed samples with their new heights. Neighbouring samples make a run, so that a
-/// change costs little more than the four bytes of its height.
-class ChangeLog {
-  public:
-    struct Run {
-        std::uint32_t first;  ///< sample
-        std::uint32_t count;
-    };
-    std::size_t blocks() const { return ends_.size(); }
-    std::size_t changes() const { return height_.size(); }
-    std::size_t changes(std::size_t block) const { return end(block).height - begin(block).height; }
-    std::size_t bytes() const;
-    void shrink_to_fit();
-    /// Begins a block, which `add` fills by ascending samples.
-    void begin_block() { open_run_ = runs_.size(); }
-    void add(std::uint32_t sample, float height) {
-        if (runs_.size() > open_run_ && runs_.back().first + runs_.back().count == sample) {
-            ++runs_.back().count;
-        } else {
-            runs_.push_back({sample, 1});
-        }
-        height_.push_back(height);
-    }
-    void end_block() { ends_.push_back({runs_.size(), height_.size()}); }
-    /// Adds the blocks of another from its block number `from` on.
-    void append(const ChangeLog& other, std::size_t from = 0);
-    /// Calls visit(sample, height) for the changes of a block, in ascending order.
-    template <class Visit>
-    void visit(std::size_t block, Visit&& visit) const {
-        std::size_t h = begin(block).height;
-        for (std::size_t r = begin(block).run; r < ends_[block].run; ++r) {
-            for (std::uint32_t k = 0; k < runs_[r].count; ++k) {
-                visit(runs_[r].first + k, height_[h++]);
-            }
-        }
-    }
-
-  private:
-    friend struct RecordingFile;
-    struct End {
-        std::size_t run = 0, height = 0;
-    };
-    End begin(std::size_t block) const { return block == 0 ? End{} : ends_[block - 1]; }
-    End end(std::size_t block) const { return ends_[block]; }
-
-    std::vector<Run> runs_;
-    std::vector<float> height_;
-    std::vector<End> ends_;
-    std::size_t open_run_ = 0;
-};
 
 /// What a simulation did to the heights, step by step, to be played forwards and backwards. It
 /// keeps the samples that changed, never whole fields: *frame* k is the state after the k-th block
@@ -149,9 +99,8 @@ class Recording {
     std::uint32_t sample_at(std::uint32_t position) const {
         return order_.empty() ? position : order_[position];
     }
-    void count_frame(std::size_t frame);
-    void count_frames();
-    void close_key_frame(std::size_t frame);
+    /// Key frames of the frames that have none yet.
+    void make_key_frames();
     void halve();
     void check_frame(std::size_t frame) const;
     template <class Visit>
@@ -162,7 +111,6 @@ class Recording {
     std::vector<std::uint32_t> order_;    // samples by position; empty: as they are numbered
     ChangeLog log_, keys_;                // by position
     std::vector<std::uint32_t> key_end_;  // frame of each key frame
-    std::size_t open_changes_ = 0;        // since the last key frame
     std::vector<double> times_;
     std::vector<std::uint32_t> steps_;
     std::size_t stride_ = 1;

@@ -330,6 +330,32 @@ def test_without_a_folder_nothing_is_kept():
     assert beltgrinding.study(study_of([20.0]), workers=0).reused == 0
 
 
+KINDS = ["contact_wheel", "free_belt", "platen"]
+
+
+def test_a_kind_of_belt_machine_brings_its_parts_with_it():
+    # Kinds ended in a fault: what the job's own kind has no need of was not there.
+    kind = {"name": "kind", "key": "belt_machine.kind", "values": KINDS}
+    tension = {"key": "belt_machine.free_run.tension_N_per_mm", "how": "multiply", "values": [2.0]}
+    given = {**study_of(), "vary": [kind]}
+    found = making.study(given, workers=0)
+    assert found.table["status"].tolist() == ["done"] * 3
+    assert len(set(found.table["removed_volume_mm3"].tolist())) == 3
+    prepared = making.prepare(making.validate(given))
+    for run, name in zip(prepared.runs, KINDS):
+        job = quick_job()
+        job["belt_machine"]["kind"] = name
+        assert prepared.job(run) == jobs.validate(job)
+    kind["values"] = ["free_belt"]
+    twice = making.prepare(making.validate({**given, "vary": [kind, tension]}))
+    usual = jobs.validate({**quick_job(), "belt_machine": {"kind": "free_belt"}})
+    tensions = [
+        job["belt_machine"]["free_run"]["tension_N_per_mm"]
+        for job in (twice.job(twice.runs[0]), usual)
+    ]
+    assert tensions[0] == 2.0 * tensions[1] > 0.0
+
+
 # Runs that fail ----------------------------------------------------------------------------------------
 
 

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base import frames
+from ..base import frames, schemas
 from ..engine import InputError
+from ..job import load as jobs, machine
 from . import table
 from .keys import Key
 
@@ -138,7 +139,8 @@ def _check_twice(found):
 
 def job_of(job, found, values, placement):
     """The job of a run: a copy of a validated ``job``, which shares with it what does not vary. ``found``: [Variable];
-    ``values``: theirs, in order; ``placement``: as in the study. Keys are set before they are added to and multiplied.
+    ``values``: theirs, in order; ``placement``: as in the study. Keys are set, with the defaults of what they call for, before
+    they are added to and multiplied.
     Raises InputError naming the key."""
     places = {PLACEMENT: {}, STOCK_PLACEMENT: {}}
     for turn in ("set", "add", "multiply"):
@@ -150,10 +152,23 @@ def job_of(job, found, values, placement):
             else:
                 kind, _, axis = one.key.partition(".")
                 places[kind][axis] = float(value)
+        if turn == "set":
+            job = _filled(job, {one.key.steps[0] for one in found if isinstance(one.key, Key)})
     if any(places[PLACEMENT].values()):
         job = _misplaced(job, places[PLACEMENT], placement)
     if any(places[STOCK_PLACEMENT].values()):
         job = _stock_misplaced(job, places[STOCK_PLACEMENT], placement)
+    return job
+
+
+def _filled(job, sections):
+    """Defaults of what the job had no need of before: parts of another kind of belt machine, a part of which a value was
+    set alone. ``sections``: those that were changed."""
+    rules = jobs.schema()["properties"]
+    for name in sections & {key for key, rule in rules.items() if rule.get("type") == "object"}:
+        job = {**job, name: schemas.filled(job[name], rules[name])}
+    if "belt_machine" in sections:
+        machine.filled(job["belt_machine"], rules["belt_machine"])
     return job
 
 

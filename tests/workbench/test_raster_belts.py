@@ -139,7 +139,9 @@ def test_a_contact_that_goes_on_over_the_faces_border_is_told():
 
 def test_the_core_refuses_what_is_no_belt():
     with pytest.raises(ValueError, match="width"):
-        core.run_fit(100.0, 0.0, -1.0, 10.0, np.eye(4)[None], np.zeros((1, 3)))
+        core.run_fit({"kind": "free_belt", "width": -1.0}, 10.0, np.eye(4)[None], np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="room behind"):
+        core.run_fit({"kind": "free_belt"}, -1.0, np.eye(4)[None], np.zeros((1, 3)))
     with pytest.raises(ValueError):
         core.press_belt({"kind": "free_belt"}, math.nan, 0.0, force=10.0)
     with pytest.raises(ValueError):

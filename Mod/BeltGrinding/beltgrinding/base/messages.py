@@ -78,6 +78,14 @@ def body(name, language):
         return word("body.roller_behind", "roller behind the contact", language)
     if name == "platen":
         return word("body.platen", "platen", language)
+    if name == "belt_before":
+        return word("body.belt_before", "belt before the contact", language)
+    if name == "belt_behind":
+        return word("body.belt_behind", "belt behind the contact", language)
+    if name == "arms":
+        return word("body.arms", "arms of the belt machine", language)
+    if name == "fork":
+        return word("body.fork", "fork", language)
     if name == "robot foot":
         return word("body.robot_foot", "robot foot", language)
     if name.startswith("robot link "):

@@ -5460,6 +5460,10 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
         <source>Sides with arms</source>
         <translation>Seiten mit Armen</translation>
     </message>
+    <message>
+        <source>Chosen zone</source>
+        <translation>Gewählte Zone</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding_Belt</name>

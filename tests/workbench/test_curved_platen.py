@@ -21,7 +21,9 @@ RADIUS = 80.0
 
 
 def curved(radius=RADIUS, **machine):
-    return belt_job("platen", platen={"radius_mm": radius, "length_mm": 60, "layers": [LAYER]}, **machine)
+    return belt_job(
+        "platen", platen={"radius_mm": radius, "length_mm": 60, "layers": [LAYER]}, **machine
+    )
 
 
 def machine_of(job):
@@ -245,8 +247,12 @@ def test_a_free_belt_is_drawn_as_a_string_over_the_part():
     slope = math.tan(math.asin(sine) - math.atan2(25.0, 100.0))
     assert depth[1] / (x[1] - x[0]) == pytest.approx(slope, rel=0.05)
     # Beside the belt, or short of it, nothing presses.
-    assert pressed_belt.pushed(machine, pressed_belt.slab(points + [0, 60, 0], triangles, 7.5)) is None
-    assert pressed_belt.pushed(machine, pressed_belt.slab(points + [0, 0, 6], triangles, 7.5)) is None
+    assert (
+        pressed_belt.pushed(machine, pressed_belt.slab(points + [0, 60, 0], triangles, 7.5)) is None
+    )
+    assert (
+        pressed_belt.pushed(machine, pressed_belt.slab(points + [0, 0, 6], triangles, 7.5)) is None
+    )
     # A face without corners in the belt's width is seen where it crosses it.
     wide = np.array([[-20.0, -50, -1], [-20, 50, -1], [20, 50, -1], [20, -50, -1]])
     flat = np.array([[0, 1, 2], [0, 2, 3]])

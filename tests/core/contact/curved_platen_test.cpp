@@ -27,7 +27,8 @@ BeltMachine platen(double radius) {
 /// A hollow that the belt over the platen, or part of it, lies in with all its face.
 ContactProblem conformal(const BeltMachine& machine, double depth) {
     const BeltArc face = face_arc(machine);
-    ContactProblem problem = at_depth(kGrid, depth, [&](double x, double) { return -face.behind(x); });
+    ContactProblem problem =
+        at_depth(kGrid, depth, [&](double x, double) { return -face.behind(x); });
     problem.tolerance = 1e-3;
     return problem;
 }
@@ -124,7 +125,8 @@ TEST(CurvedPlaten, IsTheContactWheelOfItsRadius) {
         const auto from_axis = [&](double s, double) {
             const double angle = s / 60.2;
             double r = 60.2 / std::cos(angle);  // to the surface, by Newton's method
-            for (int k = 0; k < 20; ++k) r = (60.2 + below(r * std::sin(angle), 0.0)) / std::cos(angle);
+            for (int k = 0; k < 20; ++k)
+                r = (60.2 + below(r * std::sin(angle), 0.0)) / std::cos(angle);
             return r - 60.2;
         };
         ContactProblem seen = problem_of(kFine, from_axis);

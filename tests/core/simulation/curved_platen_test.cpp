@@ -114,8 +114,8 @@ TEST(CurvedPlatenSimulation, WhatStandsBehindThePlaneBesideItIsNotTouched) {
         o.process.force_control = false;
         o.must_touch = false;
         HeightField field = testing::plate(4.0, 40.0, 0.6, 0.2);
-        const ToolPath path(
-            {pressing_down(46, 15, -4.8, 40.0), pressing_down(46, 25, -4.8, 40.0)}, {});
+        const ToolPath path({pressing_down(46, 15, -4.8, 40.0), pressing_down(46, 25, -4.8, 40.0)},
+                            {});
         const SimulationResult result = ground(field, path, o);
         EXPECT_EQ(result.removed_volume > 0.0, touched) << radius;
     }

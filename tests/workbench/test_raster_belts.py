@@ -63,6 +63,16 @@ def test_passes_along_the_belt_are_as_far_apart_as_it_is_wide(bent):
     assert wrap - 2.0 * bending - 1.0 < straight["contact_length_mm"] < wrap
 
 
+def test_the_contact_of_a_curved_platen_is_shorter_along_it(bent):
+    job = job_of(bent, "platen")
+    flat = raster_path.raster(job, X)
+    job["belt_machine"]["platen"]["radius_mm"] = 40.0
+    curved = raster_path.raster(load.validate(job), X)
+    assert curved["contact_length_mm"] < 0.8 * flat["contact_length_mm"]
+    assert curved["contact_width_mm"] == pytest.approx(20.0, abs=2.1)
+    assert curved["reachable"]["share"] > 0.99
+
+
 def test_a_belt_grinds_evenly_by_its_passes(bent):
     job = job_of(bent, sampling={"spacing_mm": 0.8})
     laid = raster_path.raster(job, {**X, "step_over_share": 0.5})

@@ -121,6 +121,59 @@ TEST(CurvedPlatenSimulation, WhatStandsBehindThePlaneBesideItIsNotTouched) {
     }
 }
 
+TEST(CurvedPlatenSimulation, AContactFarRoundItIsTold) {
+    const double tilt = std::numbers::pi / 6.0, radius = 100.0;
+    SimulationOptions o = platen(radius);
+    o.limits.tilt = 0.3;
+    const double face = radius + o.process.machine.belt.thickness;
+    const double z = 0.2 + face * (1.0 - std::cos(tilt));
+    for (const double sign : {1.0, -1.0}) {
+        HeightField field = testing::plate(60.0, 40.0, 0.6, 0.2);
+        const double x = 30.0 + sign * face * std::sin(tilt);
+        const SimulationResult result = ground(
+            field, ToolPath({tilted(x, 18, z, sign * tilt), tilted(x, 20, z, sign * tilt)}, {}), o);
+        const auto event =
+            std::find_if(result.events.begin(), result.events.end(),
+                         [](const Event& one) { return one.kind == "tilted_contact"; });
+        ASSERT_NE(event, result.events.end());
+        EXPECT_NEAR(event->value, 30.0, 0.5);
+        EXPECT_EQ(event->facts[0].code,
+                  sign > 0.0 ? "event.belt_tilted_against" : "event.belt_tilted_along");
+        EXPECT_NEAR(event->point.x(), 30.0, 1.0);
+    }
+}
+
+TEST(CurvedPlatenSimulation, AHollowIsSpannedThatIsTighterThanThePlaten) {
+    const auto hollow = [](double radius) {
+        HeightField field = testing::cylinder(radius, 50.0, 40.0, 0.5);
+        for (std::size_t s = 0; s < field.size(); ++s) {
+            field.point[s].z() = -field.point[s].z();
+            field.normal[s].x() = -field.normal[s].x();
+            field.height[s] = 0.2;
+        }
+        return field;
+    };
+    SimulationOptions o = platen(80.0);
+    o.process.machine.platen.layers.clear();
+    const ToolPath path({pressing_down(-0.5, 18, 0.2, 40.0), pressing_down(0.5, 18, 0.2, 40.0)},
+                        {});
+    for (const double radius : {50.0, 120.0}) {
+        HeightField field = hollow(radius);
+        const SimulationResult result = ground(field, path, o);
+        const auto event =
+            std::find_if(result.events.begin(), result.events.end(),
+                         [](const Event& one) { return one.kind == "wheel_too_large"; });
+        if (radius > 81.0) {
+            EXPECT_EQ(event, result.events.end());
+            continue;
+        }
+        ASSERT_NE(event, result.events.end());
+        EXPECT_EQ(event->facts[0].code, "event.belt_hollow_along");
+        EXPECT_NEAR(event->value, radius, 1.0);
+        EXPECT_NEAR(event->limit, 81.0, 1e-9);
+    }
+}
+
 TEST(CurvedPlatenSimulation, IsTheFlatOneWithARadiusBeyondAllMeasure) {
     const ToolPath path({pressing_down(0, 20, 0.1, 40.0), pressing_down(0, 40, 0.1, 40.0)}, {});
     HeightField flat = testing::cylinder(40.0, 60.0, 60.0, 0.6, 0.2), bent = flat;

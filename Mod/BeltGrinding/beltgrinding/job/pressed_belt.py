@@ -17,14 +17,16 @@ def slab(points, triangles, half):
     """Points [x, z] (k, 2) whose hull is that of a mesh's part with abs(y) <= ``half``, seen along y. points (n, 3),
     triangles (m, 3)."""
     points = np.asarray(points, dtype=float)
-    inside = np.abs(points[:, 1]) <= half
-    found = [points[inside]]
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    a, b = points[edges[:, 0]], points[edges[:, 1]]
+    found = [points[np.abs(points[:, 1]) <= half]]
     for y in (-half, half):
-        crosses = (a[:, 1] < y) != (b[:, 1] < y)
-        share = ((y - a[crosses, 1]) / (b[crosses, 1] - a[crosses, 1]))[:, None]
-        found.append(a[crosses] + share * (b[crosses] - a[crosses]))
+        below = points[:, 1] < y
+        corners = below[triangles].sum(axis=1)
+        across = triangles[(corners > 0) & (corners < 3)]  # of a fine mesh, few
+        edges = np.concatenate([across[:, [0, 1]], across[:, [1, 2]], across[:, [2, 0]]])
+        edges = edges[below[edges[:, 0]] != below[edges[:, 1]]]
+        a, b = points[edges[:, 0]], points[edges[:, 1]]
+        share = ((y - a[:, 1]) / (b[:, 1] - a[:, 1]))[:, None]
+        found.append(a + share * (b - a))
     return np.concatenate(found)[:, [0, 2]]
 
 

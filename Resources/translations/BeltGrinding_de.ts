@@ -1604,10 +1604,6 @@
         <translation>Schichten zwischen Platte und Band, von der Platte nach außen; leer: die Platte selbst trägt das Band</translation>
     </message>
     <message>
-        <source>length along the belt&apos;s travel, mm</source>
-        <translation>Länge in Laufrichtung des Bandes, mm</translation>
-    </message>
-    <message>
         <source>length between the rollers, mm</source>
         <translation>Länge zwischen den Rollen, mm</translation>
     </message>
@@ -1670,6 +1666,26 @@
     <message>
         <source>zones by which events tell the finish, JSON</source>
         <translation>Zonen, nach denen Ereignisse die Oberflächengüte beurteilen, JSON</translation>
+    </message>
+    <message>
+        <source>from the rollers&apos; axes back to where the belt&apos;s two runs meet their pulleys, mm; 0: runs and arms are not looked at</source>
+        <translation>von den Achsen der Rollen zurück bis dorthin, wo die beiden Trume des Bandes auf ihre Umlenkrollen treffen, mm; 0: Trume und Arme werden nicht betrachtet</translation>
+    </message>
+    <message>
+        <source>length along the belt&apos;s travel, of a curved platen straight from end to end, mm</source>
+        <translation>Länge in Laufrichtung des Bandes, bei einer gewölbten Platte gerade von Ende zu Ende, mm</translation>
+    </message>
+    <message>
+        <source>on which sides of the belt they are: both; minus_y or plus_y of the contact frame alone</source>
+        <translation>auf welchen Seiten des Bandes sie sind: both (beiden); minus_y oder plus_y: nur dort im Kontaktsystem</translation>
+    </message>
+    <message>
+        <source>radius of the face that the belt slides on, bent along the travel and convex towards the work, mm: the belt lies round all of it and leaves it along its tangents; 0: flat</source>
+        <translation>Radius der Fläche, auf der das Band gleitet, in Laufrichtung gewölbt, zum Werkstück hin erhaben, mm: das Band liegt auf ihrer ganzen Länge und verlässt sie in ihren Tangenten; 0: eben</translation>
+    </message>
+    <message>
+        <source>thickness of the arms beside the belt, from roller to roller and back to the pulleys, mm; 0: none are looked at</source>
+        <translation>Dicke der Arme neben dem Band, von Rolle zu Rolle und zurück zu den Umlenkrollen, mm; 0: keine werden betrachtet</translation>
     </message>
 </context>
 <context>
@@ -5415,6 +5431,38 @@ x nach rechts in Bandlaufrichtung, y nach oben in Achsrichtung</translation>
     <message>
         <source>Chosen from the part: force, passes, samples, and the feed at which the allowance comes off on the mean, if K is right: K is not known before the belt is calibrated. The belt is taken as it is.</source>
         <translation>Nach dem Bauteil gewählt: Kraft, Bahnen, Abtastung und der Vorschub, bei dem das Aufmaß im Mittel abgeht, wenn K stimmt: K ist erst bekannt, wenn das Band kalibriert ist. Das Band bleibt, wie es ist.</translation>
+    </message>
+    <message>
+        <source>At +y</source>
+        <translation>Bei +y</translation>
+    </message>
+    <message>
+        <source>At −y</source>
+        <translation>Bei −y</translation>
+    </message>
+    <message>
+        <source>Both</source>
+        <translation>Beide</translation>
+    </message>
+    <message>
+        <source>Frame, for collisions</source>
+        <translation>Gestell, für Kollisionen</translation>
+    </message>
+    <message>
+        <source>Radius (0: flat)</source>
+        <translation>Radius (0: eben)</translation>
+    </message>
+    <message>
+        <source>Rollers to pulleys (0: none)</source>
+        <translation>Bis Umlenkr. (0: keine)</translation>
+    </message>
+    <message>
+        <source>Sides with arms</source>
+        <translation>Seiten mit Armen</translation>
+    </message>
+    <message>
+        <source>Chosen zone</source>
+        <translation>Gewählte Zone</translation>
     </message>
 </context>
 <context>

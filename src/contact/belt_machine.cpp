@@ -1,14 +1,19 @@
 #include "beltgrinding/belt_machine.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "beltgrinding/error.h"
+#include "contact/belt_arc.h"
 #include "contact/free_belt.h"
 #include "contact/platen.h"
 
 namespace beltgrinding {
 namespace {
+
+// Of a curved platen's ends: the work is mapped as heights over a plane.
+constexpr double kSteepest = std::numbers::pi / 3.0;  // rad
 
 void need_positive(double value, const char* code, const char* form) {
     if (!std::isfinite(value) || value <= 0.0) throw InputError(code, form, {{"value", value}});
@@ -57,9 +62,34 @@ void BeltRun::validate() const {
     }
 }
 
+double Platen::end_angle() const {
+    return radius > 0.0 ? std::asin(0.5 * length / radius) : 0.0;
+}
+
 void Platen::validate() const {
     need_positive(length, "platen.length",
                   "platen: the length is {value:f} mm; give a positive one");
+    need_not_negative(radius, "platen.radius",
+                      "platen: the radius is {value:f} mm; give a positive one, or 0 for a flat "
+                      "platen");
+    if (radius > 0.0) {
+        const double least = 0.5 * length / std::sin(kSteepest);
+        if (!(radius >= least)) {
+            throw InputError("platen.turns_too_far",
+                             "platen: {length:f} mm long with a radius of {radius:f} mm, it turns "
+                             "by more than 60 degrees to its ends; give a radius of at least "
+                             "{least:f} mm",
+                             {{"length", length}, {"radius", radius}, {"least", least}});
+        }
+        double thick = 0.0;
+        for (const auto& layer : layers) thick += layer.thickness;
+        if (!(thick < radius)) {
+            throw InputError("platen.layers_beyond_middle",
+                             "platen: its layers are {thickness:f} mm thick and reach beyond the "
+                             "middle of its radius of {radius:f} mm",
+                             {{"thickness", thick}, {"radius", radius}});
+        }
+    }
     need_not_negative(
         layer_surface_stiffness, "platen.surface_stiffness",
         "platen: the surface's stiffness is {value:f} MPa/mm; give a positive one, or 0");
@@ -71,12 +101,13 @@ void BeltMachine::validate() const {
     run.validate();
     if (kind != Kind::kPlaten) return;
     platen.validate();
-    if (platen.length + 2.0 * std::abs(run.position) > run.length) {
-        throw InputError(
-            "platen.beyond_rollers",
-            "platen: {platen:f} mm long, {position:f} mm from the middle, it does not "
-            "lie between the rollers, which are {length:f} mm apart",
-            {{"platen", platen.length}, {"position", run.position}, {"length", run.length}});
+    const BeltArc bent = middle_arc(belt, platen);
+    const double along = bent.flat() ? platen.length : 2.0 * bent.half_length();
+    if (along + 2.0 * std::abs(run.position) > run.length) {
+        throw InputError("platen.beyond_rollers",
+                         "platen: {platen:f} mm long, {position:f} mm from the middle, it does not "
+                         "lie between the rollers, which are {length:f} mm apart",
+                         {{"platen", along}, {"position", run.position}, {"length", run.length}});
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace beltgrinding {
 namespace {
@@ -118,6 +119,24 @@ std::vector<double> rounded(const std::vector<double>& places, const std::vector
         angles[k] += 0.5 * tail;
     }
     return angles;
+}
+
+/// Columns of the fine borders, which are those of the grid's columns `numbers`, and wider ones up
+/// to the rollers at `left` and `right`, mm along the path.
+std::vector<double> columns_between(BeltPath& path, std::vector<double> fine,
+                                    const std::vector<int>& numbers, double left, double right,
+                                    double cell) {
+    if (fine.empty()) fine.push_back(0.5 * (left + right));
+    std::vector<double> borders = widening(fine.front(), left, kGrowth * cell);
+    std::reverse(borders.begin(), borders.end());
+    path.cell.assign(borders.size(), -1);
+    path.cell.insert(path.cell.end(), numbers.begin(), numbers.end());
+    borders.insert(borders.end(), fine.begin(), fine.end());
+    for (const double border : widening(fine.back(), right, kGrowth * cell))
+        borders.push_back(border);
+    path.cell.resize(borders.size() - 1, -1);
+    path.columns = BeltColumns::of(borders);
+    return borders;
 }
 
 }  // namespace
@@ -252,22 +271,58 @@ BeltPath straight_path(const BeltRun& run, double cell, int cells) {
         fine.push_back(low + cell);
         numbers.push_back(c);
     }
-    if (fine.empty()) fine.push_back(0.5 * (path.left + path.right));
-    std::vector<double> borders = widening(fine.front(), path.left, kGrowth * cell);
-    std::reverse(borders.begin(), borders.end());
-    path.cell.assign(borders.size(), -1);
-    path.cell.insert(path.cell.end(), numbers.begin(), numbers.end());
-    borders.insert(borders.end(), fine.begin(), fine.end());
-    for (const double border : widening(fine.back(), path.right, kGrowth * cell))
-        borders.push_back(border);
-    path.cell.resize(borders.size() - 1, -1);
-    path.columns = BeltColumns::of(borders);
+    const std::vector<double> borders =
+        columns_between(path, std::move(fine), numbers, path.left, path.right, cell);
     const std::size_t n = path.columns.width.size();
     path.angle.assign(n, 0.0);
     path.turn.assign(n, 0.0);
     path.z.assign(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) path.x.push_back(0.5 * (borders[i] + borders[i + 1]));
     return path;
+}
+
+BentPath bent_path(const BeltRun& run, const BeltArc& middle, double thickness, double cell,
+                   int cells) {
+    BentPath bent;
+    BeltPath& path = bent.path;
+    const double left = -0.5 * run.length - run.position;
+    const double right = 0.5 * run.length - run.position;
+    path.left = middle.x(left);
+    path.right = middle.x(right);
+    path.length = run.length;
+    // Columns as long on the face as the grid's cells, as many as lie over all of them.
+    const BeltArc face{middle.radius + 0.5 * thickness, middle.end};
+    const double half = 0.5 * cells * cell;
+    const int more = static_cast<int>(std::ceil((face.s(half) - half) / cell));
+    const double shorter = middle.radius / face.radius;
+    const auto place = [&](int border) {  // mm along the path
+        const double s = (border - 0.5 * cells) * cell;
+        const double on = std::clamp(s, -face.half_length(), face.half_length());
+        return shorter * on + (s - on);
+    };
+    std::vector<double> fine;
+    std::vector<int> numbers;
+    for (int c = -more; c < cells + more; ++c) {
+        if (place(c) <= left + cell || place(c + 1) >= right - cell) continue;
+        if (fine.empty()) fine.push_back(place(c));
+        fine.push_back(place(c + 1));
+        numbers.push_back(static_cast<int>(numbers.size()));
+    }
+    bent.fine = static_cast<int>(numbers.size());
+    const std::vector<double> borders =
+        columns_between(path, std::move(fine), numbers, left, right, cell);
+    bent.column = std::exchange(path.cell, std::vector<int>(path.cell.size(), -1));
+    for (std::size_t i = 0; i < path.columns.width.size(); ++i) {
+        const double s = 0.5 * (borders[i] + borders[i + 1]);
+        const double x = middle.x(s);
+        path.x.push_back(x);
+        path.z.push_back(middle.behind(x));
+        path.angle.push_back(middle.angle(s));
+        path.turn.push_back((middle.angle(borders[i + 1]) - middle.angle(borders[i])) /
+                            path.columns.width[i]);
+        bent.on.push_back(std::abs(s) < middle.half_length() ? 1 : 0);
+    }
+    return bent;
 }
 
 }  // namespace beltgrinding

@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "beltgrinding/belt_machine.h"
+#include "contact/belt_arc.h"
 
 namespace beltgrinding {
 
@@ -66,5 +68,18 @@ BeltPath belt_path(const BeltRun& run, const BeltPathRequest& request);
 
 /// The belt that touches nothing, on the columns of the grid that lie between its rollers.
 BeltPath straight_path(const BeltRun& run, double cell, int cells);
+
+/// The belt that touches nothing over a curved platen.
+struct BentPath {
+    BeltPath path;  ///< its free runs' angles are 0, from which its pull is told; no column is a
+                    ///< cell's own
+    std::vector<int> column;       ///< by column: its number along the fine ones; -1: it is wider
+    std::vector<std::uint8_t> on;  ///< by column: it lies on the platen
+    int fine = 0;  ///< such columns, a cell of the grid long each on the belt's face
+};
+
+/// `middle`: how the belt's middle surface lies, curved; `thickness`: the belt's, mm.
+BentPath bent_path(const BeltRun& run, const BeltArc& middle, double thickness, double cell,
+                   int cells);
 
 }  // namespace beltgrinding

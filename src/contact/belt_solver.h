@@ -63,6 +63,9 @@ class BeltSolver {
     }
     /// N/mm along a belt that is longer than the path by `elongated` mm.
     double pull_of(const BeltPath& path, double elongated) const;
+    /// mm that a path's own turn, 1/mm, moves the face by from half a thickness off the middle
+    /// surface.
+    double face_moved_by(double turn) const { return shear_ * turn; }
     /// mm that the belt's face deflects by at the middles of a row and a column of the path.
     double deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
                          std::size_t row, int column) const;

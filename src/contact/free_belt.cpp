@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "belt_loads.h"
 #include "belt_path.h"
 #include "belt_solver.h"
 #include "contact/peak_pressure.h"
@@ -57,8 +58,6 @@ class PreparedFreeBelt final : public PreparedContact {
     double first_depth(const ContactProblem& problem, const std::vector<RidgePoint>& ridge) const;
     BeltPathRequest path_request(const std::vector<RidgePoint>& ridge, double depth,
                                  double pull) const;
-    /// Where the start has pressure; empty: nowhere.
-    std::vector<std::uint8_t> pressed(const BeltPath& path, const Eigen::ArrayXd& start) const;
     ContactSolution on_grid(const ContactProblem& problem, const BeltState& state,
                             double depth) const;
     /// The cell of `coarse_` that a cell lies in.
@@ -143,24 +142,6 @@ double PreparedFreeBelt::first_depth(const ContactProblem& problem,
     return high;
 }
 
-std::vector<std::uint8_t> PreparedFreeBelt::pressed(const BeltPath& path,
-                                                    const Eigen::ArrayXd& start) const {
-    const std::size_t rows = solver_.rows().size();
-    std::vector<std::uint8_t> result(rows * path.x.size(), 0);
-    bool any = false;
-    for (std::size_t i = 0; i < path.x.size(); ++i) {
-        const auto column = std::lround(path.x[i] / grid().ds + 0.5 * (grid().nx - 1));
-        if (column < 0 || column >= grid().nx) continue;
-        for (std::size_t k = 0; k < rows; ++k) {
-            const bool here = start[solver_.rows()[k].row * grid().nx + column] > 0.0;
-            result[i * rows + k] = here ? 1 : 0;
-            any = any || here;
-        }
-    }
-    if (!any) result.clear();
-    return result;
-}
-
 ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
                                            const Eigen::ArrayXd* start) {
     ContactSolution nothing;
@@ -209,7 +190,7 @@ ContactSolution PreparedFreeBelt::do_solve(const ContactProblem& problem,
         request.problem = &problem;
         request.gap = &gap;
         request.depth = depth;
-        if (guess.size() > 0) request.touching = pressed(path, guess);
+        if (guess.size() > 0) request.touching = pressed_columns(solver_, grid(), path, guess);
         if (before.deflection.size() > 0) request.before = &before;
         state = solver_.solve(std::move(path), std::move(request));
         iterations += state.iterations;
@@ -252,45 +233,10 @@ BeltPathRequest PreparedFreeBelt::path_request(const std::vector<RidgePoint>& ri
 
 ContactSolution PreparedFreeBelt::on_grid(const ContactProblem& problem, const BeltState& state,
                                           double depth) const {
-    const BeltPath& path = state.path;
-    const int n = path.columns.count(), nx = grid().nx;
     ContactSolution solution;
-    solution.pressure = Eigen::ArrayXd::Zero(grid().cells());
+    solution.pressure = pressure_on_grid(solver_, grid(), problem.coverage, belt_.thickness, state);
     solution.approach = depth;
     const double area = grid().cell_area();
-    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
-        const auto row = static_cast<Eigen::Index>(k);
-        const auto place = [&](int i) {  // x of the belt's face, in columns of the grid
-            const auto c = static_cast<std::size_t>(i);
-            const double u = solver_.deflection_at(path.columns, state.deflection, k, i);
-            return (path.x[c] + (0.5 * belt_.thickness - u) * std::sin(path.angle[c])) / grid().ds +
-                   0.5 * nx;
-        };
-        for (int i = 0; i < n; ++i) {
-            if (!(state.load(row, i) > 0.0)) continue;
-            // The force along z, shared by the columns of the grid that it lies on.
-            const double force =
-                state.load(row, i) * std::cos(path.angle[static_cast<std::size_t>(i)]);
-            if (const int own = path.cell[static_cast<std::size_t>(i)]; own >= 0) {
-                const int cell = solver_.rows()[k].row * nx + own;
-                if (problem.coverage[cell] > 0.0)
-                    solution.pressure[cell] += force / (area * problem.coverage[cell]);
-                continue;
-            }
-            const double here = place(i);
-            double from = i > 0 ? 0.5 * (place(i - 1) + here) : here;
-            double to = i + 1 < n ? 0.5 * (place(i + 1) + here) : here;
-            from = std::clamp(from, 0.0, nx - 1e-9);
-            to = std::clamp(to, from + 1e-9, static_cast<double>(nx));
-            for (int c = static_cast<int>(from); c < nx && c < to; ++c) {
-                const double share = std::min(to, c + 1.0) - std::max(from, static_cast<double>(c));
-                const int cell = solver_.rows()[k].row * nx + c;
-                if (problem.coverage[cell] > 0.0)
-                    solution.pressure[cell] +=
-                        force * share / (to - from) / (area * problem.coverage[cell]);
-            }
-        }
-    }
     solution.force = (solution.pressure * problem.coverage).sum() * area;
     solution.area = (solution.pressure > 0.0).select(problem.coverage, 0.0).sum() * area;
     solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);

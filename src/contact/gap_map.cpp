@@ -62,9 +62,20 @@ GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     }
 }
 
-void GapMap::lie_flat(double from, double to) {
+void GapMap::lie_flat(double from, double to, const BeltArc& face) {
     run_ = Run{from, to};
+    face_ = face;
     layer_ = whole_layer_ = kFlatLayer * std::max(grid_.ds, grid_.dy);
+}
+
+double GapMap::lowest() const {
+    if (gap_.size() == 0) return kNone;
+    if (face_.flat()) return gap_.minCoeff();
+    double least = kNone;
+    for (int cell = 0; cell < grid_.cells(); ++cell)
+        if (std::isfinite(gap_[cell]))
+            least = std::min(least, gap_[cell] + face_.behind(grid_.s(cell % grid_.nx)));
+    return least;
 }
 
 void GapMap::end_flat() {

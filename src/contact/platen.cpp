@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "belt_loads.h"
 #include "belt_path.h"
 #include "belt_solver.h"
 #include "contact/peak_pressure.h"
@@ -23,7 +24,40 @@ constexpr double kFlatThicknesses = 100;  // the same, in thicknesses
 constexpr int kPlatenIterations = 4;      // times those that a problem allows: the layers follow
 constexpr std::size_t kMixed = 3;         // of the last pressures, for the next one
 constexpr double kRegular = 1e-10;        // of their products' diagonal
+constexpr double kSeen = 1e-3;            // mm along a curved platen's path, that the work moves
+constexpr int kMostSeen = 8;              // times that it is seen from there anew
 constexpr double kSpring = 1.4;           // times the layers' stiffness under even pressure
+
+/// The belt that touches nothing, and what of it lies over the layers.
+struct OverPlate {
+    BeltPath path;
+    std::vector<int> cell;         // of the layers' grid along x, by column; -1: none
+    std::vector<std::uint8_t> on;  // by column: the platen is there
+    int cells = 0;                 // of the layers' grid along x
+    /// MPa that the belt's tension presses on a curved platen with, by column; empty: a flat one.
+    std::vector<double> bearing;
+};
+
+OverPlate over_plate(const AbrasiveBelt& belt, const BeltRun& run, const Platen& platen,
+                     const ContactGrid& grid) {
+    OverPlate over;
+    const BeltArc middle = middle_arc(belt, platen);
+    if (middle.flat()) {
+        over.path = straight_path(run, grid.ds, grid.nx);
+        over.cell = over.path.cell;
+        over.cells = grid.nx;
+        for (const double x : over.path.x)
+            over.on.push_back(std::abs(x) < 0.5 * platen.length ? 1 : 0);
+        return over;
+    }
+    BentPath bent = bent_path(run, middle, belt.thickness, grid.ds, grid.nx);
+    for (const double turn : bent.path.turn) over.bearing.push_back(belt.tension * turn);
+    over.path = std::move(bent.path);
+    over.cell = std::move(bent.column);
+    over.on = std::move(bent.on);
+    over.cells = bent.fine;
+    return over;
+}
 
 /// The layers under the belt. Their pressure is that of springs, about as stiff as the layers
 /// are under even pressure, from where they are at rest under the pressure of all others; that is
@@ -31,12 +65,8 @@ constexpr double kSpring = 1.4;           // times the layers' stiffness under e
 class LayerBacking final : public BeltBacking {
   public:
     /// `layers`: none, the plate alone; `face`: MPa/mm between belt and layers.
-    LayerBacking(ComplianceOperator* layers, double face, const BeltPath& path, double half_length)
-        : layers_(layers), face_(face) {
-        for (std::size_t i = 0; i < path.x.size(); ++i) {
-            cell_.push_back(path.cell[i]);
-            on_.push_back(std::abs(path.x[i]) < half_length ? 1 : 0);
-        }
+    LayerBacking(ComplianceOperator* layers, double face, const OverPlate& over)
+        : layers_(layers), face_(face), cell_(over.cell), on_(over.on), bearing_(over.bearing) {
         stiffness_ = face_;
         if (layers_ == nullptr) return;
         // Following converges while no pressure sinks in more than twice as far as the springs do.
@@ -49,12 +79,20 @@ class LayerBacking final : public BeltBacking {
         rest_.resize(rows, static_cast<Eigen::Index>(cell_.size()));
         for (std::size_t i = 0; i < cell_.size(); ++i)
             rest_.col(static_cast<Eigen::Index>(i))
-                .setConstant(on_[i] != 0 ? 0.0 : std::numeric_limits<double>::infinity());
+                .setConstant(on_[i] != 0 ? -borne(i) / stiffness_
+                                         : std::numeric_limits<double>::infinity());
         if (layers_ == nullptr) return;
         pressure_.setZero(layers_->grid().cells());
-        if (pressure.size() != pressure_.size()) return;
-        pressure_ = pressure;
-        follow_pressure();
+        if (!bearing_.empty()) {
+            // Where the belt lies that touches nothing, the layers have sunk in already.
+            for_cells([&](Eigen::Index, Eigen::Index column,
+                          int cell) { pressure_[cell] = borne(static_cast<std::size_t>(column)); },
+                      layers_->grid().nx);
+            layers_->apply(pressure_, ones_, sunk_at_rest_);
+        }
+        const bool known = pressure.size() == pressure_.size();
+        if (known) pressure_ = pressure;
+        if (known || !bearing_.empty()) follow_pressure();
     }
     const Eigen::ArrayXd& pressure() const { return pressure_; }
     double follow(const Eigen::ArrayXXd& deflection) override {
@@ -82,9 +120,14 @@ class LayerBacking final : public BeltBacking {
             [&](Eigen::Index row, Eigen::Index column, int cell) {
                 rest_(row, column) =
                     sunk_[cell] + pressure_[cell] * (1.0 / face_ - 1.0 / stiffness_);
+                if (bearing_.empty()) return;
+                rest_(row, column) -=
+                    sunk_at_rest_[cell] + borne(static_cast<std::size_t>(column)) / face_;
             },
             nx);
     }
+    /// MPa that the layers bear under a column that touches nothing.
+    double borne(std::size_t column) const { return bearing_.empty() ? 0.0 : bearing_[column]; }
     /// The pressure that is followed next: by Anderson's mixing of the last ones (Journal of the
     /// ACM 12, 1965), for the springs come to rest by a constant share each time.
     Eigen::ArrayXd accelerated(const Eigen::ArrayXd& now) {
@@ -129,7 +172,8 @@ class LayerBacking final : public BeltBacking {
     double face_;
     std::vector<int> cell_;         // of the grid along x, by column
     std::vector<std::uint8_t> on_;  // by column: the platen is there
-    Eigen::ArrayXd pressure_, sunk_, ones_;
+    std::vector<double> bearing_;   // as `OverPlate::bearing`
+    Eigen::ArrayXd pressure_, sunk_, ones_, sunk_at_rest_;
     // Of the last mixings: what was off, what it became, and how both have changed.
     Eigen::ArrayXd last_off_, last_now_;
     std::vector<Eigen::ArrayXd> changes_of_, changes_;
@@ -143,10 +187,14 @@ class PreparedPlaten final : public PreparedContact {
           belt_(belt),
           run_(run),
           platen_(platen),
+          middle_(middle_arc(belt, platen)),
+          over_(over_plate(belt, run, platen, grid)),
           solver_(belt, run, grid, BeltSolver::Sheet::kThick) {
         const auto rows = static_cast<int>(solver_.rows().size());
-        if (layers != nullptr && rows > 0)
-            layers_ = layers->compliance({grid.nx, rows, grid.ds, belt.width / rows});
+        if (layers == nullptr || rows == 0 || over_.cells == 0) return;
+        double cell = grid.ds;  // on the layers, which the belt's face lies above
+        if (!middle_.flat()) cell *= platen.radius / (platen.radius + belt.thickness);
+        layers_ = layers->compliance({over_.cells, rows, cell, belt.width / rows});
     }
 
     std::shared_ptr<const ContactMemory> memory() const override {
@@ -168,29 +216,56 @@ class PreparedPlaten final : public PreparedContact {
         double depth = problem.approach;
         if (problem.force_control) {
             depth = std::numeric_limits<double>::infinity();
-            for (const RidgePoint& p : surface.ridge()) depth = std::min(depth, -p.z);
+            for (const RidgePoint& p : surface.ridge())
+                depth = std::min(depth, middle_.behind(p.x) - p.z);
             if (!std::isfinite(depth)) return solution;
         }
-        BeltPath path = straight_path(run_, grid().ds, grid().nx);
-        LayerBacking backing(layers_.get(), face(), path, 0.5 * platen_.length);
+        BeltPath path = over_.path;
+        LayerBacking backing(layers_.get(), face(), over_);
         const bool warm = start != nullptr && last_.pressure.size() == start->size() &&
                           (*start == last_.pressure).all();
         if (warm && problem.force_control) depth = last_.depth;
-        const BeltState before = warm ? std::move(last_.state) : BeltState{};
+        BeltState before = warm ? std::move(last_.state) : BeltState{};
         backing.start(static_cast<Eigen::Index>(solver_.rows().size()),
                       warm ? last_.layers : Eigen::ArrayXd{});
-        const BeltGap gap = surface.seen_from(path, depth);
         ContactProblem longer = problem;
         longer.max_iterations = kPlatenIterations * problem.max_iterations;
-        BeltSolver::Request request;
-        request.problem = &longer;
-        request.gap = &gap;
-        request.depth = depth;
-        request.backing = &backing;
-        if (warm) request.before = &before;
-        if (start != nullptr && (*start > 0.0).any()) request.touching = pressed(path, *start);
-        BeltState state = solver_.solve(std::move(path), std::move(request));
-        for (int i = 0; i < state.path.columns.count(); ++i) {
+        std::vector<std::uint8_t> touching;
+        if (start != nullptr && (*start > 0.0).any())
+            touching = middle_.flat() ? pressed(path, *start)
+                                      : pressed_columns(solver_, grid(), path, *start);
+        BeltState state;
+        for (int seen = 1, iterations = 0;; ++seen) {
+            BeltGap gap = surface.seen_from(path, depth);
+            // The contact frame's origin lies on the face as the platen has bent it.
+            if (!middle_.flat()) gap.reach -= solver_.face_moved_by(1.0 / middle_.radius);
+            BeltSolver::Request request;
+            request.problem = &longer;
+            request.gap = &gap;
+            request.depth = depth;
+            request.backing = &backing;
+            request.touching = std::move(touching);
+            if (before.deflection.size() > 0) request.before = &before;
+            state = solver_.solve(std::move(path), std::move(request));
+            iterations += state.iterations;
+            state.iterations = iterations;
+            // Where the path leans, lifting moves the work along it as well.
+            if (std::abs(state.lift) * std::sin(middle_.end) <= kSeen || !state.converged) break;
+            if (seen == kMostSeen) {
+                state.converged = false;
+                break;
+            }
+            depth += state.lift;
+            path = over_.path;
+            touching.clear();
+            for (Eigen::Index k = 0; k < state.load.size(); ++k)
+                touching.push_back(state.load.data()[k] > 0.0 ? 1 : 0);
+            before = std::move(state);
+        }
+        if (!middle_.flat())
+            solution.pressure =
+                pressure_on_grid(solver_, grid(), problem.coverage, belt_.thickness, state);
+        for (int i = 0; middle_.flat() && i < state.path.columns.count(); ++i) {
             const int column = state.path.cell[static_cast<std::size_t>(i)];
             if (column < 0) continue;
             for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
@@ -226,6 +301,8 @@ class PreparedPlaten final : public PreparedContact {
     AbrasiveBelt belt_;
     BeltRun run_;
     Platen platen_;
+    BeltArc middle_;  // how the belt's middle surface lies that touches nothing
+    OverPlate over_;
     BeltSolver solver_;
     std::unique_ptr<ComplianceOperator> layers_;
     // Of the last solution: its stress and its layers' pressure, for one that starts from it.
@@ -259,7 +336,9 @@ PlatenBelt::PlatenBelt(const AbrasiveBelt& belt, const BeltRun& run, const Plate
     design.width = belt_.width;
     for (const auto& layer : platen_.layers)
         design.layers.push_back({layer.thickness, {layer.youngs_modulus, layer.poissons_ratio}});
-    design.outer_radius = std::max(kFlat, kFlatThicknesses * design.thickness());
+    design.outer_radius = platen_.radius > 0.0
+                              ? platen_.radius
+                              : std::max(kFlat, kFlatThicknesses * design.thickness());
     layers_ = std::make_unique<WheelRim>(std::move(design), BeltPlate{}, std::move(cache));
 }
 
@@ -270,6 +349,7 @@ double PlatenBelt::thickness() const {
 std::string PlatenBelt::describe() const {
     std::ostringstream text;
     text << "platen, " << platen_.length << " mm long";
+    if (platen_.radius > 0.0) text << ", R " << platen_.radius << " mm";
     for (const auto& layer : platen_.layers)
         text << ", " << layer.thickness << " mm of E " << layer.youngs_modulus << " MPa, nu "
              << layer.poissons_ratio;

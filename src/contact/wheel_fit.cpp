@@ -114,11 +114,15 @@ std::vector<double> wheel_fit(const ContactWheel& wheel,
 std::vector<double> run_fit(const FlatRun& run, const std::vector<Frame>& work_from_contact,
                             const std::vector<Vec3>& point, const RunContext& context) {
     run.validate();
-    const Box box(Vec3(run.middle - 0.5 * run.length, -0.5 * run.width, -run.behind),
-                  Vec3(run.middle + 0.5 * run.length, 0.5 * run.width, 0.0));
+    const double from = run.face.x(run.middle - 0.5 * run.length);
+    const double to = run.face.x(run.middle + 0.5 * run.length);
+    const double behind = std::max(run.face.behind(from), run.face.behind(to)) + run.behind;
+    const Box box(Vec3(from, -0.5 * run.width, -behind), Vec3(to, 0.5 * run.width, 0.0));
     return deepest(work_from_contact, point, box, context, [&](const Frame& frame, std::size_t k) {
         const Vec3 at = frame.linear().transpose() * (point[k] - frame.translation());
-        return box.contains(at) ? -at.z() : 0.0;
+        if (!box.contains(at)) return 0.0;
+        const double depth = -at.z() - run.face.behind(at.x());
+        return depth <= run.behind ? std::max(depth, 0.0) : 0.0;
     });
 }
 

@@ -46,8 +46,9 @@ constexpr std::array kKinds = {
               "take a smaller wheel, or one with a stronger crown; across the width, a narrower "
               "wheel or belt; along a belt, a wheel that fits into the hollow"},
     EventKind{"tilted_contact", kWarning, "deg", kLarger,
-              "the wheel touches far round its rim from the programmed contact point, so that the "
-              "pressing direction is not the surface's normal",
+              "the wheel touches far round its rim, or a belt far round a curved platen, from the "
+              "programmed contact point, so that the pressing direction is not the surface's "
+              "normal",
               "turn the pose so that its z axis points against the surface's normal"},
     EventKind{
         "burn_risk", kError, "MPa m/s", kLarger,

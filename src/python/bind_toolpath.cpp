@@ -1,6 +1,7 @@
 #include "contact/wheel_fit.h"
 #include "dict.h"
 #include "raster/raster.h"
+#include "simulation_settings.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -137,9 +138,12 @@ void bind_toolpath(py::module_& m) {
         "into a surface at each pose, mm (n,).");
     m.def(
         "run_fit",
-        [](double length, double middle, double width, double behind, const Doubles& frames,
-           const Doubles& points, const RunContext* context) {
-            const FlatRun run{length, middle, width, behind};
+        [](const py::dict& machine, double behind, const Doubles& frames, const Doubles& points,
+           const RunContext* context) {
+            const BeltMachine belt = machine_from(machine);
+            belt.validate();
+            const FlatRun run{belt.run.length, -belt.run.position, belt.belt.width, behind,
+                              face_arc(belt)};
             const std::vector<Frame> poses = poses_from(frames);
             const auto point = vectors(points, "points");
             std::vector<double> depth;
@@ -149,10 +153,11 @@ void bind_toolpath(py::module_& m) {
             }
             return own(std::move(depth));
         },
-        py::arg("length"), py::arg("middle"), py::arg("width"), py::arg("behind"),
-        py::arg("work_from_contact"), py::arg("points"), py::arg("context") = nullptr,
-        "How deep points reach through a flat belt, which touches nothing, into the `behind` mm "
-        "that lie behind it at each pose, mm (n,).");
+        py::arg("machine"), py::arg("behind"), py::arg("work_from_contact"), py::arg("points"),
+        py::arg("context") = nullptr,
+        "How deep points reach through the belt of a free belt or a platen (the option machine of "
+        "simulate), which touches nothing, into the `behind` mm that lie behind it at each pose, "
+        "mm (n,).");
 }
 
 }  // namespace beltgrinding::python

@@ -93,6 +93,7 @@ BeltMachine machine_from(const py::dict& given) {
     machine.run.position = take(d, "position", machine.run.position);
     if (take(d, "tensioned", false)) machine.run.rollers = BeltRun::Rollers::kTensioned;
     machine.platen.length = take(d, "platen_length", machine.platen.length);
+    machine.platen.radius = take(d, "platen_radius", machine.platen.radius);
     machine.platen.layer_surface_stiffness =
         take(d, "layer_surface_stiffness", machine.platen.layer_surface_stiffness);
     for (const auto& item : take(d, "layers", py::list())) {

@@ -35,7 +35,7 @@ Pressing::Pressing(const ProcessSettings& process, double spacing, double tolera
       held_at_(growth_),
       give_(process.robot_stiffness > 0.0 ? 1.0 / process.robot_stiffness : 0.0),
       largest_indentation_(std::min(model.thickness(), tool_.deepest)) {
-    if (tool_.flat) map_.lie_flat(tool_.from, tool_.to);
+    if (tool_.flat) map_.lie_flat(tool_.from, tool_.to, tool_.face);
 }
 
 Pressing::Carried Pressing::carried() const {

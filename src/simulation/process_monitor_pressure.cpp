@@ -109,13 +109,25 @@ void ProcessMonitor::note_distribution(std::size_t index, const Pressing& pressi
     for (double& share : by_column) share /= total;
     centre /= total;
     note_edges(index, pressing, by_column);
-    if (pressing.flat()) return;
-    const double tilt = std::abs(centre) / process_.wheel.radius;
+    const BeltArc& face = pressing.tool().face;  // of a wheel, a free belt, a flat platen: straight
+    if (pressing.flat() && face.flat()) return;
+    const double tilt = pressing.flat() ? std::abs(face.angle(face.s(centre)))
+                                        : std::abs(centre) / process_.wheel.radius;
     if (!(limits_.tilt > 0.0) || tilt <= limits_.tilt) return;
     if (Event* event = note("tilted_contact", index, kDegrees * tilt)) {
         event->limit = kDegrees * limits_.tilt;
         const Arguments arguments = {{"angle", kDegrees * tilt}};
-        if (centre > 0.0) {
+        if (pressing.flat() && centre > 0.0) {
+            event->facts = {{"event.belt_tilted_along",
+                             "the belt touches {angle:.1f} deg round its platen from the "
+                             "programmed contact point, along its travel",
+                             arguments}};
+        } else if (pressing.flat()) {
+            event->facts = {{"event.belt_tilted_against",
+                             "the belt touches {angle:.1f} deg round its platen from the "
+                             "programmed contact point, against its travel",
+                             arguments}};
+        } else if (centre > 0.0) {
             event->facts = {{"event.tilted_along",
                              "the wheel touches {angle:.1f} deg round its rim from the programmed "
                              "contact point, along the belt's travel",
@@ -211,13 +223,18 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     const int axis = across ? 1 : 0;
     const GapMap::MeanSlope one = map.slope_near(blocks_, from.x(), from.y(), reach);
     const GapMap::MeanSlope other = map.slope_near(blocks_, to.x(), to.y(), reach);
-    const double closing = std::atan(one.slope[axis]) - std::atan(other.slope[axis]);
+    double closing = std::atan(one.slope[axis]) - std::atan(other.slope[axis]);
     const double span = (to - from).norm(), chord = other.place[axis] - one.place[axis];
     const ContactWheel& wheel = pressing.tool().wheel;
-    // A belt is straight both ways.
-    const double round = pressing.flat() ? 0.0 : wheel.radius;
+    // A belt is straight across, and along it but for a curved platen.
+    const BeltArc& face = pressing.tool().face;
+    const double round = pressing.flat() ? face.radius : wheel.radius;
     const double radius = across ? wheel.crown_radius : round;
-    const double turn = radius > 0.0 ? 0.5 * chord / radius : 0.0;
+    double turn = radius > 0.0 ? 0.5 * chord / radius : 0.0;
+    if (pressing.flat() && !across) {  // whose gap is that to the plane
+        turn = 0.5 * (face.angle(face.s(to.x())) - face.angle(face.s(from.x())));
+        closing -= 2.0 * turn;
+    }
     // Also false where a slope is not known.
     if (!(0.5 * closing > kHollow * (turn > 0.0 ? turn : 1.0))) return;
     const double half_chord = turn > 0.0 ? radius * std::sin(turn) : 0.5 * chord;
@@ -254,9 +271,10 @@ void ProcessMonitor::note_hollow(std::size_t index, const Pressing& pressing, bo
     // No sample is in reach there: it is the rim's point over the hollow.
     const double angle = middle.x() / wheel.radius;
     const double r = wheel.radius - wheel.drop(middle.y());
-    event->point = steps_[index].work_from_contact *
-                   Vec3(r * std::sin(angle), middle.y(),
-                        pressing.approach() - wheel.radius + r * std::cos(angle));
+    event->point =
+        steps_[index].work_from_contact *
+        Vec3(r * std::sin(angle), middle.y(),
+             pressing.approach() - wheel.radius + r * std::cos(angle) - face.behind(middle.x()));
 }
 
 }  // namespace beltgrinding

@@ -1,5 +1,7 @@
 #include "tool_envelope.h"
 
+#include <algorithm>
+
 namespace beltgrinding {
 namespace {
 
@@ -37,10 +39,12 @@ ToolEnvelope tool_envelope(const ProcessSettings& process) {
     const BeltRun& run = process.machine.run;
     tool.wheel = ContactWheel{kFlatRadius, process.machine.belt.width, 0.0};
     tool.flat = true;
-    tool.from = -0.5 * run.length - run.position;
-    tool.to = 0.5 * run.length - run.position;
+    tool.face = face_arc(process.machine);
+    tool.from = tool.face.x(-0.5 * run.length - run.position);
+    tool.to = tool.face.x(0.5 * run.length - run.position);
     tool.deepest = kDeepest * run.length;
-    tool.ahead = kFlatRadius - tool.deepest - process.force_travel;
+    tool.ahead = kFlatRadius - tool.deepest - process.force_travel -
+                 std::max(tool.face.behind(tool.from), tool.face.behind(tool.to));
     tool.margin = kBeltMargin;
     tool.placement = kBeltPlacement;
     return tool;

@@ -2,6 +2,7 @@
 
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/simulation.h"
+#include "contact/belt_arc.h"
 
 namespace beltgrinding {
 
@@ -12,6 +13,7 @@ struct ToolEnvelope {
     bool flat = false;     ///< it is a belt's
     double from = 0.0;     ///< flat: along the travel from the contact frame's origin, where the
     double to = 0.0;       ///< belt's free run begins and ends
+    BeltArc face;          ///< flat: how the belt's face lies, before and behind such a plane
     double ahead = 0.0;    ///< from the axis: what lies behind cannot be in the contact
     double deepest = 0.0;  ///< it is looked at no deeper than that
     double margin = 0.0;   ///< beyond its surface in which the gap is mapped

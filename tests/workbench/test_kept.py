@@ -178,6 +178,7 @@ BELT = {  # a machine for which the keys of a free belt and a platen count
         "length_mm": 50,
         "layers": [{"thickness_mm": 4, "youngs_modulus_MPa": 3, "poissons_ratio": 0.4}],
     },
+    "frame": {"length_mm": 80, "arm_thickness_mm": 4},
 }
 MACHINE = jobs.schema()["properties"]["belt_machine"]["properties"]
 BELT_KEYS = [
@@ -187,6 +188,7 @@ BELT_KEYS = [
         f"platen.layers.0.{name}"
         for name in MACHINE["platen"]["properties"]["layers"]["items"]["properties"]
     ),
+    *(f"frame.{name}" for name in MACHINE["frame"]["properties"]),
 ]
 VALUES = {
     "design.file": lambda folder: str(folder / "other.brep"),
@@ -197,6 +199,8 @@ VALUES = {
     "stock.brep": lambda _: OwnBrep(thick()[0]),
     "stock.kind": lambda _: "mesh",
     "belt_machine.platen.length_mm": lambda _: 12.0,
+    "belt_machine.platen.radius_mm": lambda _: 40.0,
+    "belt_machine.frame.length_mm": lambda _: 60.0,
     "belt_machine.compliance.surrogate_file": lambda folder: str(folder / "none.npz"),
     "belt_machine.wheel.crown_radius_mm": lambda _: 60.0,
     "programs.0.poses.0.qw": lambda _: 0.99874922,

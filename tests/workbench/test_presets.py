@@ -230,3 +230,10 @@ def test_the_documentation_has_the_spread_that_the_formulas_give():
     for path in FILES:
         for source in json.loads(path.read_text(encoding="utf-8"))["sources"].values():
             assert source["title"].split(",")[0] in page, source
+
+
+def test_a_platens_preset_makes_it_flat():
+    found = presets.settings(machine="platen_50")
+    assert found["belt_machine.kind"] == "platen" and found["belt_machine.platen.radius_mm"] == 0.0
+    free = next(one["id"] for one in presets.machines() if one["kind"] == "free_belt")
+    assert not any(key.startswith("belt_machine.platen") for key in presets.settings(machine=free))

@@ -135,9 +135,12 @@ BELT = {
 }
 LAYER = {"thickness_mm": 5.0, "youngs_modulus_MPa": 2.0, "poissons_ratio": 0.45}
 PLATEN = {"kind": "platen", "free_run": {"width_mm": 20}, "platen": {"layers": [LAYER]}}
+CURVED = {**PLATEN, "platen": {"layers": [LAYER], "radius_mm": 120.0}}
 
 
-@pytest.mark.parametrize("machine", [BELT, PLATEN], ids=["free belt", "platen"])
+@pytest.mark.parametrize(
+    "machine", [BELT, PLATEN, CURVED], ids=["free belt", "platen", "curved platen"]
+)
 def test_a_belt_takes_the_allowance_off(machine):
     stock = {"kind": "allowance", "allowance_mm": 0.1}
     found = proposal.propose(plate(belt_machine=machine, stock=stock))

@@ -63,6 +63,16 @@ def test_passes_along_the_belt_are_as_far_apart_as_it_is_wide(bent):
     assert wrap - 2.0 * bending - 1.0 < straight["contact_length_mm"] < wrap
 
 
+def test_the_contact_of_a_curved_platen_is_shorter_along_it(bent):
+    job = job_of(bent, "platen")
+    flat = raster_path.raster(job, X)
+    job["belt_machine"]["platen"]["radius_mm"] = 40.0
+    curved = raster_path.raster(load.validate(job), X)
+    assert curved["contact_length_mm"] < 0.8 * flat["contact_length_mm"]
+    assert curved["contact_width_mm"] == pytest.approx(20.0, abs=2.1)
+    assert curved["reachable"]["share"] > 0.99
+
+
 def test_a_belt_grinds_evenly_by_its_passes(bent):
     job = job_of(bent, sampling={"spacing_mm": 0.8})
     laid = raster_path.raster(job, {**X, "step_over_share": 0.5})
@@ -139,7 +149,9 @@ def test_a_contact_that_goes_on_over_the_faces_border_is_told():
 
 def test_the_core_refuses_what_is_no_belt():
     with pytest.raises(ValueError, match="width"):
-        core.run_fit(100.0, 0.0, -1.0, 10.0, np.eye(4)[None], np.zeros((1, 3)))
+        core.run_fit({"kind": "free_belt", "width": -1.0}, 10.0, np.eye(4)[None], np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="room behind"):
+        core.run_fit({"kind": "free_belt"}, -1.0, np.eye(4)[None], np.zeros((1, 3)))
     with pytest.raises(ValueError):
         core.press_belt({"kind": "free_belt"}, math.nan, 0.0, force=10.0)
     with pytest.raises(ValueError):

@@ -315,7 +315,9 @@ def spoken():
 def test_every_text_is_there_in_german():
     german = language._texts("de")
     for kind in core.event_kinds():
-        assert findings.kind_text(kind["code"]) in german and kind["advice"] in german, kind
+        assert messages.kind_text(kind["code"]) in german and kind["advice"] in german, kind
+    assert set(messages.BELT_TITLES) <= {kind["code"] for kind in core.event_kinds()}
+    assert set(messages.BELT_TITLES.values()) <= german.keys()
     missing = sorted(spoken() - german.keys())
     assert not missing, missing
     fields = re.compile(r"\{\w+\}")

@@ -280,6 +280,9 @@ TEST(Checkpoints, BeltsThatRunFreeOrOverAPlaten) {
         s.options.process.machine.kind = kind;
         expect_the_same_from_checkpoints(s);
     }
+    s.made.reset();
+    s.options.process.machine.platen.radius = 60.0;
+    expect_the_same_from_checkpoints(s);
 }
 
 TEST(Checkpoints, BeltsThatWear) {

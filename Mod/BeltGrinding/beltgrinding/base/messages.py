@@ -19,6 +19,8 @@ MINUS = "\N{MINUS SIGN}"
 FORMAT = re.compile(r"[+-]?(\.?\d{1,2})?[a-z%]?")  # all that our forms use
 BODIES = ("body", "other")  # arguments that are bodies of the cell
 PARTS = ("context", "remarks")  # of what is told, before and after it
+OF_A_BELT = "event.belt_"  # codes of facts on a belt that is pressed without a wheel
+BELT_TITLES = {"wheel_too_large": "Belt spans a hollow"}  # where the kind's code names the wheel
 
 
 @lru_cache(maxsize=None)
@@ -76,6 +78,14 @@ def body(name, language):
         return word("body.roller_behind", "roller behind the contact", language)
     if name == "platen":
         return word("body.platen", "platen", language)
+    if name == "belt_before":
+        return word("body.belt_before", "belt before the contact", language)
+    if name == "belt_behind":
+        return word("body.belt_behind", "belt behind the contact", language)
+    if name == "arms":
+        return word("body.arms", "arms of the belt machine", language)
+    if name == "fork":
+        return word("body.fork", "fork", language)
     if name == "robot foot":
         return word("body.robot_foot", "robot foot", language)
     if name.startswith("robot link "):
@@ -157,6 +167,13 @@ def notes(found, language):
 def kind_text(kind):
     """A kind of events in English words: "force_not_reached" is "Force not reached"."""
     return kind.replace("_", " ").capitalize()
+
+
+def event_title(event):
+    """The title of an event in English words: that of its kind, or where a belt is pressed without a wheel, and the kind is
+    named by the wheel, one of its own."""
+    of_belt = any(fact["code"].startswith(OF_A_BELT) for fact in event.get("facts", ()))
+    return of_belt and BELT_TITLES.get(event["kind"]) or kind_text(event["kind"])
 
 
 def event_message(event, language):

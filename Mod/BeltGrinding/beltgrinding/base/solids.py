@@ -19,3 +19,18 @@ def prism():
 def triangles(quads):
     """(2 n, 3): two of each quad."""
     return np.array([t for a, b, c, d in quads for t in ([a, b, c], [a, c, d])])
+
+
+def strip(upper, lower, half):
+    """(points (4 n, 3), triangles) of what lies between two lines [x, z] (n, 2) of which the upper one has the greater z,
+    both with ascending x, ``half`` wide to both sides of y = 0."""
+    count = len(upper)
+    rings = [(upper, -half), (upper, half), (lower, half), (lower, -half)]
+    points = [np.stack([line[:, 0], np.full(count, y), line[:, 1]], axis=1) for line, y in rings]
+    i, found = np.arange(count - 1), [[[0, count, 2 * count, 3 * count]]]
+    for k in range(4):
+        a, b = k * count, (k + 1) % 4 * count
+        found.append(np.stack([a + i, a + i + 1, b + i + 1, b + i], axis=1))
+    last = count - 1
+    found.append([[last, last + 3 * count, last + 2 * count, last + count]])
+    return np.concatenate(points), triangles(np.concatenate(found))

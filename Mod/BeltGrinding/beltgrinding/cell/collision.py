@@ -2,7 +2,7 @@
 
 A job's ``cell.bodies`` says which there are (job.schema.json); the part and the wheel are always among
 them. The part is its whole shape with its stock; the wheel is what lies behind the rim. A free belt has
-two rollers in place of the wheel, a platen its plate as well.
+two rollers in place of the wheel, a platen its plate as well, both what holds them where a job says it.
 """
 
 import math
@@ -199,17 +199,11 @@ def wheel_body(wheel, inset):
 
 def machine_bodies(machine):
     """[(name, core.TriangleMesh in the contact frame)] of a job's free belt or platen: its rollers, with the belt round
-    their outer sides, and the plate behind the layers; of a small wheel the belt's runs and the fork. Of a contact wheel
-    none. The belt itself gives way.
+    their outer sides, the plate behind the layers, the belt's runs beyond the rollers and the arms; of a small wheel the
+    belt's runs and the fork. Of a contact wheel none. The belt between the rollers gives way.
     """
     if machines.kind(machine) == machines.SMALL_WHEEL:
-        found = [(name, fork.run(machine, side)) for name, side in zip(fork.NAMES, (-1.0, 1.0))]
-        held = fork.arms(machine)
-        if held:
-            points, faces = (np.concatenate(each) for each in zip(*held))
-            faces[len(held[0][1]) :] += len(held[0][0])
-            found.append((fork.ARMS, (points, faces)))
-        return [(name, _mesh(*solid)) for name, solid in found]
+        return _runs_and_arms(fork, machine)
     if machines.kind(machine) == machines.WHEEL:
         return []
     run, found = machine["free_run"], []
@@ -217,14 +211,26 @@ def machine_bodies(machine):
     if radius > 0.0:
         roller = {"radius_mm": radius, "width_mm": run["width_mm"]}
         mesh = wheel_body({**roller, "crown_radius_mm": 0.0, "profile_mm": []}, 0.0)
-        for name, middle in zip(ROLLERS, free_run.ends(machine)):
+        for name, (x, z) in zip(ROLLERS, free_run.roller_axes(machine)):
             # A wheel's body has its axis at -radius.
-            place = [middle, 0.0, free_run.roller_height(machine) + radius]
-            points = mesh.vertices + np.array(place, dtype=np.float32)
+            points = mesh.vertices + np.array([x, 0.0, z + radius], dtype=np.float32)
             found.append((name, core.TriangleMesh(points, mesh.triangles)))
     if machines.kind(machine) == machines.PLATEN:
         found.append((PLATE, _mesh(*free_run.plate(machine))))
+    if free_run.has_runs(machine):
+        found += _runs_and_arms(free_run, machine)
     return found
+
+
+def _runs_and_arms(holder, machine):
+    """``holder``: the module that knows them."""
+    found = [(name, holder.run(machine, side)) for name, side in zip(holder.NAMES, (-1.0, 1.0))]
+    held = holder.arms(machine)
+    if held:
+        starts = np.cumsum([0, *(len(points) for points, _ in held)])
+        faces = np.concatenate([faces + start for (_, faces), start in zip(held, starts)])
+        found.append((holder.ARMS, (np.concatenate([points for points, _ in held]), faces)))
+    return [(name, _mesh(*solid)) for name, solid in found]
 
 
 def _mesh(points, faces):

@@ -3,13 +3,13 @@
 from ..base.files import either
 from ..engine import InputError
 from ..presets.robot_shape import LINKS
-from . import fork, machine as machines
+from . import fork, free_run, machine as machines
 
 PART, STOCK, WHEEL = "part", "stock", "wheel"
 ROLLERS, PLATE = ("roller_before", "roller_behind"), "platen"  # of a belt without a wheel
 OF_KIND = {  # names of a belt machine's own bodies, beside the wheel
-    machines.FREE_BELT: ROLLERS,
-    machines.PLATEN: (*ROLLERS, PLATE),
+    machines.FREE_BELT: (*ROLLERS, *free_run.NAMES, free_run.ARMS),
+    machines.PLATEN: (*ROLLERS, PLATE, *free_run.NAMES, free_run.ARMS),
     machines.SMALL_WHEEL: (*fork.NAMES, fork.ARMS),
 }
 RESERVED = (PART, STOCK, WHEEL, *LINKS)  # names of the bodies that every cell has

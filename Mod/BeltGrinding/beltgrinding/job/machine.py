@@ -1,8 +1,10 @@
 """What kind of belt machine a job has: a contact wheel, a free belt, a platen, a small wheel in a fork."""
 
+import math
+
 from ..base import schemas
 from ..engine import InputError
-from . import fork
+from . import fork, free_run
 
 WHEEL, FREE_BELT, PLATEN = "contact_wheel", "free_belt", "platen"
 SMALL_WHEEL = "small_wheel"
@@ -24,8 +26,8 @@ def filled(machine, rules):
     needed = {
         WHEEL: (),
         SMALL_WHEEL: ("fork",),
-        FREE_BELT: ("free_run",),
-        PLATEN: ("free_run", "platen"),
+        FREE_BELT: ("free_run", "frame"),
+        PLATEN: ("free_run", "platen", "frame"),
     }[kind(machine)]
     for name in needed:
         machine[name] = schemas.filled(machine.get(name, {}), rules["properties"][name])
@@ -69,14 +71,48 @@ def check_run(machine):
             most=0.5 * run["length_mm"],
         )
     if kind(machine) == PLATEN:
-        most = run["length_mm"] - 2.0 * abs(run["position_mm"])
-        if machine["platen"]["length_mm"] > most:
+        _check_platen(machine)
+    least = free_run.short_frame(machine)
+    if least is not None:
+        raise InputError(
+            "job.short_frame",
+            "{key}: the belt's pulleys must lie more than {least:.4g} mm behind the rollers' axes; 0 leaves the runs out",
+            key="belt_machine.frame.length_mm",
+            least=least,
+        )
+
+
+def _check_platen(machine):
+    platen, run = machine["platen"], machine["free_run"]
+    radius = platen["radius_mm"]
+    if radius > 0.0:
+        least = 0.5 * platen["length_mm"] / math.sin(free_run.STEEPEST)
+        if radius < least:
             raise InputError(
-                "job.platen_length",
-                "{key}: the platen must lie between the rollers, so that it is {most:.4g} mm long at most",
-                key="belt_machine.platen.length_mm",
-                most=most,
+                "job.platen_radius",
+                "{key}: a platen of {length:.4g} mm would turn by more than 60 degrees to its ends; give {least:.4g} mm or "
+                "more, or 0 for a flat one",
+                key="belt_machine.platen.radius_mm",
+                length=platen["length_mm"],
+                least=least,
             )
+        thick = sum(layer["thickness_mm"] for layer in platen["layers"])
+        if thick >= radius:
+            raise InputError(
+                "job.platen_layers",
+                "{key}: the layers are {thick:.4g} mm thick and reach beyond the middle of the platen's radius of {radius:.4g} mm",
+                key="belt_machine.platen.layers",
+                thick=thick,
+                radius=radius,
+            )
+    most = run["length_mm"] - 2.0 * abs(run["position_mm"])
+    if free_run.length_on(machine) > most:
+        raise InputError(
+            "job.platen_length",
+            "{key}: the platen must lie between the rollers, so that it is {most:.4g} mm long at most",
+            key="belt_machine.platen.length_mm",
+            most=most,
+        )
 
 
 def need_wheel(job, what):
@@ -110,6 +146,7 @@ def engine_machine(machine):
     if kind(machine) == PLATEN:
         platen = machine["platen"]
         result["platen_length"] = float(platen["length_mm"])
+        result["platen_radius"] = float(platen["radius_mm"])
         result["layer_surface_stiffness"] = float(platen["surface_stiffness_MPa_per_mm"])
         result["layers"] = [
             {

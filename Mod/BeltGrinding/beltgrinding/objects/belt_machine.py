@@ -23,9 +23,16 @@ RUN_KEYS = (
 )
 PLATEN_KEYS = (
     Key("PlatenLength", "Length", "Platen", "belt_machine.platen.length_mm"),
+    Key("PlatenRadius", "Length", "Platen", "belt_machine.platen.radius_mm"),
     Key("PlatenLayers", "JSON", "Platen", "belt_machine.platen.layers"),
     Key("LayerStiffness", "Float", "Platen", "belt_machine.platen.surface_stiffness_MPa_per_mm"),
     Key("PlateThickness", "Length", "Platen", "belt_machine.platen.plate_thickness_mm"),
+)
+FRAME_KEYS = (
+    Key("FrameLength", "Length", "Frame", "belt_machine.frame.length_mm"),
+    Key("FrameSpread", "Length", "Frame", "belt_machine.frame.spread_mm"),
+    Key("FrameArmThickness", "Length", "Frame", "belt_machine.frame.arm_thickness_mm"),
+    Key("FrameArmSides", "Enumeration", "Frame", "belt_machine.frame.arm_sides"),
 )
 FORK_KEYS = (
     Key("ForkLength", "Length", "Fork", "belt_machine.fork.length_mm"),
@@ -36,8 +43,8 @@ FORK_KEYS = (
 # What a job has only of such a machine; a contact wheel's is that of earlier versions.
 KIND_KEYS = {
     WHEEL: (),
-    FREE_BELT: (KIND, *RUN_KEYS),
-    PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS),
+    FREE_BELT: (KIND, *RUN_KEYS, *FRAME_KEYS),
+    PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS, *FRAME_KEYS),
     SMALL_WHEEL: (KIND, *FORK_KEYS),
 }
 KEYS = (
@@ -86,8 +93,15 @@ KEYS = (
     Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),
     Key("FlipAngle", "Angle", "Robot", "robot.flip_deg"),
 )
-ALL_KEYS = (KIND, *RUN_KEYS, *PLATEN_KEYS, *FORK_KEYS, *KEYS)
-OF_KINDS = ("Free run", "Platen", "Fork", "Wheel", "Elasticity")  # groups that not all kinds use
+ALL_KEYS = (KIND, *RUN_KEYS, *PLATEN_KEYS, *FRAME_KEYS, *FORK_KEYS, *KEYS)
+OF_KINDS = (
+    "Free run",
+    "Platen",
+    "Frame",
+    "Fork",
+    "Wheel",
+    "Elasticity",
+)  # groups that not all kinds use
 FRAMES = {
     "BaseFromWork": ("base_from_work", "tool in hand: the document's origin in the base frame"),
     "TcpFromContact": ("tcp_from_contact", "tool in hand: the contact frame in the tool frame"),

@@ -31,6 +31,9 @@ JOB_KEYS = {
 }
 RANGES = {"friction": "heat.friction", "partition": "heat.partition"}  # both ends are the job's
 MACHINE_KIND = "belt_machine.kind"
+FLAT = {
+    "belt_machine.platen.radius_mm": 0.0
+}  # what a platen's preset sets besides: all of them are flat
 # What a force control's preset sets besides its numbers: what it has no number for is not there.
 ACTUATOR = {
     "belt_machine.force_dynamics.model": "actuator",

@@ -14,7 +14,7 @@ from ..base.files import at_key, in_file
 from ..base.resources import resources
 from ..engine import InputError
 from . import robot_model
-from .job_keys import ACTUATOR, JOB_KEYS, MACHINE_KIND, RANGES
+from .job_keys import ACTUATOR, FLAT, JOB_KEYS, MACHINE_KIND, RANGES
 from .rubber import cite, modulus, shore_to_modulus, spread_text
 
 __all__ = [
@@ -245,6 +245,7 @@ def settings(wheel=None, belt=None, material=None, actuator=None, machine=None, 
             found.update(ACTUATOR)
         if kind == "machines":
             found[MACHINE_KIND] = preset["kind"]
+            found.update(FLAT if preset["kind"] == "platen" else {})
         if kind == "thermals":
             found["heat.material"] = preset["name"]
             limit = preset.get("burn_temperature")

@@ -99,7 +99,7 @@ def _drop(wheel):
 
 
 class Belt:
-    """The flat belt between its rollers, as it touches nothing. What of the part reaches through it beside the contact
+    """The belt between its rollers, as it touches nothing: flat, or bent over a curved platen. What of the part reaches through it beside the contact
     bears the belt there, as a wall beside a wheel would."""
 
     belt = True
@@ -110,15 +110,16 @@ class Belt:
         run = machine["free_run"]
         self.width, self.length = float(run["width_mm"]), float(run["length_mm"])
         self.check = self.width / CHECKS
-        self._middle = -float(run["position_mm"])
+        self._machine = machines.engine_machine(machine)
         radius, thickness = float(run["roller_radius_mm"]), float(run["thickness_mm"])
         # Up to the belt that runs back.
         self._behind = max(2.0 * (radius + thickness), LEAST_BEHIND)
         self._roller = {"radius": radius, "width": self.width}  # a cylinder
         # Where a wheel would touch that stands as they do.
-        low = free_run.roller_height(machine) + radius + advance
-        ends = free_run.ends(machine) if radius > 0.0 else ()
-        self._rollers = [np.array([x, 0.0, low]) for x in ends]
+        axes = free_run.roller_axes(machine) if radius > 0.0 else ()
+        self._rollers = [np.array([x, 0.0, z + radius + advance]) for x, z in axes]
+        self._radius = free_run.arc(machine)[0]
+        self._face = free_run.line(machine, free_run.face(machine))  # [x, z]
 
     @property
     def name(self):
@@ -139,12 +140,18 @@ class Belt:
         }
 
     def chord(self, depth):
-        """mm on which it stands ``depth`` deep in a plane: all."""
+        """mm on which it stands ``depth`` deep in a plane: all, where it is flat."""
+        if self._radius > 0.0:
+            return min(2.0 * math.sqrt(2.0 * self._radius * depth), self.length)
         return self.length
 
     def over_border(self, lead):
-        """mm (n,) by which it must stand off other faces, ``lead`` (n,) beyond a border."""
-        return np.full(len(lead), OFF)
+        """mm (n,) by which it must stand off other faces, ``lead`` (n,) beyond a border; of a curved platen a share of how
+        high it stands over that, as of a wheel."""
+        off = np.full(len(lead), OFF)
+        if self._radius > 0.0:
+            off = np.maximum(off, CLEAR * np.asarray(lead) ** 2 / (2.0 * self._radius))
+        return off
 
     def shift(self, lean):
         """From the leaned contact frame's origin to the point that lies deepest in the work, in that frame (3,)."""
@@ -152,8 +159,9 @@ class Belt:
 
     def depth(self, frames, points, context=None):
         """mm (n,) that points (k, 3) stand in it, or in its rollers."""
-        size = self.length, self._middle, self.width, self._behind
-        found = np.asarray(core.run_fit(*size, frames, points, context))
+        found = np.asarray(
+            core.run_fit(self._machine, self._behind, frames, points, context=context)
+        )
         if not self._rollers:
             return found
         both = []  # at once: the points are sorted into cells at each call
@@ -168,13 +176,14 @@ class Belt:
         return self.depth(frames, points, context)
 
     def edge_gap(self, length, width):
-        """mm from it to a plane: none, on which it lies."""
-        return OFF
+        """mm from it to a plane at the ends of a contact of ``length``: none, where it is flat."""
+        return max(OFF, length**2 / (8.0 * self._radius)) if self._radius > 0.0 else OFF
 
     def under(self, points, frames, length, gap):
         """(k,) bool of points (k, 3) that lie no farther than ``gap`` from it at one of its frames, on ``length`` mm
         along it."""
         way = points[:, None] - frames[:, :3, 3][None]
-        x, y, z = (abs(np.einsum("nkx,kx->nk", way, frames[:, :3, k])) for k in range(3))
-        along = x <= 0.5 * min(length, self.length)
-        return (along & (y <= 0.5 * self.width) & (z <= max(gap, OFF))).any(axis=1)
+        x, y, z = (np.einsum("nkx,kx->nk", way, frames[:, :3, k]) for k in range(3))
+        along = abs(x) <= 0.5 * min(length, self.length)
+        off = abs(z - np.interp(x, *self._face.T))
+        return (along & (abs(y) <= 0.5 * self.width) & (off <= max(gap, OFF))).any(axis=1)

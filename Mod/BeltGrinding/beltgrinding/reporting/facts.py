@@ -199,6 +199,8 @@ def _belt(machine, words):
     if kind == machines.PLATEN:
         platen = machine["platen"]
         text = words("{length} mm long", length=words.figures(platen["length_mm"]))
+        if platen["radius_mm"] > 0.0:
+            text += ", R " + words.figures(platen["radius_mm"]) + " mm"
         text += ", " + words("{count} layers", count=len(platen["layers"]))
         rows.append((words("Platen"), text))
     return rows

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.messages import body, event_message, kind_text, notes, sentence, warnings
+from ..base.messages import body, event_message, event_title, notes, sentence, warnings
 from ..engine import core
 from ..inspection import finish_zones
 from ..job.poses import program_name
@@ -236,7 +236,7 @@ def events(content, words):
     order = sorted(counts, key=lambda kind: (_rank(first[kind]), -counts[kind], kind))
     rows = [
         (
-            [_severity(first[kind], words), element("b", words(kind_text(kind)))],
+            [_severity(first[kind], words), element("b", words(event_title(first[kind])))],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
             [_begun(event_message(first[kind], words.code)), _advice(first[kind], words)],
@@ -316,7 +316,7 @@ def all_events(content, words):
         (
             words.number(event["time"], 2),
             words.number(event.get("duration"), 2),
-            words(kind_text(event["kind"])),
+            words(event_title(event)),
             where_short(event, content.result.job, words),
             "" if event.get("face") is None else f"Face{event['face']}",
             _begun(event_message(event, words.code)),

@@ -44,13 +44,19 @@ struct BeltRun {
     void validate() const;
 };
 
-/// A flat plate with elastic layers under the belt.
+/// A plate with elastic layers under the belt, flat or convex towards the work.
 struct Platen {
-    double length = 120.0;  ///< mm along the travel, its middle at the origin
+    double length = 120.0;  ///< mm along the travel, its middle at the origin; of a curved one, the
+                            ///< straight way from end to end of the face that the belt slides on
+    /// mm, of that face, bent along the travel; 0: flat. The belt lies round all of it and leaves
+    /// it along its tangents, so that its tension presses N / R on it before there is work.
+    double radius = 0.0;
     /// From the plate outwards; empty: the plate itself is in touch with the belt.
     std::vector<ContactModelParameters::Layer> layers;
     double layer_surface_stiffness = 0.0;  ///< MPa/mm between belt and layer; 0: none gives way
 
+    /// rad that the face has turned by at its ends; 0 of a flat one.
+    double end_angle() const;
     /// Throws InputError naming the value that is none.
     void validate() const;
 };

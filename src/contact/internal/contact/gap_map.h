@@ -10,6 +10,7 @@
 
 #include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/height_field.h"
+#include "contact/belt_arc.h"
 #include "contact/coverage.h"
 #include "contact/displaced.h"
 #include "contact/placed_block.h"
@@ -35,8 +36,8 @@ class GapMap {
 
     /// The wheel, a very large one, stands for a belt, which is flat until it is pressed: its gap
     /// is the depth below a plane, far steeper slopes are of one layer, and there is nothing beyond
-    /// its free run from `from` to `to`, mm along the travel.
-    void lie_flat(double from, double to);
+    /// its free run from `from` to `to`, mm along the travel. `face`: where its face lies.
+    void lie_flat(double from, double to, const BeltArc& face = {});
     /// Looks once at the borders and steps of a field and the form of its samples' patches, which
     /// `update` does otherwise.
     void prepare(const SampleBlocks& blocks);
@@ -64,8 +65,8 @@ class GapMap {
     bool empty() const { return samples_ == 0; }
     /// Samples in reach.
     std::size_t samples() const { return samples_; }
-    /// Smallest gap, mm; +inf when empty.
-    double lowest() const { return gap_.size() > 0 ? gap_.minCoeff() : kNone; }
+    /// Smallest gap, mm, of a belt that to where its face lies; +inf when empty.
+    double lowest() const;
 
     /// What bears pressure beyond the side faces from now on, until the next update.
     void reach_beside(const DisplacedPressure& pressure);
@@ -318,6 +319,7 @@ class GapMap {
         double from, to;  // mm
     };
     std::optional<Run> run_;  // of a belt
+    BeltArc face_;            // the same: how its face lies
     Eigen::ArrayXd stretch_;  // of a belt: mm2 of surface by mm2 of its cells' plane; else empty
     Frame contact_from_work_ = Frame::Identity();
     ContactGrid grid_;

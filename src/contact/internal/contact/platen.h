@@ -9,10 +9,12 @@
 
 namespace beltgrinding {
 
-/// A belt that slides over a flat plate with elastic layers, pressed on the work: the plate of
-/// `FreeBelt`, borne by the layers where it is pressed on them, and free to lift off. The layers
-/// are those of a wheel's rim whose radius is beyond all measure: the same semi-analytical section,
-/// with free side faces at the belt's edges. Pressure and force are as those of `FreeBelt`.
+/// A belt that slides over a plate, flat or curved, with elastic layers, pressed on the work: the
+/// plate of `FreeBelt`, borne by the layers where it is pressed on them, and free to lift off. The
+/// layers are those of a wheel's rim whose radius is beyond all measure: the same semi-analytical
+/// section, with free side faces at the belt's edges; of a curved platen, the rim of its own
+/// radius. What the belt's tension presses on that is there before any work. Pressure and force are
+/// as those of `FreeBelt`.
 class PlatenBelt final : public ContactModel {
   public:
     /// Throws InputError for a belt, a run or a platen that is none.

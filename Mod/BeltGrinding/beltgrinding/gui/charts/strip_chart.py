@@ -179,4 +179,4 @@ def describe(event):
     where = translate("BeltGrinding", "{:.2f} s, pose {}").format(event["time"], event["pose"] + 1)
     if event["line"]:
         where += translate("BeltGrinding", ", line {}").format(event["line"])
-    return f"{event_texts.title(event['kind'])} ({where})\n{event_texts.message(event)}"
+    return f"{event_texts.title(event)} ({where})\n{event_texts.message(event)}"

@@ -1,6 +1,6 @@
 """Events in words, in the language of the window."""
 
-from ...base.messages import body as body_name, event_message, kind_text
+from ...base.messages import body as body_name, event_message, event_title
 from .compat import translate
 from .report_language import words
 
@@ -14,9 +14,9 @@ def severities():
     }
 
 
-def title(code):
-    """The title of a kind; of one that is not known, its code in words."""
-    return words()(kind_text(code))
+def title(event):
+    """The title of an event; of a kind that is not known, its code in words."""
+    return words()(event_title(event))
 
 
 def message(event):

@@ -32,12 +32,14 @@ class BeltMachinePanel(Panel):
         self.run = _run_form(obj)
         self.platen = Form(obj, translate("BeltGrinding", "Platen"))
         self.platen.add("PlatenLength", translate("BeltGrinding", "Length"))
+        self.platen.add("PlatenRadius", translate("BeltGrinding", "Radius (0: flat)"))
         self.platen.add("PlateThickness", translate("BeltGrinding", "Plate's thickness"))
         text = translate("BeltGrinding", "Its back (0: same)")
         self.platen.add("LayerStiffness", text, unit="MPa/mm")
         self.layers = LayerRows(layers_of(obj))
         self.layers.changed = self._layers_changed
         self.platen.layout_.addRow(self.layers)
+        self.frame = _frame_form(obj)
         self.fork = Form(obj, translate("BeltGrinding", "Fork, for collisions"))
         self.fork.add("ForkLength", translate("BeltGrinding", "Axle to pulleys"))
         self.fork.add("ForkSpread", translate("BeltGrinding", "Between the runs"))
@@ -99,7 +101,7 @@ class BeltMachinePanel(Panel):
         belt.add("RobotStiffness", text, unit="N/mm")
         self.belt, self.wheel = belt, wheel
         self.body.addWidget(kind)
-        forms = (kind, wheel, self.fork, self.run, self.platen, belt)
+        forms = (kind, wheel, self.fork, self.run, self.platen, self.frame, belt)
         self.presets = PresetForm(obj, forms, self.hardness)
         self.body.addWidget(self.presets)
         for form in forms:
@@ -114,6 +116,11 @@ class BeltMachinePanel(Panel):
         of_wheel = self.obj.Kind in machines.WHEELS
         self.wheel.setVisible(of_wheel)
         self.run.setVisible(not of_wheel)
+        self.frame.setVisible(not of_wheel)
+        arms = {"FrameSpread", "FrameArmThickness"} if self.obj.FrameLength.Value > 0.0 else set()
+        if arms and self.obj.FrameArmThickness.Value > 0.0:
+            arms |= {"FrameArmSides"}
+        self.frame.show_rows({"FrameLength"} | arms)
         self.fork.setVisible(self.obj.Kind == machines.SMALL_WHEEL)
         self.platen.setVisible(self.obj.Kind == machines.PLATEN)
         self.presets.show_kind(self.obj.Kind)
@@ -220,4 +227,19 @@ def _run_form(obj):
     form.add("RunPoissonsRatio", translate("BeltGrinding", "Poisson's ratio"))
     text = translate("BeltGrinding", "Belt's face (0: own)")
     form.add("FaceStiffness", text, unit="MPa/mm")
+    return form
+
+
+def _frame_form(obj):
+    """What holds the rollers, and the belt's way to them."""
+    form = Form(obj, translate("BeltGrinding", "Frame, for collisions"))
+    form.add("FrameLength", translate("BeltGrinding", "Rollers to pulleys (0: none)"))
+    form.add("FrameSpread", translate("BeltGrinding", "Between the runs"))
+    form.add("FrameArmThickness", translate("BeltGrinding", "Arms (0: none)"))
+    sides = {
+        "both": translate("BeltGrinding", "Both"),
+        "minus_y": translate("BeltGrinding", "At −y"),
+        "plus_y": translate("BeltGrinding", "At +y"),
+    }
+    form.add("FrameArmSides", translate("BeltGrinding", "Sides with arms"), sides)
     return form

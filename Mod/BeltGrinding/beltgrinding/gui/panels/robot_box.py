@@ -146,7 +146,7 @@ class RobotBox(QtGui.QGroupBox):
         self.events = result["events"][:SHOWN_EVENTS]
         self.list.clear()
         for event in self.events:
-            kind, message = event_texts.title(event["kind"]), event_texts.message(event)
+            kind, message = event_texts.title(event), event_texts.message(event)
             self.list.addItem(f"{event['pose'] + 1}: {kind}: {message}")
         for text in self._notes(result):
             self.list.addItem(text)

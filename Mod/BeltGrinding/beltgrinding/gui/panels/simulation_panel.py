@@ -2,6 +2,7 @@
 
 import json
 
+import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import InputError, core
@@ -19,6 +20,39 @@ from ..common.verdict_words import headline, shares
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
 from .run_panel import RunPanel
+
+
+LIMITS = ("ToleranceLower", "ToleranceUpper", "Zones")  # of the job: what the panel says is by them
+
+
+class _Follower:
+    """Calls ``changed`` once FreeCAD is at rest after the limits of ``job`` or its Simulation have changed; an observer of the
+    documents until ``end``."""
+
+    def __init__(self, job, changed):
+        self.job, self.changed, self.due = job, changed, False
+        FreeCAD.addDocumentObserver(self)
+
+    def slotChangedObject(self, obj, name):
+        if self.due or self.job is None:
+            return
+        try:
+            ours = name in LIMITS if obj is self.job else obj is child(self.job, Simulation)
+        except (ReferenceError, RuntimeError):  # the job is gone
+            ours = False
+        if ours:
+            self.due = True
+            QtCore.QTimer.singleShot(0, self._tell)
+
+    def _tell(self):
+        self.due = False
+        if self.job is not None:
+            self.changed()
+
+    def end(self):
+        if self.job is not None:
+            self.job = None
+            FreeCAD.removeDocumentObserver(self)
 
 
 class SimulationPanel(RunPanel):
@@ -49,6 +83,9 @@ class SimulationPanel(RunPanel):
         self.table.hide()
         body.addWidget(self.table, 1)
         body.addStretch()
+        self.shown = None  # the events in the table
+        self.follower = follower = _Follower(job, self.follow)
+        self.form.destroyed.connect(lambda *_: follower.end())
         if run:
             self.start()
         else:
@@ -106,7 +143,18 @@ class SimulationPanel(RunPanel):
         )
         events = simulation.Proxy.events(simulation)
         self.table.setVisible(bool(events))
-        self.table.show_events(events)
+        if events != self.shown:  # else what is chosen there stays
+            self.table.show_events(events)
+            self.shown = events
+
+    def follow(self):
+        """The limits or the result have changed while the panel is open."""
+        if self.runner is not None:
+            return
+        try:
+            self.show(child(self.job, Simulation))
+        except (ReferenceError, RuntimeError):
+            self.follower.end()  # the job is gone
 
     def show_moment(self, event):
         """Shows a chosen event in the 3D view."""
@@ -116,6 +164,7 @@ class SimulationPanel(RunPanel):
             self._say(error_text(error), True)
 
     def deviation(self):
+        self.follower.end()
         self.moment.close()
         Gui.Control.closeDialog()
         Gui.runCommand("BeltGrinding_Deviation")
@@ -126,6 +175,7 @@ class SimulationPanel(RunPanel):
         self.look.setVisible(not running and child(self.job, Simulation) is not None)
 
     def reject(self):
+        self.follower.end()
         self.moment.close()
         return super().reject()
 

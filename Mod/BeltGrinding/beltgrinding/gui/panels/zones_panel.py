@@ -15,8 +15,15 @@ from .panel import Panel
 
 COLUMNS = 9
 NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK, RA, LAY = range(COLUMNS)
+IN_TABLE = (
+    NAME,
+    FACES,
+    LOWER,
+    UPPER,
+)  # what a narrow dock has room for; the rest is of the chosen zone
+FIELDS = {EDGE: "zoneEdge", THIN: "zoneThin", THICK: "zoneThick", RA: "zoneRa", LAY: "zoneLay"}
 LIMITS = ((LOWER, UPPER, "tolerance_mm"), (THIN, THICK, "thickness_mm"))
-HEIGHT = 180  # pixels
+HEIGHT = 140  # pixels
 ACCEPTANCES = ("Tmax", "T16%")
 LAYS = {"=": "lay_direction", "⊥": "lay_direction", "C": "lay_centre_mm", "R": "lay_centre_mm"}
 WITHOUT = ("X", "M", "P")  # lays that refer to nothing; P is refused, with the reason
@@ -40,6 +47,8 @@ class ZonesPanel(Panel):
         self.table = self._table()
         self.body.addWidget(self.table)
         self.body.addLayout(self._buttons())
+        self.fields = {}  # column: field of the chosen zone
+        self.body.addWidget(self._chosen())
         self.finish()
         Gui.Selection.addSelectionGate(FaceGate())
         self.tint = FaceTint(self.document)
@@ -80,14 +89,55 @@ class ZonesPanel(Panel):
         }
         for column, tip in tips.items():
             table.horizontalHeaderItem(column).setToolTip(tip)
+        for column in set(range(COLUMNS)) - set(IN_TABLE):
+            table.setColumnHidden(column, True)
         table.verticalHeader().hide()
         table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
         table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
         table.setMinimumSize(120, HEIGHT)
-        table.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.ResizeToContents)
+        header = table.horizontalHeader()
+        header.setSectionResizeMode(QtGui.QHeaderView.ResizeToContents)
+        header.setSectionResizeMode(NAME, QtGui.QHeaderView.Stretch)  # a long name is cut short
         table.itemChanged.connect(lambda _: self.changed())
-        table.currentCellChanged.connect(lambda *_: self.tint_row())
+        table.currentCellChanged.connect(lambda *_: self._chose())
         return table
+
+    def _chosen(self):
+        """Fields for what of the chosen zone the table has no room for."""
+        self.box = QtGui.QGroupBox(translate("BeltGrinding", "Chosen zone"))
+        form = QtGui.QFormLayout(self.box)
+        form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        form.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        for column, name in FIELDS.items():
+            head = self.table.horizontalHeaderItem(column)
+            field = QtGui.QLineEdit()
+            field.setObjectName(name)
+            label = QtGui.QLabel(head.text())
+            for one in (label, field):
+                one.setToolTip(head.toolTip())
+            field.textEdited.connect(lambda text, k=column: self._typed(k, text))
+            form.addRow(label, field)
+            self.fields[column] = field
+        return self.box
+
+    def _typed(self, column, text):
+        item = self.table.item(self.table.currentRow(), column)
+        if item is not None:
+            item.setText(text)
+
+    def _show_chosen(self):
+        row = self.table.currentRow()
+        self.box.setEnabled(row >= 0)
+        for column, field in self.fields.items():
+            item = self.table.item(row, column) if row >= 0 else None
+            text = "" if item is None else item.text()
+            if field.text() != text:
+                field.setText(text)
+
+    def _chose(self):
+        if not self.quiet:
+            self._show_chosen()
+            self.tint_row()
 
     def _buttons(self):
         grid = QtGui.QGridLayout()
@@ -234,6 +284,7 @@ class ZonesPanel(Panel):
         """Takes the table over into the job, if it is sound; says what is wrong otherwise."""
         if self.quiet:
             return
+        self._show_chosen()
         try:
             job_data.set_zones(self.obj, self.zones())
         except InputError as error:

@@ -1,89 +1,163 @@
 """Coin nodes of a free belt, a platen and a fork: rollers, the belt round them, the plate and its layers; runs and arms.
 
-All are in the contact frame: its origin lies on the belt's outer face, x along the travel, z into the work. The
-belt is drawn as it runs when it touches nothing.
+All are in the contact frame: its origin lies on the belt's outer face, x along the travel, z into the work.
 """
 
 import math
 
 import numpy as np
 
-from ...base.solids import box
-from ...job import fork, free_run
+from ...base.solids import strip
+from ...engine import InputError
+from ...job import fork, free_run, pressed_belt
 from ...job.bodies import PLATE, ROLLERS
-from ...objects.belt_machine import KEYS, KIND_KEYS, LAYERS, PLATEN, layers_of
+from ...objects.belt_machine import KEYS, KIND_KEYS, LAYERS, PLATEN, check_run, layers_of
 from ...objects.properties import to_job
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
 TURN = 24  # chords of the belt round a roller
+ALONG = 96  # places of the belt between its rollers, where it is pressed
+BELT_NODE = "BeltGrindingBelt"  # name of the belt's node in that of ""
 LEAST = 0.004  # of the free length: a belt that is thinner is drawn so thick
 AXES = 0.15  # of the free length
 
 
 def parts(machine):
-    """{name of the body in events, or '' for what is none: node} of a free belt or platen in the document."""
-    job = _of_job(machine)
-    found = {"": separator(material(BELT), triangles(*belt(job), crease=0.8))}
-    found[""].addChild(axes(AXES * job["free_run"]["length_mm"]))
-    for name, middle in zip(ROLLERS, free_run.ends(job)):
+    """{name of the body in events, or '' for what is none: node} of a free belt or platen in the document; the belt as it
+    touches nothing."""
+    job = as_job(machine)
+    found = {"": separator(belt_node(job), axes(AXES * job["free_run"]["length_mm"]))}
+    for name, axis in zip(ROLLERS, free_run.roller_axes(job)):
         if job["free_run"]["roller_radius_mm"] > 0.0:
-            found[name] = separator(material(CORE), triangles(*roller(job, middle)))
+            found[name] = separator(material(CORE), triangles(*roller(job, axis)))
     if machine.Kind == PLATEN:
         found[PLATE] = separator(material(CORE), triangles(*free_run.plate(job), crease=0.0))
         for layer in free_run.layers(job):
             found[""].addChild(separator(material(RUBBER), triangles(*layer, crease=0.0)))
+    if _runs(job):
+        found.update(_runs_and_arms(free_run, job))
     return found
 
 
 def fork_parts(machine):
     """{name of the body in events: node} of what holds a small wheel in the document: the belt's runs, the arms."""
-    job, found = _of_job(machine), {}
-    for name, side in zip(fork.NAMES, (-1.0, 1.0) if fork.holds(job) else ()):
-        found[name] = separator(material(BELT), triangles(*fork.run(job, side), crease=0.0))
-    arms = [triangles(*arm, crease=0.0) for arm in fork.arms(job)]
+    job = as_job(machine)
+    return _runs_and_arms(fork, job) if fork.holds(job) else {}
+
+
+def _runs_and_arms(holder, job):
+    found = {}
+    for name, side in zip(holder.NAMES, (-1.0, 1.0)):
+        found[name] = separator(material(BELT), triangles(*holder.run(job, side), crease=0.0))
+    arms = [triangles(*arm, crease=0.0) for arm in holder.arms(job)]
     if arms:
-        found[fork.ARMS] = separator(material(CORE), *arms)
+        found[holder.ARMS] = separator(material(CORE), *arms)
     return found
 
 
-def _of_job(machine):
-    """A job's ``belt_machine`` of one in the document; layers that were written by hand and are none are left out."""
+def as_job(machine):
+    """A job's ``belt_machine`` of one in the document; layers that were written by hand and are none are left out, and so
+    is a radius that a platen cannot have."""
     keys = (key for key in KIND_KEYS[machine.Kind] if key is not LAYERS)
     job = {"belt_machine": {}}
     to_job(machine, (*keys, *KEYS), job)
+    job = job["belt_machine"]
     if machine.Kind == PLATEN:
-        job["belt_machine"]["platen"]["layers"] = layers_of(machine)
-    return job["belt_machine"]
+        job["platen"]["layers"] = layers_of(machine)
+        try:
+            check_run(job)
+        except InputError:
+            job["platen"]["radius_mm"] = 0.0
+    return job
 
 
-def roller(job, middle):
-    """(points, triangles) of a roller at x ``middle``. ``job``: a job's belt_machine."""
+def press(node, job, points, triangles, was_pressed):
+    """Draws the belt in the node of '' of ``parts`` as a part presses it, a mesh with its points (n, 3) in the contact frame;
+    whether that reaches through it. ``was_pressed``: what this said the last time."""
+    section = pressed_belt.slab(points, triangles, 0.5 * job["free_run"]["width_mm"])
+    pushed = pressed_belt.pushed(job, section)
+    if pushed is not None or was_pressed:
+        for k in range(node.getNumChildren()):
+            if node.getChild(k).getName() == BELT_NODE:
+                node.replaceChild(k, belt_node(job, pushed))
+    return pushed is not None
+
+
+def roller(job, axis):
+    """(points, triangles) of a roller whose axis lies at [x, z]. ``job``: a job's belt_machine."""
     run = job["free_run"]
     radius, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
     line = np.array([[-half, 0.0], [-half, radius], [half, radius], [half, 0.0]])
     points, faces = revolved(line)
-    return points + [middle, 0.0, free_run.roller_height(job)], faces
+    return points + [axis[0], 0.0, axis[1]], faces
 
 
-def belt(job):
-    """(points, triangles) of the whole belt round its rollers; without rollers, of the free run."""
+def belt_node(job, pushed=None):
+    """``pushed``: as of ``belt``."""
+    node = separator(material(BELT), triangles(*belt(job, pushed), crease=0.8))
+    node.setName(BELT_NODE)
+    return node
+
+
+def outline(job):
+    """Points [x, z] (n, 2) of the belt's outer face, as ``belt`` has it; where it goes round, the first once more."""
+    line = _round_rollers(job, free_run.line(job, free_run.face(job)), 0.0)
+    return np.concatenate([line, line[:1]]) if _closed(job) else line
+
+
+def belt(job, pushed=None):
+    """(points, triangles) of the belt from roller to roller and round them, back from one to the other unless its runs are
+    drawn apart. ``pushed``: (x, mm) by which its face is pressed in from where it touches nothing.
+    """
     run = job["free_run"]
     thickness = max(run["thickness_mm"], LEAST * run["length_mm"])
-    inner, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
-    first, last = free_run.ends(job)
-    if inner <= 0.0:
-        return box([first, -half, -thickness], [last, half, 0.0])
-    centre, outer = free_run.roller_height(job), inner + run["thickness_mm"]
-    angles = np.linspace(0.5 * math.pi, -0.5 * math.pi, TURN + 1)
+    places = free_run.face(job)
+    if pushed is not None:
+        places = np.union1d(places, np.linspace(places[0], places[-1], ALONG + 1))
     lines = []
-    for radius in (outer - thickness, outer):
-        x, z = radius * np.cos(angles), radius * np.sin(angles) + centre
-        lines.append(np.stack([np.r_[last + x, first - x[::-1]], np.r_[z, z[::-1]]], axis=1))
-    return band(*lines, half)
+    for below in (thickness, 0.0):
+        face = free_run.line(job, places, below)
+        if pushed is not None:
+            face[:, 1] -= np.interp(free_run.line(job, places)[:, 0], *pushed, left=0.0, right=0.0)
+        lines.append(_round_rollers(job, face, below))
+    return (band if _closed(job) else _between)(*lines, 0.5 * run["width_mm"])
+
+
+def _between(inside, outside, half):
+    return strip(outside, inside, half)
+
+
+def _closed(job):
+    """The belt goes on from one roller to the other behind them."""
+    return job["free_run"]["roller_radius_mm"] > 0.0 and not _runs(job)
+
+
+def _runs(job):
+    return free_run.has_runs(job) and free_run.short_frame(job) is None
+
+
+def _round_rollers(job, face, below):
+    """Points [x, z] (n, 2) of a line of the belt that goes on round the rollers, ``below`` mm under its outer face."""
+    run = job["free_run"]
+    if run["roller_radius_mm"] <= 0.0:
+        return face
+    radius = run["roller_radius_mm"] + run["thickness_mm"] - below
+    first, last = free_run.roller_axes(job)
+    start = free_run.arc(job)[1]  # the belt's normal there, from z towards the roller's outer side
+    ends = [math.pi, math.pi]
+    if _runs(job):
+        for k, (side, axis) in enumerate(zip((-1.0, 1.0), (first, last))):
+            x, z = (free_run.run_corners(job, side)[0] - axis) * [side, 1.0]
+            ends[k] = math.atan2(x, z)
+    before, after = (np.linspace(start, end, TURN + 1) for end in ends)
+    left = first + radius * np.stack([-np.sin(before), np.cos(before)], axis=1)
+    right = last + radius * np.stack([np.sin(after), np.cos(after)], axis=1)
+    return np.concatenate([left[:0:-1], face, right[1:]])
 
 
 def band(inside, outside, half):
-    """(points, triangles) between two closed lines [x, z] (n, 2), ``half`` wide to both sides of y = 0."""
+    """(points, triangles) between two lines [x, z] (n, 2) that go round together, from the last point back to the first,
+    ``half`` wide to both sides of y = 0."""
     rings = [
         np.stack([line[:, 0], np.full(len(line), y), line[:, 1]], axis=1)
         for line, y in ((inside, -half), (inside, half), (outside, half), (outside, -half))

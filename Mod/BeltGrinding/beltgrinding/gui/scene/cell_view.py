@@ -12,6 +12,7 @@ from ...base.frames import work_from_frames
 from ...job.bodies import WHEEL
 from ...objects import belt_machine, bodies
 from . import belt_shapes
+from .part_context import mesh_of_part
 from .robot_view import RobotView
 from .shapes3d import (
     axes,
@@ -51,6 +52,11 @@ class CellView:
             nodes = [self.places[name]] if name in self.places else []
             self.root.addChild(separator(*nodes, things))
         self.bodies, self.tinted = {}, ()  # {name: node}; names
+        self.belt = None  # of a machine without a wheel, as a job has it
+        self.part, self.pressed = (
+            None,
+            False,
+        )  # (points, triangles); whether it is drawn in the belt
         self.robot = RobotView()
         self.root.addChild(self.robot.root)
         self.scenes = [
@@ -96,6 +102,7 @@ class CellView:
         if self.machine is not None:
             size = belt_machine.half_size(self.machine)
             self.bodies = self._pressing()
+            self._take_part()
             for node in self.bodies.values():
                 self.things["contact"].addChild(node)
             for name, frame, obj in bodies.listed(self.machine):
@@ -117,6 +124,24 @@ class CellView:
             )
             return {WHEEL: wheel(self.machine), **more}
         return belt_shapes.parts(self.machine)
+
+    def _take_part(self):
+        """What presses on a belt, where that is no wheel."""
+        self.belt, self.part, self.pressed = None, None, False
+        job = self.machine.getParentGroup()
+        if self.machine.Kind in belt_machine.WHEELS or not hasattr(job, "DesignFaces"):
+            return
+        self.belt, self.part = belt_shapes.as_job(self.machine), mesh_of_part(job)
+
+    def _press(self, contact):
+        """Draws the belt as the part presses it at the pose."""
+        if self.part is None or not len(self.part[1]):
+            return
+        points, triangles = self.part
+        points = (points - contact[:3, 3]) @ contact[:3, :3]
+        self.pressed = belt_shapes.press(
+            self.bodies[""], self.belt, points, triangles, self.pressed
+        )
 
     def tint(self, names):
         """Draws the bodies of these names, as events have them, in a warning colour; the others in
@@ -168,6 +193,7 @@ class CellView:
         for name, node in self.places.items():
             set_matrix(node, frames[name])
         set_matrix(self.carrier, self.carried(frames))
+        self._press(frames["contact"])
         self.robot.place(frames["base"], self.base_from_tcp(), self.pose)
 
     def carried(self, frames):

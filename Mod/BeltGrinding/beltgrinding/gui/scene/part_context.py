@@ -111,6 +111,14 @@ def points_of_part(job):
     return _spread[0][1]
 
 
+def mesh_of_part(job):
+    """(points (n, 3), triangles (m, 3)) of a job's part, mm; none of both where it has no part."""
+    try:
+        return tessellated(design_of(job)[0])
+    except InputError:
+        return np.zeros((0, 3)), np.zeros((0, 3), dtype=int)
+
+
 def _spread_over(points, triangles):
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)

@@ -81,7 +81,7 @@ class EventMoment:
 
     def _mark(self, event, point):
         self._unmark()
-        node = pin(point, COLOURS[event["severity"]], event_texts.title(event["kind"]))
+        node = pin(point, COLOURS[event["severity"]], event_texts.title(event))
         self.mark = node, [view.getSceneGraph() for view in self._views()]
         for scene in self.mark[1]:
             scene.addChild(node)

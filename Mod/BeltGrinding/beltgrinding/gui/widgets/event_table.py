@@ -83,11 +83,12 @@ class EventTable(QtGui.QWidget):
         for event in events:
             kinds[event["kind"]] = kinds.get(event["kind"], 0) + 1
             severities[event["severity"]] = severities.get(event["severity"], 0) + 1
+        titles = {event["kind"]: event_texts.title(event) for event in reversed(events)}
         worst = {e["kind"]: SEVERITIES.index(e["severity"]) for e in reversed(events)}
         every = translate("BeltGrinding", "All events ({})").format(len(events))
         rows = [("", every, None)]
         for kind in sorted(kinds, key=lambda kind: (worst[kind], -kinds[kind])):
-            text = f"{event_texts.title(kind)} ({kinds[kind]})"
+            text = f"{titles[kind]} ({kinds[kind]})"
             rows.append((kind, text, SEVERITIES[worst[kind]]))
         self._offer(self.kind, rows)
         rows = [("", translate("BeltGrinding", "Any"), None)]
@@ -125,7 +126,7 @@ class EventTable(QtGui.QWidget):
             where = self.face_name(event["face"]) if event["face"] else event_texts.bodies(event)
             short = where.rpartition(".")[2] if event["face"] else where  # Face1 of Part.Face1
             message = event_texts.message(event)
-            cells = (f"{event['time']:.2f}", event_texts.title(event["kind"]), short, line)
+            cells = (f"{event['time']:.2f}", event_texts.title(event), short, line)
             for k, text in enumerate(cells):
                 item = QtGui.QTableWidgetItem(text)
                 item.setToolTip(f"{where}: {message}" if where else message)
@@ -176,7 +177,7 @@ def details(event):
     names = event_texts.severities()
     lines = [
         f"<b style='color:{colour}'>{names[event['severity']][0]}: "
-        f"{_escape(event_texts.title(event['kind']))}</b>",
+        f"{_escape(event_texts.title(event))}</b>",
         _escape(_sentence(event_texts.message(event))),
     ]
     if event["advice"]:

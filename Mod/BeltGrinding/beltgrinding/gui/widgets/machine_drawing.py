@@ -2,15 +2,20 @@
 
 import math
 
+import numpy as np
+
+from ...job import free_run
 from ...objects import belt_machine as machines
 from ..common.compat import QtCore, QtGui, translate
 from ..common.theme import readable, theme
+from ..scene import belt_shapes
 
 HEIGHT = 132  # pixels
 EDGE = 6.0  # pixels round the drawing
 BELT, RUBBER, METAL = "#7a4026", "#3a3f47", "#9aa1ab"
 THICKEST = 0.5  # of the height that layers may take, so that the rest is seen
 ARROW = 5.0  # pixels
+THICK = 3.0  # pixels that the belt is drawn thick
 SMALL = 0.6  # of the size that a wheel has, so that its runs are seen
 
 
@@ -89,7 +94,11 @@ class MachineDrawing(QtGui.QWidget):
         )
 
     def _belt(self, painter):
-        machine, thick = self.machine, 3.0  # pixels that the belt is drawn thick
+        machine, thick = self.machine, THICK
+        if machine.Kind == machines.PLATEN and machine.PlatenRadius.Value > 0.0:
+            job = belt_shapes.as_job(machine)
+            if free_run.arc(job)[0] > 0.0:
+                return self._bent(painter, job)
         length = max(machine.RunLength.Value, 1e-3)
         radius = machine.RollerRadius.Value
         whole = length + 2.0 * max(radius, 0.05 * length)
@@ -110,10 +119,45 @@ class MachineDrawing(QtGui.QWidget):
         painter.drawRoundedRect(loop, roll, roll)
         self._work(painter, at)
         self._travel(painter, QtCore.QPointF(ends[1] - 30, top - 9))
+        self._say(painter, loop.bottom() + 3)
+
+    def _bent(self, painter, job):
+        """A belt over a curved platen, of a job's belt_machine: the parts as they are in the cell, one scale for all."""
+        loop = belt_shapes.outline(job)
+        low, high = loop.min(axis=0), loop.max(axis=0)
+        top, room = EDGE + 46.0, self.height() - 2 * EDGE - 80
+        across = (self.width() - 2 * EDGE - 4) / max(high[0] - low[0], 1e-3)
+        scale = min(across, room / max(high[1] - low[1], 1e-3))
+        middle = 0.5 * self.width() - 0.5 * (low[0] + high[0]) * scale
+
+        def polygon(points):
+            places = [
+                QtCore.QPointF(middle + x * scale, top + (high[1] - z) * scale) for x, z in points
+            ]
+            return QtGui.QPolygonF(places)
+
+        painter.setPen(QtGui.QPen(QtGui.QColor(METAL), 1))
+        solids = [(RUBBER, solid) for solid in free_run.layers(job)]
+        for colour, (points, _) in [*solids, (METAL, free_run.plate(job))]:
+            upper, _, lower, _ = np.split(points[:, [0, 2]], 4)
+            painter.setBrush(QtGui.QColor(colour))
+            painter.drawPolygon(polygon(np.concatenate([upper, lower[::-1]])))
+        radius = job["free_run"]["roller_radius_mm"] * scale
+        for axis in free_run.roller_axes(job) if radius > 0.0 else ():
+            self._disc(painter, polygon([axis])[0], radius, METAL)
+        painter.setBrush(QtCore.Qt.NoBrush)
+        painter.setPen(QtGui.QPen(readable(BELT), THICK))
+        painter.drawPolyline(polygon(loop))
+        self._work(painter, polygon([[0.0, 0.0]])[0])
+        self._travel(painter, QtCore.QPointF(self.width() - EDGE - 34, top - 9))
+        self._say(painter, top + (high[1] - low[1]) * scale + 5)
+
+    def _say(self, painter, low):
+        """The belt's sizes, below."""
+        machine = self.machine
         wide = translate("BeltGrinding", "width {}").format(f"{machine.RunWidth.Value:g} mm")
-        said = f"{length:g} mm · {machine.RunTension:g} N/mm\n{wide}"
+        said = f"{machine.RunLength.Value:g} mm · {machine.RunTension:g} N/mm\n{wide}"
         painter.setPen(QtGui.QColor(theme().text))
-        low = loop.bottom() + 3
         box = QtCore.QRectF(EDGE, low, self.width() - 2 * EDGE, self.height() - low)
         painter.drawText(box, QtCore.Qt.AlignHCenter | QtCore.Qt.AlignTop, said)
 

@@ -18,9 +18,9 @@ constexpr std::size_t kSpare = 8;  // share of the room that is left for a last 
 ChangeLog::ChangeLog(Arrays arrays)
     : blocks_(arrays.ends.size()), changes_(arrays.height.size()), runs_(arrays.runs.size()) {
     if (blocks_ == 0) return;
-    pieces_.push_back({0, std::make_shared<Piece>(Piece{std::move(arrays.runs),
-                                                        std::move(arrays.height),
-                                                        std::move(arrays.ends)})});
+    pieces_.push_back(
+        {0, std::make_shared<Piece>(
+                Piece{std::move(arrays.runs), std::move(arrays.height), std::move(arrays.ends)})});
 }
 
 std::size_t ChangeLog::bytes() const {
@@ -51,7 +51,8 @@ std::size_t ChangeLog::changes(std::size_t block) const {
 void ChangeLog::begin_block() {
     const auto has_room = [](const Place& place) {
         const std::vector<float>& height = place.of->height;
-        return place.of.use_count() == 1 && height.size() < height.capacity() - height.capacity() / kSpare;
+        return place.of.use_count() == 1 &&
+               height.size() < height.capacity() - height.capacity() / kSpare;
     };
     if (pieces_.empty() || !has_room(pieces_.back())) {
         // As much again as there is, so that a short log takes little.

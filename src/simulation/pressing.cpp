@@ -91,7 +91,8 @@ void Pressing::localise(const SampleBlocks& blocks, double margin) {
 
 void Pressing::map_gap(const SampleBlocks& blocks, double reach, double pressable) {
     const Stopwatch watch(times_.gap);
-    map_.update(blocks, hits_, placed_frame(), reach, tool_.ahead, pressable);
+    const double looked = all_edges_ ? std::numeric_limits<double>::infinity() : pressable;
+    map_.update(blocks, hits_, placed_frame(), reach, tool_.ahead, looked);
 }
 
 void Pressing::solve_force(const SampleBlocks& blocks, double force) {
@@ -151,6 +152,7 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     };
     solve_once();
     if (!map_.holds_for(solution_.pressure)) {
+        all_edges_ = true;
         map_.look_at_all_edges(blocks);
         solve_once();
     }
@@ -187,6 +189,7 @@ Pressing::State Pressing::press_position(const SampleBlocks& blocks) {
 Pressing::State Pressing::press(const SampleBlocks& blocks, const Frame& work_from_contact,
                                 double force) {
     programmed_ = work_from_contact;
+    all_edges_ = false;
     state_ = process_.force_control ? press_force(blocks, force) : press_position(blocks);
     return state_;
 }

@@ -49,6 +49,7 @@ class Pressing {
     /// From here on `hold` is about this programmed pose.
     void stand(const Frame& work_from_contact) {
         programmed_ = work_from_contact;
+        all_edges_ = false;
         localised_.reset();
     }
     /// Holds the wheel by a spring: it stands at `place` mm along z from the pose, less `give` mm
@@ -150,6 +151,7 @@ class Pressing {
     std::optional<double> localised_;    // mm along z: where `hold` last looked for segments
     Eigen::ArrayXd gap_;                 // mm, by cell, of the last solution
     double stands_at_ = 0.0;             // mm along z, by that
+    bool all_edges_ = false;  // at this pose pressure was where edges had not been looked at
     bool warm_ = false;
     State state_ = State::kNoContact;  // of the last time that it was pressed
     double largest_indentation_;

@@ -43,11 +43,9 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
       shear_((sheet == Sheet::kThick ? 1.0 : kFree) * 0.5 * kThick * belt.thickness *
              belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
-      spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
-      plate_(belt_, spline_),
-      terms_(belt.width, spline_) {
-    for (const BeltRow& row : rows_) locals_.push_back(spline_.at(row.y));
-}
+      finest_(belt_, rows_,
+              BeltSpline(belt.width, kInterval * std::max(1.0, grid.dy),
+                         kAtEdge * std::max(1.0, grid.dy))) {}
 
 double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
     if (run_.rollers == BeltRun::Rollers::kTensioned) {
@@ -60,7 +58,11 @@ double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
 
 double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
                                  std::size_t row, int column) const {
-    const BeltSpline::Local& b = locals_[row];
+    return deflection_by(finest_.locals[row], columns, coefficients, column);
+}
+
+double BeltSolver::deflection_by(const BeltSpline::Local& b, const BeltColumns& columns,
+                                 const Eigen::MatrixXd& coefficients, int column) const {
     const std::array<double, 3> along = columns.curvature(column);
     double sum = 0.0;
     for (std::size_t r = 0; r < BeltSpline::kLocal; ++r) {
@@ -76,7 +78,7 @@ double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::Matrix
 }
 
 BeltSolver::FaceForm BeltSolver::face_form(const BeltColumns& columns, std::size_t k, int i) const {
-    const BeltSpline::Local& b = locals_[k];
+    const BeltSpline::Local& b = across_->locals[k];
     FaceForm form;
     const std::array<double, 3> along = columns.curvature(i);
     if (shear_ > 0.0 && along[1] != 0.0) form.first = 0, form.last = 2;
@@ -143,7 +145,7 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
             const FaceForm form = face_form(path.columns, k, i);
             for (int p = form.first; p <= form.last; ++p)
                 for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    off.belt(locals_[k].first + r, i - 1 + p) +=
+                    off.belt(across_->locals[k].first + r, i - 1 + p) +=
                         force *
                         form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
         }
@@ -154,7 +156,7 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
 bool BeltSolver::factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
                            const BeltStress::Coupling& coupling, const Iterate& at, double most) {
     const BeltColumns& columns = path.columns;
-    const int n = columns.count(), size = spline_.count() + BeltStress::kTerms;
+    const int n = columns.count(), size = across_->spline.count() + BeltStress::kTerms;
     if (matrix_.count() != n || matrix_.size() != size)
         matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
     for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
@@ -170,7 +172,7 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
                 const FaceForm form = face_form(columns, k, i);
                 for (int q = form.first; q <= form.last; ++q)
                     for (int p = q; p <= form.last; ++p)
-                        bands_.add_product(i - 1 + q, p - q, locals_[k].first, w,
+                        bands_.add_product(i - 1 + q, p - q, across_->locals[k].first, w,
                                            form.values[static_cast<std::size_t>(p)],
                                            form.values[static_cast<std::size_t>(q)]);
             }
@@ -200,7 +202,8 @@ bool BeltSolver::touch(Request& request, const BeltPath& path, Iterate& at) cons
 
 void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
     const BeltColumns& columns = state.path.columns;
-    const int n = columns.count(), m = spline_.count();
+    const int n = columns.count(), m = finest_.spline.count();
+    at.lift = request.lift;
     at.deflection.setZero(m, n);
     if (request.before != nullptr && request.before->deflection.rows() == m &&
         request.before->deflection.cols() > 1) {
@@ -218,13 +221,58 @@ void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
                 (1.0 - t) * before.deflection.col(after - 1) + t * before.deflection.col(after);
         }
     }
+    if (wider_) at.deflection = to_wider_ * at.deflection;
     at.cells.resize(static_cast<Eigen::Index>(rows_.size()), n);
     for (int i = 0; i < n; ++i)
         for (std::size_t k = 0; k < rows_.size(); ++k)
-            at.cells(static_cast<Eigen::Index>(k), i) = deflection_at(columns, at.deflection, k, i);
+            at.cells(static_cast<Eigen::Index>(k), i) =
+                deflection_by(across_->locals[k], columns, at.deflection, i);
+}
+
+std::vector<std::uint8_t> BeltSolver::rows_touched(
+    const std::vector<std::uint8_t>& touching) const {
+    std::vector<std::uint8_t> rows(rows_.size(), 0);
+    for (std::size_t c = 0; c < touching.size(); ++c)
+        if (touching[c] != 0) rows[c % rows_.size()] = 1;
+    return rows;
+}
+
+void BeltSolver::set_knots(const BeltKnots& knots) {
+    if (knots.lines() == across_->spline.lines()) return;
+    across_ = &finest_;
+    wider_.reset();
+    if (knots.lines() == finest_.spline.lines()) return;
+    wider_ = std::make_unique<BeltAcross>(belt_, rows_, BeltSpline(knots.lines()));
+    across_ = wider_.get();
+    to_wider_ = wider_->spline.from(finest_.spline);
+    from_wider_ = finest_.spline.from(wider_->spline);
 }
 
 BeltState BeltSolver::solve(BeltPath path, Request request) {
+    std::vector<std::uint8_t> rows = rows_touched(request.touching);
+    if (std::find(rows.begin(), rows.end(), 1) == rows.end()) rows.assign(rows_.size(), 1);
+    BeltState state, before;
+    int iterations = 0;
+    for (bool again = false;; again = true) {
+        const BeltKnots knots(finest_.spline, rows_, rows);
+        set_knots(knots);
+        state = solve_on(std::move(path), request);
+        iterations += state.iterations;
+        const std::vector<std::uint8_t> now = rows_touched(request.touching);
+        if (knots.covers(rows_, now)) break;
+        // Pressure where it was not expected: once more, from there; then by all knots.
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            rows[k] = again || rows[k] != 0 || now[k] != 0 ? 1 : 0;
+        path = state.path;
+        before = std::move(state);
+        request.before = &before;
+        request.lift = before.lift;
+    }
+    state.iterations = iterations;
+    return state;
+}
+
+BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
     BeltState state;
     state.path = std::move(path);
     const ContactProblem& problem = *request.problem;
@@ -234,10 +282,10 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
     const double stretching =
         run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
-    const BeltStress stress(belt_, terms_, state.path, pull_of(state.path, 0.0), stretching,
+    const BeltStress stress(belt_, across_->terms, state.path, pull_of(state.path, 0.0), stretching,
                             run_.length);
-    bending_ = plate_.bending(columns);
-    path_load_ = plate_.path_load(state.path);
+    bending_ = across_->sheet.bending(columns);
+    path_load_ = across_->sheet.path_load(state.path);
     Iterate at;
     start(request, state, at);
     const std::size_t all = rows_.size() * static_cast<std::size_t>(n);
@@ -320,7 +368,8 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     }
     state.pull = stress.pull(at.stress);
     state.lift = at.lift;
-    state.deflection = std::move(at.deflection);
+    state.deflection =
+        wider_ ? Eigen::MatrixXd(from_wider_ * at.deflection) : std::move(at.deflection);
     return state;
 }
 

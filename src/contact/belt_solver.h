@@ -3,10 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "belt_across.h"
 #include "belt_path.h"
-#include "belt_sheet.h"
 #include "belt_spline.h"
 #include "belt_stress.h"
 #include "beltgrinding/belt_machine.h"
@@ -74,11 +75,19 @@ class BeltSolver {
         /// Where pressure is expected, row by row of each column; empty: nothing is known.
         std::vector<std::uint8_t> touching = {};
         const BeltState* before = nullptr;  ///< to start from
+        double lift = 0.0;                  ///< mm, the same
         BeltBacking* backing = nullptr;
     };
     BeltState solve(BeltPath path, Request request);
 
   private:
+    /// With the splines as they are.
+    BeltState solve_on(BeltPath path, Request& request);
+    /// By row.
+    std::vector<std::uint8_t> rows_touched(const std::vector<std::uint8_t>& touching) const;
+    void set_knots(const BeltKnots& knots);
+    double deflection_by(const BeltSpline::Local& local, const BeltColumns& columns,
+                         const Eigen::MatrixXd& coefficients, int column) const;
     /// A deflection, the work's lift, what they strain.
     struct Iterate {
         Eigen::MatrixXd deflection;  // (splines, columns), mm
@@ -152,10 +161,12 @@ class BeltSolver {
     double face_;   // MPa/mm
     double shear_;  // mm2: of the face's deflection, by what the sheet is bent
     std::vector<BeltRow> rows_;
-    BeltSpline spline_;
-    BeltSheet plate_;
-    BeltTerms terms_;
-    std::vector<BeltSpline::Local> locals_;  // by row
+    BeltAcross finest_;
+    // Where it is not the finest: as the contact is, and what it makes of the finest splines'
+    // coefficients, and those of it.
+    std::unique_ptr<BeltAcross> wider_;
+    Eigen::MatrixXd to_wider_, from_wider_;
+    const BeltAcross* across_ = &finest_;
     BeltBands bending_, bands_;
     Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;

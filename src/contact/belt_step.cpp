@@ -20,7 +20,7 @@ constexpr double kFlat = 0.1;   // of the energy's slope at its beginning: where
 Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPath& path,
                                            double& own) const {
     const int n = path.columns.count();
-    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(spline_.count(), n);
+    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(across_->spline.count(), n);
     own = request.problem->force_control ? 0.0 : 1.0 / request.problem->robot_compliance;
     for (int i = 0; i < n; ++i) {
         const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
@@ -31,7 +31,7 @@ Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPat
             const FaceForm form = face_form(path.columns, k, i);
             for (int p = form.first; p <= form.last; ++p)
                 for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    pushed(locals_[k].first + r, i - 1 + p) -=
+                    pushed(across_->locals[k].first + r, i - 1 + p) -=
                         w * form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
         }
     }
@@ -41,7 +41,7 @@ Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPat
 BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
                                   const BeltStress& stress, const BeltStress::Coupling& coupling,
                                   const Unbalanced& off, bool again) {
-    const int n = path.columns.count(), m = spline_.count(), size = m + BeltStress::kTerms;
+    const int n = path.columns.count(), m = across_->spline.count(), size = m + BeltStress::kTerms;
     const bool yield = yields(*request.problem);
     std::vector<double> own;
     if (!again) {
@@ -110,7 +110,7 @@ double BeltSolver::go(const Request& request, const BeltPath& path, const BeltSt
     for (int i = 0; i < n; ++i)
         for (std::size_t k = 0; k < rows_.size(); ++k)
             cells(static_cast<Eigen::Index>(k), i) =
-                deflection_at(path.columns, step.deflection, k, i);
+                deflection_by(across_->locals[k], path.columns, step.deflection, i);
     const Eigen::MatrixXd bent = bending_.times(step.deflection);
     double share = 1.0;
     if (!whole) {

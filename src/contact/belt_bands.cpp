@@ -56,16 +56,14 @@ Eigen::MatrixXd BeltBands::times(const Eigen::MatrixXd& x) const {
     return y;
 }
 
-void BeltBands::add_to(BlockBanded& matrix, int offset) const {
-    for (int i = 0; i < columns_; ++i) {
-        for (int below = 0; below < std::min(3, columns_ - i); ++below) {
-            const double* from = at(i, below);
-            auto block = matrix.block(i, below);
-            for (int s = 0; s < splines_; ++s, from += kDiagonals) {
-                const Range range = within(s, splines_);
-                double* to = &block(offset, offset + s) + s - kLocal + 1;
-                for (int d = range.low; d < range.high; ++d) to[d] += from[d];
-            }
+void BeltBands::add_to(BlockBanded& matrix, int i, int offset) const {
+    for (int below = 0; below < std::min(3, columns_ - i); ++below) {
+        const double* from = at(i, below);
+        auto block = matrix.block(i, below);
+        for (int s = 0; s < splines_; ++s, from += kDiagonals) {
+            const Range range = within(s, splines_);
+            double* to = &block(offset, offset + s) + s - kLocal + 1;
+            for (int d = range.low; d < range.high; ++d) to[d] += from[d];
         }
     }
 }

@@ -38,8 +38,8 @@ class BeltBands {
     }
     /// Times (splines, columns).
     Eigen::MatrixXd times(const Eigen::MatrixXd& x) const;
-    /// Adds it to the blocks of a matrix, from their row and column `offset` on.
-    void add_to(BlockBanded& matrix, int offset) const;
+    /// Adds its blocks in column i to those of a matrix, from their row and column `offset` on.
+    void add_to(BlockBanded& matrix, int i, int offset) const;
 
   private:
     double* at(int i, int below) {

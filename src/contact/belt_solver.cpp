@@ -177,10 +177,14 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
                                            form.values[static_cast<std::size_t>(q)]);
             }
         }
-        matrix_.set_zero();
-        stress.add_to(matrix_, coupling);
-        bands_.add_to(matrix_, BeltStress::kTerms);
-        if (matrix_.factorise()) return true;
+        int i = 0;
+        for (; i < n; ++i) {
+            matrix_.clear(i);
+            stress.add_to(matrix_, i, coupling);
+            bands_.add_to(matrix_, i, BeltStress::kTerms);
+            if (!matrix_.factorise(i)) break;
+        }
+        if (i == n) return true;
         if (share == 0.0) return false;
     }
 }

@@ -171,9 +171,8 @@ class BeltSolver {
     Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;
     // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
-    // push the belt with, what it gives way by, and what they have themselves.
-    std::vector<Eigen::MatrixXd> borders_, given_;
-    Eigen::MatrixXd border_matrix_;
+    // push the belt with, by the left half of the factor, and what is left of their own matrix.
+    Eigen::MatrixXd borders_, border_matrix_;
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
 };
 

@@ -43,50 +43,50 @@ BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
                                   const Unbalanced& off, bool again) {
     const int n = path.columns.count(), m = across_->spline.count(), size = m + BeltStress::kTerms;
     const bool yield = yields(*request.problem);
-    std::vector<double> own;
-    if (!again) {
-        borders_.clear();
-        given_.clear();
-        if (yield) {
-            own.push_back(0.0);
-            borders_.push_back(pushed_by_lift(request, path, own.back()));
-        }
-        if (stress.mean_stiffness() > 0.0) {
-            borders_.push_back(coupling.mean);
-            own.push_back(-1.0 / stress.mean_stiffness());
-        }
-        borders_.push_back(coupling.lean);
-        own.push_back(-1.0 / stress.lean_stiffness());
-    }
-    const auto count = static_cast<Eigen::Index>(borders_.size());
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, again ? 1 : 1 + count);
-    const auto belt = [&](Eigen::Index c) {
+    const auto belt = [&](Eigen::MatrixXd& all, Eigen::Index c) {
         return Eigen::Map<Eigen::MatrixXd>(all.col(c).data(), size, n).bottomRows(m);
     };
-    belt(0) = off.belt;
-    if (!again)
-        for (Eigen::Index c = 0; c < count; ++c)
-            belt(1 + c) = borders_[static_cast<std::size_t>(c)];
-    matrix_.solve(all);
-    if (!again) {
-        border_matrix_.resize(count, count);
-        for (Eigen::Index c = 0; c < count; ++c) {
-            given_.emplace_back(belt(1 + c));
-            for (Eigen::Index r = 0; r < count; ++r)
-                border_matrix_(r, c) =
-                    -borders_[static_cast<std::size_t>(r)].cwiseProduct(given_.back()).sum();
-            border_matrix_(c, c) += own[static_cast<std::size_t>(c)];
+    // Their products have the signs of the factor's rows.
+    const auto signed_by_rows = [&](Eigen::MatrixXd all) {
+        for (Eigen::Index c = 0; c < all.cols(); ++c)
+            Eigen::Map<Eigen::MatrixXd>(all.col(c).data(), size, n).topRows(BeltStress::kTerms) *=
+                -1.0;
+        return all;
+    };
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, 1);
+    belt(left, 0) = off.belt;
+    if (again) {
+        matrix_.forward(left);
+    } else {
+        const bool mean = stress.mean_stiffness() > 0.0;
+        const Eigen::Index count = 1 + (yield ? 1 : 0) + (mean ? 1 : 0);
+        Eigen::MatrixXd all = Eigen::MatrixXd::Zero(left.rows(), count + 1);
+        Eigen::VectorXd own(count);
+        Eigen::Index c = 0;
+        if (yield) {
+            belt(all, c) = pushed_by_lift(request, path, own[c]);
+            ++c;
         }
+        if (mean) {
+            belt(all, c) = coupling.mean;
+            own[c++] = -1.0 / stress.mean_stiffness();
+        }
+        belt(all, c) = coupling.lean;
+        own[c++] = -1.0 / stress.lean_stiffness();
+        all.col(c) = left;
+        matrix_.forward(all);
+        left = all.col(c);
+        borders_ = all.leftCols(count);
+        border_matrix_ = -borders_.transpose() * signed_by_rows(borders_);
+        border_matrix_.diagonal() += own;
     }
-    Step step;
-    step.deflection = belt(0);
-    Eigen::VectorXd rest(count);
-    for (Eigen::Index r = 0; r < count; ++r)
-        rest[r] = -borders_[static_cast<std::size_t>(r)].cwiseProduct(step.deflection).sum();
+    Eigen::VectorXd rest = -borders_.transpose() * signed_by_rows(left);
     if (yield) rest[0] += off.work;
     const Eigen::VectorXd others = border_matrix_.partialPivLu().solve(rest);
-    for (Eigen::Index c = 0; c < count; ++c)
-        step.deflection -= others[c] * given_[static_cast<std::size_t>(c)];
+    left -= borders_ * others;
+    matrix_.backward(left);
+    Step step;
+    step.deflection = belt(left, 0);
     if (yield) step.lift = others[0];
     return step;
 }

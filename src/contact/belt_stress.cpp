@@ -352,20 +352,18 @@ Eigen::MatrixXd BeltStress::resistance(const Coupling& coupling, const BeltModes
     return result;
 }
 
-void BeltStress::add_to(BlockBanded& matrix, const Coupling& coupling) const {
+void BeltStress::add_to(BlockBanded& matrix, int i, const Coupling& coupling) const {
     const int n = path_.columns.count(), m = spline_.count();
-    const auto from = [&](int i, int j) {
-        return coupling.function.middleCols((3 * i + j - i + 1) * m, m).topRows<kTerms>();
+    const auto from = [&](int of, int by) {
+        return coupling.function.middleCols((3 * of + by - of + 1) * m, m).topRows<kTerms>();
     };
-    for (int i = 0; i < n; ++i) {
-        for (int below = 0; below < std::min(3, n - i); ++below) {
-            auto to = matrix.block(i, below);
-            to.topLeftCorner(kTerms, kTerms) -= compliance_.block(i, below) / membrane_;
-            if (below > 1) continue;
-            // Rows: deflection of column i + below; columns: function of column i.
-            to.bottomLeftCorner(m, kTerms) += from(i, i + below).transpose();
-            if (below == 1) to.topRightCorner(kTerms, m) += from(i + 1, i);
-        }
+    for (int below = 0; below < std::min(3, n - i); ++below) {
+        auto to = matrix.block(i, below);
+        to.topLeftCorner(kTerms, kTerms) -= compliance_.block(i, below) / membrane_;
+        if (below > 1) continue;
+        // Rows: deflection of column i + below; columns: function of column i.
+        to.bottomLeftCorner(m, kTerms) += from(i, i + below).transpose();
+        if (below == 1) to.topRightCorner(kTerms, m) += from(i + 1, i);
     }
 }
 

@@ -76,8 +76,9 @@ class BeltStress {
     Coupling coupling(const Shape& shape) const;
     /// What stresses resist the deflection with, N: (splines, columns).
     Eigen::MatrixXd resistance(const Coupling& coupling, const BeltModes& stress) const;
-    /// Sets the rows and columns of the stress function, which come first in each block.
-    void add_to(BlockBanded& matrix, const Coupling& coupling) const;
+    /// Adds the rows and columns of the stress function, which come first in each block, to the
+    /// blocks in column i.
+    void add_to(BlockBanded& matrix, int i, const Coupling& coupling) const;
     /// N/mm by mm mm.
     double mean_stiffness() const { return stretching_ / width_; }
     double lean_stiffness() const { return leaning_; }

@@ -6,7 +6,7 @@
 
 #include "belt_sheet.h"
 #include "belt_spline.h"
-#include "belt_stress.h"
+#include "belt_terms.h"
 #include "beltgrinding/belt_machine.h"
 #include "surface_under_belt.h"
 

@@ -47,11 +47,11 @@ BeltSpline::BeltSpline(std::vector<double> given) : lines_(std::move(given)) {
     knots_.insert(knots_.end(), kDegree, lines.back());
 
     const double gauss = std::sqrt(0.6);
-    for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
-        const double middle = 0.5 * (lines[k] + lines[k + 1]),
-                     step = 0.5 * (lines[k + 1] - lines[k]);
-        for (const auto [place, weight] :
-             {std::array{-gauss, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {gauss, 5.0 / 9.0}}) {
+    for (const auto [place, weight] :
+         {std::array{-gauss, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {gauss, 5.0 / 9.0}}) {
+        for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
+            const double middle = 0.5 * (lines[k] + lines[k + 1]),
+                         step = 0.5 * (lines[k + 1] - lines[k]);
             places_.push_back(middle + place * step);
             weights_.push_back(weight * step);
             locals_.push_back(at(places_.back()));

@@ -34,7 +34,8 @@ class BeltSpline {
     /// where all knots of the other one are among these, or where it is one of these splines.
     Eigen::MatrixXd from(const BeltSpline& other) const;
 
-    /// Places (mm) and weights of Gauss's rule, kPlaces to an interval of the knots, in turn.
+    /// Places (mm) and weights of Gauss's rule: the first of each interval of the knots, the
+    /// second, the third.
     const std::vector<double>& places() const { return places_; }
     const std::vector<double>& weights() const { return weights_; }
     /// The splines at `places`.

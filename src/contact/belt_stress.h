@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "belt_path.h"
-#include "belt_sheet.h"
-#include "belt_spline.h"
+#include "belt_terms.h"
 #include "block_banded.h"
 
 namespace beltgrinding {
@@ -15,26 +14,6 @@ struct BeltModes {
     Eigen::MatrixXd function;  ///< of the stress function (kTerms, columns)
     double mean = 0.0;         ///< N/mm along the belt; or mm mm
     double lean = 0.0;         ///< N/mm more at the edge at +y; or mm mm
-};
-
-/// Polynomials across the belt, which are 0 with their slope at the side edges, and what they make
-/// of the splines.
-struct BeltTerms {
-    static constexpr int kTerms = 6;
-    static constexpr int kPadded = 8;  ///< rows, for whole registers
-    using Terms = Eigen::Matrix<double, kPadded, Eigen::Dynamic>;
-
-    BeltTerms(double width, const BeltSpline& spline);
-
-    const BeltSpline& spline;
-    Terms weighted;             ///< at the spline's places, times their weights
-    Terms bent;                 ///< integrals with splines' curvatures
-    Eigen::VectorXd even, odd;  ///< integrals of splines, and of them times 2 y / width
-    Eigen::MatrixXd value_value, value_curvature, curvature_curvature;  ///< of the polynomials
-    /// By term, the bands of its integral with the splines' values (rows) and curvatures, the other
-    /// way round, and with two slopes.
-    Eigen::MatrixXd along, across, twisted;
-    BeltBands::Band stretched, leaning;  ///< of two splines' values, and of them times 2 y / width
 };
 
 /// Stresses in the belt's plane by an Airy stress function, which is 0 with its slope at the side

@@ -10,9 +10,9 @@ namespace {
 // Away from rows that bear pressure, in the widest of the finest spline's intervals or per mm from
 // there. A thin belt on a sphere gets forces within 0.01 % and rows within 0.3 % of what all knots
 // give.
-constexpr double kBeside = 0.5;     // intervals in which knots stay as close as they are
-constexpr double kWidening = 0.75;  // mm of interval per mm
-constexpr double kWidest = 8.0;     // intervals
+constexpr double kBeside = 0.5;    // intervals in which knots stay as close as they are
+constexpr double kWidening = 1.0;  // mm of interval per mm
+constexpr double kWidest = 8.0;    // intervals
 
 }  // namespace
 

@@ -26,6 +26,7 @@ constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, 
 constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
 constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
 constexpr double kNoForce = 1e-6;  // N
+constexpr std::size_t kMostSwitched = 24;  // springs: more of them cost what a new factor does
 
 }  // namespace
 
@@ -157,6 +158,7 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
                            const BeltStress::Coupling& coupling, const Iterate& at, double most) {
     const BeltColumns& columns = path.columns;
     const int n = columns.count(), size = across_->spline.count() + BeltStress::kTerms;
+    touching_in_factor_ = request.touching;
     if (matrix_.count() != n || matrix_.size() != size)
         matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
     for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
@@ -329,15 +331,12 @@ BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
         BeltStress::Coupling coupling = stress.coupling(at.shape);
         Unbalanced off = unbalanced(request, state.path, stress, coupling, at, bonded);
         const auto left = [&] { return std::max(off.belt.cwiseAbs().sum(), std::abs(off.work)); };
-        // The last factor is as good where nothing has changed that it knows, and its step was
-        // good.
-        bool again = !first && share == 1.0 && off.same && left() <= kGoodStep * before;
+        bool good = !first && share == 1.0 && left() <= kGoodStep * before;
         double bears = 0.0;
         if (!first && request.backing != nullptr && share == 1.0 &&
             ((off.same && off.borne) || left() <= kUnbalanced * problem.tolerance * off.total)) {
             bears = request.backing->follow(at.cells);
             off = unbalanced(request, state.path, stress, coupling, at, false);
-            again = again && off.same;
         }
         state.converged =
             !first && left() <= std::max(kUnbalanced * problem.tolerance * off.total, kNoForce) &&
@@ -346,8 +345,10 @@ BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
         if (problem.force_control && off.total == 0.0 && !bonded) {
             if (!touch(request, state.path, at)) break;
             off = unbalanced(request, state.path, stress, coupling, at, false);
-            again = false;
+            good = false;
         }
+        // The last factor is as good where its step was and few springs have switched.
+        const bool again = good && switched(request).size() <= kMostSwitched;
         before = left();
         if (!again && !factorise(request, state.path, stress, coupling, at, most)) break;
         const Step to = step(request, state.path, stress, coupling, off, again);

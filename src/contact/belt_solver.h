@@ -118,7 +118,14 @@ class BeltSolver {
     /// `most`, as leaves them positive.
     bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
                    const BeltStress::Coupling& coupling, const Iterate& at, double most);
-    /// Newton's step by the factor; `again`: by that of a step before, as it was.
+    /// The cells that touch the work and do not so in the factor, or the other way round.
+    std::vector<std::size_t> switched(const Request& request) const;
+    /// Solves for what a unit spring at these cells pushes the belt with, by the left half of the
+    /// factor, where that is not yet known.
+    void add_switched(const BeltPath& path, const std::vector<std::size_t>& cells);
+    /// With the signs of the factor's rows, the lower ones of all columns.
+    Eigen::MatrixXd signed_by_rows(Eigen::MatrixXd values) const;
+    /// Newton's step by the factor; `again`: by that of a step before, but for its springs.
     Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
               const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);
     /// What the work's lift pushes the belt with, N/mm, and the work itself.
@@ -172,8 +179,14 @@ class BeltSolver {
     BlockBanded matrix_;
     // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
     // push the belt with, by the left half of the factor, and what is left of their own matrix.
-    Eigen::MatrixXd borders_, border_matrix_;
+    Eigen::MatrixXd borders_;
+    Eigen::VectorXd border_own_;
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
+    std::vector<std::uint8_t> touching_in_factor_;
+    // Springs that were switched since: the same, and their products with the borders and among
+    // each other.
+    std::vector<std::size_t> switched_;
+    Eigen::MatrixXd switched_borders_, products_;
 };
 
 }  // namespace beltgrinding

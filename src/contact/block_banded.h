@@ -42,8 +42,9 @@ class BlockBanded {
     bool factorise(int i);
     /// Solves for the columns of `values`, with the factor.
     void solve(Eigen::MatrixXd& values) const;
-    /// The halves of that: L^-1 and L'^-1 J times `values`.
-    void forward(Eigen::MatrixXd& values) const;
+    /// The halves of that: L^-1 and L'^-1 J times `values`. The rows of the blocks before `first`
+    /// are zero.
+    void forward(Eigen::Ref<Eigen::MatrixXd> values, int first = 0) const;
     void backward(Eigen::MatrixXd& values) const;
 
   private:

@@ -59,12 +59,11 @@ double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
 
 double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
                                  std::size_t row, int column) const {
-    return deflection_by(finest_.locals[row], columns, coefficients, column);
+    return face_of(finest_.locals[row], columns.curvature(column), coefficients, column);
 }
 
-double BeltSolver::deflection_by(const BeltSpline::Local& b, const BeltColumns& columns,
-                                 const Eigen::MatrixXd& coefficients, int column) const {
-    const std::array<double, 3> along = columns.curvature(column);
+double BeltSolver::face_of(const BeltSpline::Local& b, const std::array<double, 3>& along,
+                           const Eigen::MatrixXd& coefficients, int column) const {
     double sum = 0.0;
     for (std::size_t r = 0; r < BeltSpline::kLocal; ++r) {
         const int at = b.first + static_cast<int>(r);
@@ -76,6 +75,18 @@ double BeltSolver::deflection_by(const BeltSpline::Local& b, const BeltColumns& 
                shear_ * b.value[r] * curved;
     }
     return sum;
+}
+
+Eigen::ArrayXXd BeltSolver::face_at_cells(const BeltColumns& columns,
+                                          const Eigen::MatrixXd& coefficients) const {
+    Eigen::ArrayXXd cells(static_cast<Eigen::Index>(rows_.size()), columns.count());
+    for (int i = 0; i < columns.count(); ++i) {
+        const std::array<double, 3> along = columns.curvature(i);
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            cells(static_cast<Eigen::Index>(k), i) =
+                face_of(across_->locals[k], along, coefficients, i);
+    }
+    return cells;
 }
 
 BeltSolver::FaceForm BeltSolver::face_form(const BeltColumns& columns, std::size_t k, int i) const {
@@ -228,11 +239,7 @@ void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
         }
     }
     if (wider_) at.deflection = to_wider_ * at.deflection;
-    at.cells.resize(static_cast<Eigen::Index>(rows_.size()), n);
-    for (int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            at.cells(static_cast<Eigen::Index>(k), i) =
-                deflection_by(across_->locals[k], columns, at.deflection, i);
+    at.cells = face_at_cells(columns, at.deflection);
 }
 
 std::vector<std::uint8_t> BeltSolver::rows_touched(

@@ -86,8 +86,12 @@ class BeltSolver {
     /// By row.
     std::vector<std::uint8_t> rows_touched(const std::vector<std::uint8_t>& touching) const;
     void set_knots(const BeltKnots& knots);
-    double deflection_by(const BeltSpline::Local& local, const BeltColumns& columns,
-                         const Eigen::MatrixXd& coefficients, int column) const;
+    /// mm of the face at a place across, by `along` the weights of the columns beside.
+    double face_of(const BeltSpline::Local& local, const std::array<double, 3>& along,
+                   const Eigen::MatrixXd& coefficients, int column) const;
+    /// The same at the middles of rows and columns, by the splines that there are now.
+    Eigen::ArrayXXd face_at_cells(const BeltColumns& columns,
+                                  const Eigen::MatrixXd& coefficients) const;
     /// A deflection, the work's lift, what they strain.
     struct Iterate {
         Eigen::MatrixXd deflection;  // (splines, columns), mm

@@ -184,11 +184,7 @@ double BeltSolver::go(const Request& request, const BeltPath& path, const BeltSt
     const auto work = [](const BeltModes& s, const BeltModes& e) {
         return s.function.cwiseProduct(e.function).sum() + s.mean * e.mean + s.lean * e.lean;
     };
-    Eigen::ArrayXXd cells(at.cells.rows(), n);
-    for (int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            cells(static_cast<Eigen::Index>(k), i) =
-                deflection_by(across_->locals[k], path.columns, step.deflection, i);
+    const Eigen::ArrayXXd cells = face_at_cells(path.columns, step.deflection);
     const Eigen::MatrixXd bent = bending_.times(step.deflection);
     double share = 1.0;
     if (!whole) {

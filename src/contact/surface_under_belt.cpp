@@ -12,6 +12,7 @@ constexpr double kNothing = -std::numeric_limits<double>::infinity();
 constexpr double kSteepest = 0.25;  // cosine: surfaces that face the belt less do not meet it
 constexpr int kPasses = 4;          // of Newton's method along a normal
 constexpr double kExact = 1e-9;     // mm: close enough; straight down at once
+constexpr double kHalfCell = 0.5;   // that the map reaches beyond its cells' middles
 constexpr double kLayer = 1.0;      // mm/mm: a greater step between rows is no slope
 
 /// Difference quotient of what exists on either side, 0 where nothing does.
@@ -64,7 +65,7 @@ SurfaceUnderBelt::SurfaceUnderBelt(const ContactGrid& grid, const ContactProblem
 
 SurfaceUnderBelt::Height SurfaceUnderBelt::at(int row, double x) const {
     const double place = x / grid_.ds + 0.5 * (grid_.nx - 1);
-    if (!(place >= -0.5) || !(place <= grid_.nx - 0.5)) return {kNothing, 0.0, 0.0};
+    if (!(place >= -kHalfCell) || !(place <= grid_.nx - 1 + kHalfCell)) return {kNothing, 0.0, 0.0};
     const int nearest = std::clamp(static_cast<int>(std::lround(place)), 0, grid_.nx - 1);
     const double cover =
         problem_.coverage[rows_[static_cast<std::size_t>(row)].row * grid_.nx + nearest];
@@ -183,6 +184,9 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
     Normals normals;
     for (int i = 0; i < n; ++i) {
         const auto c = static_cast<std::size_t>(i);
+        if (const double place = path.x[c] / grid_.ds + 0.5 * (grid_.nx - 1);
+            !(place >= -kHalfCell) || !(place <= grid_.nx - 1 + kHalfCell))
+            continue;  // beside the map
         const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
         along_normals(path, i, lift, normals);
         for (Eigen::Index k = 0; k < rows; ++k) {

@@ -9,8 +9,9 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kInterval = 2.0;  // mm, or cells of 1 mm or more: of the splines across the belt
-constexpr double kAtEdge = 1.0;    // the same at its side edges
+constexpr double kInterval = 2.0;   // mm, or cells of 1 mm or more: of the splines across the belt
+constexpr double kAtEdge = 1.0;     // the same at its side edges
+constexpr double kOnLayers = 0.75;  // of these where layers bear the belt: pressure is less even
 // The face of an elastic layer of thickness t that bends under waves of wavenumber k on one face
 // deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
@@ -21,12 +22,17 @@ constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
 constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
+constexpr double kRough = 0.02;    // tolerance where only the rows that bear are asked for
 constexpr double kStuck = 1e-3;    // of a step
 constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, to begin with
 constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
 constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
 constexpr double kNoForce = 1e-6;  // N
 constexpr std::size_t kMostSwitched = 24;  // springs: more of them cost what a new factor does
+
+double closer(BeltSolver::Sheet sheet) {
+    return sheet == BeltSolver::Sheet::kThick ? kOnLayers : 1.0;
+}
 
 }  // namespace
 
@@ -45,8 +51,8 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
              belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
       finest_(belt_, rows_,
-              BeltSpline(belt.width, kInterval * std::max(1.0, grid.dy),
-                         kAtEdge * std::max(1.0, grid.dy))) {}
+              BeltSpline(belt.width, kInterval * closer(sheet) * std::max(1.0, grid.dy),
+                         kAtEdge * closer(sheet) * std::max(1.0, grid.dy))) {}
 
 double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
     if (run_.rollers == BeltRun::Rollers::kTensioned) {
@@ -250,25 +256,53 @@ std::vector<std::uint8_t> BeltSolver::rows_touched(
     return rows;
 }
 
-void BeltSolver::set_knots(const BeltKnots& knots) {
-    if (knots.lines() == across_->spline.lines()) return;
+void BeltSolver::set_lines(const std::vector<double>& lines) {
+    if (lines == across_->spline.lines()) return;
     across_ = &finest_;
     wider_.reset();
-    if (knots.lines() == finest_.spline.lines()) return;
-    wider_ = std::make_unique<BeltAcross>(belt_, rows_, BeltSpline(knots.lines()));
+    if (lines == finest_.spline.lines()) return;
+    wider_ = std::make_unique<BeltAcross>(belt_, rows_, BeltSpline(lines));
     across_ = wider_.get();
     to_wider_ = wider_->spline.from(finest_.spline);
     from_wider_ = finest_.spline.from(wider_->spline);
 }
 
+BeltState BeltSolver::solve_roughly(BeltPath path, Request& request) {
+    ContactProblem rough = *request.problem;
+    rough.tolerance = std::max(rough.tolerance, kRough);
+    const ContactProblem* given = std::exchange(request.problem, &rough);
+    const std::vector<double>& finest = finest_.spline.lines();
+    std::vector<double> lines;
+    for (std::size_t k = 0; k < finest.size(); k += 2) lines.push_back(finest[k]);
+    lines.back() = finest.back();
+    set_lines(lines);
+    BeltState state = solve_on(std::move(path), request);
+    request.problem = given;
+    return state;
+}
+
 BeltState BeltSolver::solve(BeltPath path, Request request) {
-    std::vector<std::uint8_t> rows = rows_touched(request.touching);
-    if (std::find(rows.begin(), rows.end(), 1) == rows.end()) rows.assign(rows_.size(), 1);
+    const auto any = [](const std::vector<std::uint8_t>& flags) {
+        return std::find(flags.begin(), flags.end(), 1) != flags.end();
+    };
     BeltState state, before;
     int iterations = 0;
+    const auto go_on = [&] {
+        path = state.path;
+        before = std::move(state);
+        request.before = &before;
+        request.lift = before.lift;
+    };
+    if (request.backing != nullptr && !any(request.touching)) {
+        state = solve_roughly(std::move(path), request);
+        iterations = state.iterations;
+        go_on();
+    }
+    std::vector<std::uint8_t> rows = rows_touched(request.touching);
+    if (!any(rows)) rows.assign(rows_.size(), 1);
     for (bool again = false;; again = true) {
         const BeltKnots knots(finest_.spline, rows_, rows);
-        set_knots(knots);
+        set_lines(knots.lines());
         state = solve_on(std::move(path), request);
         iterations += state.iterations;
         const std::vector<std::uint8_t> now = rows_touched(request.touching);
@@ -276,10 +310,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         // Pressure where it was not expected: once more, from there; then by all knots.
         for (std::size_t k = 0; k < rows.size(); ++k)
             rows[k] = again || rows[k] != 0 || now[k] != 0 ? 1 : 0;
-        path = state.path;
-        before = std::move(state);
-        request.before = &before;
-        request.lift = before.lift;
+        go_on();
     }
     state.iterations = iterations;
     return state;

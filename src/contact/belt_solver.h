@@ -85,7 +85,10 @@ class BeltSolver {
     BeltState solve_on(BeltPath path, Request& request);
     /// By row.
     std::vector<std::uint8_t> rows_touched(const std::vector<std::uint8_t>& touching) const;
-    void set_knots(const BeltKnots& knots);
+    /// The splines' knots, mm; of the finest ones.
+    void set_lines(const std::vector<double>& lines);
+    /// By every other knot, to say where pressure is.
+    BeltState solve_roughly(BeltPath path, Request& request);
     /// mm of the face at a place across, by `along` the weights of the columns beside.
     double face_of(const BeltSpline::Local& local, const std::array<double, 3>& along,
                    const Eigen::MatrixXd& coefficients, int column) const;

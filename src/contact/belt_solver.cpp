@@ -287,16 +287,16 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     };
     BeltState state, before;
     int iterations = 0;
-    const auto go_on = [&] {
-        path = state.path;
+    const auto from_there = [&] {
         before = std::move(state);
         request.before = &before;
         request.lift = before.lift;
+        return before.path;
     };
     if (request.backing != nullptr && !any(request.touching)) {
         state = solve_roughly(std::move(path), request);
         iterations = state.iterations;
-        go_on();
+        path = from_there();
     }
     std::vector<std::uint8_t> rows = rows_touched(request.touching);
     if (!any(rows)) rows.assign(rows_.size(), 1);
@@ -310,7 +310,7 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         // Pressure where it was not expected: once more, from there; then by all knots.
         for (std::size_t k = 0; k < rows.size(); ++k)
             rows[k] = again || rows[k] != 0 || now[k] != 0 ? 1 : 0;
-        go_on();
+        path = from_there();
     }
     state.iterations = iterations;
     return state;

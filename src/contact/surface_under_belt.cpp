@@ -136,43 +136,56 @@ SurfaceUnderBelt::Height SurfaceUnderBelt::along_normal(int row, const BeltPath&
     return h;
 }
 
-void SurfaceUnderBelt::along_normals(const BeltPath& path, int column, double lift,
+void SurfaceUnderBelt::along_normals(const BeltPath& path, int column, double lift, int first,
                                      Normals& normals) const {
     const auto rows = static_cast<Eigen::Index>(rows_.size());
     const auto c = static_cast<std::size_t>(column);
-    normals.found.assign(rows_.size(), 0);
     const double middle = path.x[c] / grid_.ds + 0.5 * (grid_.nx - 1);
-    if (grid_.nx < 4 || !(middle >= 0.0) || !(middle <= grid_.nx - 1)) return;
-    const int first = std::clamp(static_cast<int>(std::floor(middle)) - 1, 0, grid_.nx - 4);
     // Newton's differences, for t columns from the first one on.
     const auto z0 = by_row_.col(first), z1 = by_row_.col(first + 1), z2 = by_row_.col(first + 2),
                z3 = by_row_.col(first + 3);
     const Eigen::ArrayXd d1 = z1 - z0, d2 = 0.5 * (z2 - 2.0 * z1 + z0),
                          d3 = (z3 - 3.0 * z2 + 3.0 * z1 - z0) / 6.0;
     const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
-    normals.u.setZero(rows);
-    Eigen::ArrayXd t(rows), off(rows), facing(rows);
+    Eigen::ArrayXd u = Eigen::ArrayXd::Zero(rows), slope(rows), t(rows), off(rows), facing(rows);
     for (int pass = 0; pass < kPasses; ++pass) {
-        t = (middle - first) - sine / grid_.ds * normals.u;
-        normals.slope = (d1 + (2.0 * t - 1.0) * d2 + (3.0 * t * (t - 2.0) + 2.0) * d3) / grid_.ds;
-        facing = cosine + sine * normals.slope;
-        off = (path.z[c] - lift) + cosine * normals.u -
-              (z0 + t * (d1 + (t - 1.0) * (d2 + (t - 2.0) * d3)));
-        normals.u -= off / facing;
+        t = (middle - first) - sine / grid_.ds * u;
+        slope = (d1 + (2.0 * t - 1.0) * d2 + (3.0 * t * (t - 2.0) + 2.0) * d3) / grid_.ds;
+        facing = cosine + sine * slope;
+        off = (path.z[c] - lift) + cosine * u - (z0 + t * (d1 + (t - 1.0) * (d2 + (t - 2.0) * d3)));
+        u -= off / facing;
         if (sine == 0.0) break;
         bool exact = true;
         for (Eigen::Index k = 0; k < rows; ++k) exact = exact && !(std::abs(off[k]) >= kExact);
         if (exact) break;
     }
-    normals.place = first + (middle - first) - sine / grid_.ds * normals.u;
+    const Eigen::ArrayXd place = middle - sine / grid_.ds * u;
     // The cubic of other columns would be met beyond the middle ones, but for those at the ends.
     const double low = first == 0 ? 0.0 : first + 1.0;
     const double high = first == grid_.nx - 4 ? grid_.nx - 1.0 : first + 2.0;
     for (Eigen::Index k = 0; k < rows; ++k) {
-        const double place = normals.place[k];
-        normals.found[static_cast<std::size_t>(k)] =
-            place > low && place < high && facing[k] >= kSteepest ? 1 : 0;
+        if (!(place[k] >= low && place[k] <= high && facing[k] >= kSteepest)) continue;
+        normals.found[static_cast<std::size_t>(k)] = 1;
+        normals.u[k] = u[k];
+        normals.place[k] = place[k];
+        normals.slope[k] = slope[k];
     }
+}
+
+void SurfaceUnderBelt::along_normals(const BeltPath& path, int column, double lift,
+                                     Normals& normals) const {
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    normals.found.assign(rows_.size(), 0);
+    for (Eigen::ArrayXd* one : {&normals.u, &normals.place, &normals.slope}) one->resize(rows);
+    const double middle =
+        path.x[static_cast<std::size_t>(column)] / grid_.ds + 0.5 * (grid_.nx - 1);
+    if (grid_.nx < 4 || !(middle >= 0.0) || !(middle <= grid_.nx - 1)) return;
+    const int first = std::clamp(static_cast<int>(std::floor(middle)) - 1, 0, grid_.nx - 4);
+    along_normals(path, column, lift, first, normals);
+    if (std::find(normals.found.begin(), normals.found.end(), 0) == normals.found.end()) return;
+    // Normals lean over the next column's middle; which side, the path's nearest column tells.
+    const int other = middle - std::floor(middle) < 0.5 ? first - 1 : first + 1;
+    if (other >= 0 && other <= grid_.nx - 4) along_normals(path, column, lift, other, normals);
 }
 
 BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
@@ -194,7 +207,7 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
             Height h{};
             int cell = 0;
             if (normals.found[static_cast<std::size_t>(k)] != 0) {
-                cell = static_cast<int>(normals.place[k] + 0.5);
+                cell = static_cast<int>(std::lround(normals.place[k]));
                 u = normals.u[k];
                 h.slope = normals.slope[k];
                 h.cover =

@@ -52,6 +52,9 @@ class SurfaceUnderBelt {
         std::vector<std::uint8_t> found;
     };
     void along_normals(const BeltPath& path, int column, double lift, Normals& normals) const;
+    /// By the columns of the grid from `first` on, where the normals stay between the middle ones.
+    void along_normals(const BeltPath& path, int column, double lift, int first,
+                       Normals& normals) const;
 
     const ContactGrid& grid_;
     const ContactProblem& problem_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "belt_spline.h"
@@ -14,8 +15,8 @@ class BeltBands {
   public:
     static constexpr int kLocal = BeltSpline::kLocal;
     static constexpr int kDiagonals = 2 * kLocal - 1;
-    /// One block: row d of column s is its row s - 3 + d.
-    using Band = Eigen::Array<double, kDiagonals, Eigen::Dynamic>;
+    /// One block: what column s has in row s - 3 + d is in row s of column d.
+    using Band = Eigen::Array<double, Eigen::Dynamic, kDiagonals>;
 
     BeltBands() = default;
     /// All zero.
@@ -26,20 +27,20 @@ class BeltBands {
     int columns() const { return columns_; }
     int splines() const { return splines_; }
     /// The block in row `i + below` and column `i`; `below`: 0 to 2.
-    Eigen::Map<Band> block(int i, int below) { return {at(i, below), kDiagonals, splines_}; }
+    Eigen::Map<Band> block(int i, int below) { return {at(i, below), splines_, kDiagonals}; }
     /// Adds w a b' at the splines from `first` on, to the block in row `i + below`, column `i`.
     void add_product(int i, int below, int first, double w, const std::array<double, kLocal>& a,
                      const std::array<double, kLocal>& b) {
-        double* to = at(i, below) + std::ptrdiff_t{first} * kDiagonals + kLocal - 1;
+        double* to = at(i, below) + first;
         for (std::size_t c = 0; c < kLocal; ++c)
             for (std::size_t r = 0; r < kLocal; ++r)
-                to[static_cast<std::ptrdiff_t>(c) * (kDiagonals - 1) +
-                   static_cast<std::ptrdiff_t>(r)] += w * a[r] * b[c];
+                to[(kLocal - 1 + r - c) * static_cast<std::size_t>(splines_) + c] +=
+                    w * a[r] * b[c];
     }
     /// Times (splines, columns).
     Eigen::MatrixXd times(const Eigen::MatrixXd& x) const;
-    /// Adds it to the blocks of a matrix, from their row and column `offset` on.
-    void add_to(BlockBanded& matrix, int offset) const;
+    /// Adds its blocks in column i to those of a matrix, from their row and column `offset` on.
+    void add_to(BlockBanded& matrix, int i, int offset) const;
 
   private:
     double* at(int i, int below) {

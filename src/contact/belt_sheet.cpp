@@ -2,34 +2,13 @@
 
 #include <array>
 
+#include "belt_curved.h"
+
 namespace beltgrinding {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Band = BeltBands::Band;
-
-/// A form of the second derivative k along the belt and of the value c itself: 1/2 k' A k + k' B c
-/// + 1/2 c' C c.
-struct CurvedForm {
-    Band a, b, b_transposed;
-};
-
-/// Adds A and B of the form in one column.
-void add_curved(const BeltColumns& columns, int i, const CurvedForm& form, BeltBands& matrix) {
-    const std::array<double, 3> k = columns.curvature(i);
-    if (k[1] == 0.0) return;
-    const double h = columns.apart(i);
-    for (int q = 0; q < 3; ++q) {
-        for (int p = q; p < 3; ++p) {
-            auto to = matrix.block(i - 1 + q, p - q);
-            const double kp = k[static_cast<std::size_t>(p)];
-            const double kq = k[static_cast<std::size_t>(q)];
-            to += h * kp * kq * form.a;
-            if (q == 1) to += h * kp * form.b;
-            if (p == 1) to += h * kq * form.b_transposed;
-        }
-    }
-}
 
 /// Adds 1/2 s' P s, s the slope along the belt, at a border. At the ends the belt is held.
 void add_sloped(const BeltColumns& columns, int border, const Band& p, BeltBands& matrix) {
@@ -51,8 +30,9 @@ BeltBands BeltSheet::bending(const BeltColumns& columns) const {
     const int n = columns.count(), m = spline_.count();
     BeltBands matrix(n, m);
     const Matrix mixed = ratio_ * bending_ * spline_.value_curvature();
-    const CurvedForm form = {BeltBands::band_of(bending_ * spline_.values()),
-                             BeltBands::band_of(mixed), BeltBands::band_of(mixed.transpose())};
+    const CurvedForm<Band> form = {BeltBands::band_of(bending_ * spline_.values()),
+                                   BeltBands::band_of(mixed),
+                                   BeltBands::band_of(mixed.transpose())};
     const Band c = BeltBands::band_of(bending_ * spline_.curvatures());
     const Band twist = BeltBands::band_of(2.0 * (1.0 - ratio_) * bending_ * spline_.slopes());
     for (int i = 0; i < n; ++i) {

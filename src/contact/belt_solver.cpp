@@ -9,8 +9,9 @@
 namespace beltgrinding {
 namespace {
 
-constexpr double kInterval = 2.0;  // mm, or cells of 1 mm or more: of the splines across the belt
-constexpr double kAtEdge = 1.0;    // the same at its side edges
+constexpr double kInterval = 2.0;   // mm, or cells of 1 mm or more: of the splines across the belt
+constexpr double kAtEdge = 1.0;     // the same at its side edges
+constexpr double kOnLayers = 0.75;  // of these where layers bear the belt: pressure is less even
 // The face of an elastic layer of thickness t that bends under waves of wavenumber k on one face
 // deflects by q / (D k^4) (1 + k^2 t^2 / 5 + ...), exactly; half of it where the face is and half
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
@@ -21,11 +22,17 @@ constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
 constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
+constexpr double kRough = 0.02;    // tolerance where only the rows that bear are asked for
 constexpr double kStuck = 1e-3;    // of a step
 constexpr double kTouch = 1e-3;    // mm that the work is lifted into the belt, to begin with
 constexpr double kNear = 0.05;     // thicknesses below the highest place: may touch, to begin with
 constexpr double kGoodStep = 0.1;  // of the forces that were left over: less after a good step
 constexpr double kNoForce = 1e-6;  // N
+constexpr std::size_t kMostSwitched = 24;  // springs: more of them cost what a new factor does
+
+double closer(BeltSolver::Sheet sheet) {
+    return sheet == BeltSolver::Sheet::kThick ? kOnLayers : 1.0;
+}
 
 }  // namespace
 
@@ -43,11 +50,9 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
       shear_((sheet == Sheet::kThick ? 1.0 : kFree) * 0.5 * kThick * belt.thickness *
              belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
-      spline_(belt.width, kInterval * std::max(1.0, grid.dy), kAtEdge * std::max(1.0, grid.dy)),
-      plate_(belt_, spline_),
-      terms_(belt.width, spline_) {
-    for (const BeltRow& row : rows_) locals_.push_back(spline_.at(row.y));
-}
+      finest_(belt_, rows_,
+              BeltSpline(belt.width, kInterval * closer(sheet) * std::max(1.0, grid.dy),
+                         kAtEdge * closer(sheet) * std::max(1.0, grid.dy))) {}
 
 double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
     if (run_.rollers == BeltRun::Rollers::kTensioned) {
@@ -56,35 +61,6 @@ double BeltSolver::pull_of(const BeltPath& path, double elongated) const {
     }
     const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
     return belt_.membrane() * (path.length + elongated - unloaded) / unloaded;
-}
-
-double BeltSolver::deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
-                                 std::size_t row, int column) const {
-    const BeltSpline::Local& b = locals_[row];
-    const std::array<double, 3> along = columns.curvature(column);
-    double sum = 0.0;
-    for (std::size_t r = 0; r < BeltSpline::kLocal; ++r) {
-        const int at = b.first + static_cast<int>(r);
-        double curved = along[1] * coefficients(at, column);
-        if (along[1] != 0.0)
-            curved +=
-                along[0] * coefficients(at, column - 1) + along[2] * coefficients(at, column + 1);
-        sum += (b.value[r] - shear_ * b.curvature[r]) * coefficients(at, column) -
-               shear_ * b.value[r] * curved;
-    }
-    return sum;
-}
-
-BeltSolver::FaceForm BeltSolver::face_form(const BeltColumns& columns, std::size_t k, int i) const {
-    const BeltSpline::Local& b = locals_[k];
-    FaceForm form;
-    const std::array<double, 3> along = columns.curvature(i);
-    if (shear_ > 0.0 && along[1] != 0.0) form.first = 0, form.last = 2;
-    for (std::size_t p = 0; p < 3; ++p)
-        for (std::size_t r = 0; r < BeltSpline::kLocal; ++r)
-            form.values[p][r] = (p == 1 ? b.value[r] - shear_ * b.curvature[r] : 0.0) -
-                                shear_ * along[p] * b.value[r];
-    return form;
 }
 
 double BeltSolver::commanded(const Request& request, double lift) {
@@ -143,7 +119,7 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
             const FaceForm form = face_form(path.columns, k, i);
             for (int p = form.first; p <= form.last; ++p)
                 for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    off.belt(locals_[k].first + r, i - 1 + p) +=
+                    off.belt(across_->locals[k].first + r, i - 1 + p) +=
                         force *
                         form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
         }
@@ -154,7 +130,8 @@ BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& 
 bool BeltSolver::factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
                            const BeltStress::Coupling& coupling, const Iterate& at, double most) {
     const BeltColumns& columns = path.columns;
-    const int n = columns.count(), size = spline_.count() + BeltStress::kTerms;
+    const int n = columns.count(), size = across_->spline.count() + BeltStress::kTerms;
+    touching_in_factor_ = request.touching;
     if (matrix_.count() != n || matrix_.size() != size)
         matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
     for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
@@ -170,15 +147,19 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
                 const FaceForm form = face_form(columns, k, i);
                 for (int q = form.first; q <= form.last; ++q)
                     for (int p = q; p <= form.last; ++p)
-                        bands_.add_product(i - 1 + q, p - q, locals_[k].first, w,
+                        bands_.add_product(i - 1 + q, p - q, across_->locals[k].first, w,
                                            form.values[static_cast<std::size_t>(p)],
                                            form.values[static_cast<std::size_t>(q)]);
             }
         }
-        matrix_.set_zero();
-        stress.add_to(matrix_, coupling);
-        bands_.add_to(matrix_, BeltStress::kTerms);
-        if (matrix_.factorise()) return true;
+        int i = 0;
+        for (; i < n; ++i) {
+            matrix_.clear(i);
+            stress.add_to(matrix_, i, coupling);
+            bands_.add_to(matrix_, i, BeltStress::kTerms);
+            if (!matrix_.factorise(i)) break;
+        }
+        if (i == n) return true;
         if (share == 0.0) return false;
     }
 }
@@ -200,7 +181,8 @@ bool BeltSolver::touch(Request& request, const BeltPath& path, Iterate& at) cons
 
 void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
     const BeltColumns& columns = state.path.columns;
-    const int n = columns.count(), m = spline_.count();
+    const int n = columns.count(), m = finest_.spline.count();
+    at.lift = request.lift;
     at.deflection.setZero(m, n);
     if (request.before != nullptr && request.before->deflection.rows() == m &&
         request.before->deflection.cols() > 1) {
@@ -218,13 +200,79 @@ void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
                 (1.0 - t) * before.deflection.col(after - 1) + t * before.deflection.col(after);
         }
     }
-    at.cells.resize(static_cast<Eigen::Index>(rows_.size()), n);
-    for (int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            at.cells(static_cast<Eigen::Index>(k), i) = deflection_at(columns, at.deflection, k, i);
+    if (wider_) at.deflection = to_wider_ * at.deflection;
+    at.cells = face_at_cells(columns, at.deflection);
+}
+
+std::vector<std::uint8_t> BeltSolver::rows_touched(
+    const std::vector<std::uint8_t>& touching) const {
+    std::vector<std::uint8_t> rows(rows_.size(), 0);
+    for (std::size_t c = 0; c < touching.size(); ++c)
+        if (touching[c] != 0) rows[c % rows_.size()] = 1;
+    return rows;
+}
+
+void BeltSolver::set_lines(const std::vector<double>& lines) {
+    if (lines == across_->spline.lines()) return;
+    across_ = &finest_;
+    wider_.reset();
+    if (lines == finest_.spline.lines()) return;
+    wider_ = std::make_unique<BeltAcross>(belt_, rows_, BeltSpline(lines));
+    across_ = wider_.get();
+    to_wider_ = wider_->spline.from(finest_.spline);
+    from_wider_ = finest_.spline.from(wider_->spline);
+}
+
+BeltState BeltSolver::solve_roughly(BeltPath path, Request& request) {
+    ContactProblem rough = *request.problem;
+    rough.tolerance = std::max(rough.tolerance, kRough);
+    const ContactProblem* given = std::exchange(request.problem, &rough);
+    const std::vector<double>& finest = finest_.spline.lines();
+    std::vector<double> lines;
+    for (std::size_t k = 0; k < finest.size(); k += 2) lines.push_back(finest[k]);
+    lines.back() = finest.back();
+    set_lines(lines);
+    BeltState state = solve_on(std::move(path), request);
+    request.problem = given;
+    return state;
 }
 
 BeltState BeltSolver::solve(BeltPath path, Request request) {
+    const auto any = [](const std::vector<std::uint8_t>& flags) {
+        return std::find(flags.begin(), flags.end(), 1) != flags.end();
+    };
+    BeltState state, before;
+    int iterations = 0;
+    const auto from_there = [&] {
+        before = std::move(state);
+        request.before = &before;
+        request.lift = before.lift;
+        return before.path;
+    };
+    if (request.backing != nullptr && !any(request.touching)) {
+        state = solve_roughly(std::move(path), request);
+        iterations = state.iterations;
+        path = from_there();
+    }
+    std::vector<std::uint8_t> rows = rows_touched(request.touching);
+    if (!any(rows)) rows.assign(rows_.size(), 1);
+    for (bool again = false;; again = true) {
+        const BeltKnots knots(finest_.spline, rows_, rows);
+        set_lines(knots.lines());
+        state = solve_on(std::move(path), request);
+        iterations += state.iterations;
+        const std::vector<std::uint8_t> now = rows_touched(request.touching);
+        if (knots.covers(rows_, now)) break;
+        // Pressure where it was not expected: once more, from there; then by all knots.
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            rows[k] = again || rows[k] != 0 || now[k] != 0 ? 1 : 0;
+        path = from_there();
+    }
+    state.iterations = iterations;
+    return state;
+}
+
+BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
     BeltState state;
     state.path = std::move(path);
     const ContactProblem& problem = *request.problem;
@@ -234,10 +282,10 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
     const double stretching =
         run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
-    const BeltStress stress(belt_, terms_, state.path, pull_of(state.path, 0.0), stretching,
+    const BeltStress stress(belt_, across_->terms, state.path, pull_of(state.path, 0.0), stretching,
                             run_.length);
-    bending_ = plate_.bending(columns);
-    path_load_ = plate_.path_load(state.path);
+    bending_ = across_->sheet.bending(columns);
+    path_load_ = across_->sheet.path_load(state.path);
     Iterate at;
     start(request, state, at);
     const std::size_t all = rows_.size() * static_cast<std::size_t>(n);
@@ -277,15 +325,12 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         BeltStress::Coupling coupling = stress.coupling(at.shape);
         Unbalanced off = unbalanced(request, state.path, stress, coupling, at, bonded);
         const auto left = [&] { return std::max(off.belt.cwiseAbs().sum(), std::abs(off.work)); };
-        // The last factor is as good where nothing has changed that it knows, and its step was
-        // good.
-        bool again = !first && share == 1.0 && off.same && left() <= kGoodStep * before;
+        bool good = !first && share == 1.0 && left() <= kGoodStep * before;
         double bears = 0.0;
         if (!first && request.backing != nullptr && share == 1.0 &&
             ((off.same && off.borne) || left() <= kUnbalanced * problem.tolerance * off.total)) {
             bears = request.backing->follow(at.cells);
             off = unbalanced(request, state.path, stress, coupling, at, false);
-            again = again && off.same;
         }
         state.converged =
             !first && left() <= std::max(kUnbalanced * problem.tolerance * off.total, kNoForce) &&
@@ -294,8 +339,10 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
         if (problem.force_control && off.total == 0.0 && !bonded) {
             if (!touch(request, state.path, at)) break;
             off = unbalanced(request, state.path, stress, coupling, at, false);
-            again = false;
+            good = false;
         }
+        // The last factor is as good where its step was and few springs have switched.
+        const bool again = good && switched(request).size() <= kMostSwitched;
         before = left();
         if (!again && !factorise(request, state.path, stress, coupling, at, most)) break;
         const Step to = step(request, state.path, stress, coupling, off, again);
@@ -320,7 +367,8 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     }
     state.pull = stress.pull(at.stress);
     state.lift = at.lift;
-    state.deflection = std::move(at.deflection);
+    state.deflection =
+        wider_ ? Eigen::MatrixXd(from_wider_ * at.deflection) : std::move(at.deflection);
     return state;
 }
 

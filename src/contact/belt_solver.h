@@ -3,10 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "belt_across.h"
 #include "belt_path.h"
-#include "belt_sheet.h"
 #include "belt_spline.h"
 #include "belt_stress.h"
 #include "beltgrinding/belt_machine.h"
@@ -77,11 +78,26 @@ class BeltSolver {
         /// Where pressure is expected, row by row of each column; empty: nothing is known.
         std::vector<std::uint8_t> touching = {};
         const BeltState* before = nullptr;  ///< to start from
+        double lift = 0.0;                  ///< mm, the same
         BeltBacking* backing = nullptr;
     };
     BeltState solve(BeltPath path, Request request);
 
   private:
+    /// With the splines as they are.
+    BeltState solve_on(BeltPath path, Request& request);
+    /// By row.
+    std::vector<std::uint8_t> rows_touched(const std::vector<std::uint8_t>& touching) const;
+    /// The splines' knots, mm; of the finest ones.
+    void set_lines(const std::vector<double>& lines);
+    /// By every other knot, to say where pressure is.
+    BeltState solve_roughly(BeltPath path, Request& request);
+    /// mm of the face at a place across, by `along` the weights of the columns beside.
+    double face_of(const BeltSpline::Local& local, const std::array<double, 3>& along,
+                   const Eigen::MatrixXd& coefficients, int column) const;
+    /// The same at the middles of rows and columns, by the splines that there are now.
+    Eigen::ArrayXXd face_at_cells(const BeltColumns& columns,
+                                  const Eigen::MatrixXd& coefficients) const;
     /// A deflection, the work's lift, what they strain.
     struct Iterate {
         Eigen::MatrixXd deflection;  // (splines, columns), mm
@@ -112,7 +128,14 @@ class BeltSolver {
     /// `most`, as leaves them positive.
     bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
                    const BeltStress::Coupling& coupling, const Iterate& at, double most);
-    /// Newton's step by the factor; `again`: by that of a step before, as it was.
+    /// The cells that touch the work and do not so in the factor, or the other way round.
+    std::vector<std::size_t> switched(const Request& request) const;
+    /// Solves for what a unit spring at these cells pushes the belt with, by the left half of the
+    /// factor, where that is not yet known.
+    void add_switched(const BeltPath& path, const std::vector<std::size_t>& cells);
+    /// With the signs of the factor's rows, the lower ones of all columns.
+    Eigen::MatrixXd signed_by_rows(Eigen::MatrixXd values) const;
+    /// Newton's step by the factor; `again`: by that of a step before, but for its springs.
     Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
               const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);
     /// What the work's lift pushes the belt with, N/mm, and the work itself.
@@ -155,18 +178,25 @@ class BeltSolver {
     double face_;   // MPa/mm
     double shear_;  // mm2: of the face's deflection, by what the sheet is bent
     std::vector<BeltRow> rows_;
-    BeltSpline spline_;
-    BeltSheet plate_;
-    BeltTerms terms_;
-    std::vector<BeltSpline::Local> locals_;  // by row
+    BeltAcross finest_;
+    // Where it is not the finest: as the contact is, and what it makes of the finest splines'
+    // coefficients, and those of it.
+    std::unique_ptr<BeltAcross> wider_;
+    Eigen::MatrixXd to_wider_, from_wider_;
+    const BeltAcross* across_ = &finest_;
     BeltBands bending_, bands_;
     Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;
     // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
-    // push the belt with, what it gives way by, and what they have themselves.
-    std::vector<Eigen::MatrixXd> borders_, given_;
-    Eigen::MatrixXd border_matrix_;
+    // push the belt with, by the left half of the factor, and what is left of their own matrix.
+    Eigen::MatrixXd borders_;
+    Eigen::VectorXd border_own_;
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
+    std::vector<std::uint8_t> touching_in_factor_;
+    // Springs that were switched since: the same, and their products with the borders and among
+    // each other.
+    std::vector<std::size_t> switched_;
+    Eigen::MatrixXd switched_borders_, products_;
 };
 
 }  // namespace beltgrinding

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
 
 namespace beltgrinding {
 namespace {
@@ -22,24 +25,33 @@ std::vector<double> half_intervals(double half, double interval, double finest) 
     return lengths;
 }
 
-}  // namespace
-
-BeltSpline::BeltSpline(double width, double interval, double finest) {
+/// From side edge to side edge.
+std::vector<double> lines_of(double width, double interval, double finest) {
     const std::vector<double> half = half_intervals(0.5 * width, interval, finest);
     std::vector<double> lines = {-0.5 * width};
     for (const double length : half) lines.push_back(lines.back() + length);
     lines.back() = 0.0;
     for (std::size_t k = half.size(); k-- > 0;) lines.push_back(-lines[k]);
+    return lines;
+}
+
+}  // namespace
+
+BeltSpline::BeltSpline(double width, double interval, double finest)
+    : BeltSpline(lines_of(width, interval, finest)) {}
+
+BeltSpline::BeltSpline(std::vector<double> given) : lines_(std::move(given)) {
+    const std::vector<double>& lines = lines_;
     knots_.assign(kDegree, lines.front());
     knots_.insert(knots_.end(), lines.begin(), lines.end());
     knots_.insert(knots_.end(), kDegree, lines.back());
 
     const double gauss = std::sqrt(0.6);
-    for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
-        const double middle = 0.5 * (lines[k] + lines[k + 1]),
-                     step = 0.5 * (lines[k + 1] - lines[k]);
-        for (const auto [place, weight] :
-             {std::array{-gauss, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {gauss, 5.0 / 9.0}}) {
+    for (const auto [place, weight] :
+         {std::array{-gauss, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {gauss, 5.0 / 9.0}}) {
+        for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
+            const double middle = 0.5 * (lines[k] + lines[k + 1]),
+                         step = 0.5 * (lines[k + 1] - lines[k]);
             places_.push_back(middle + place * step);
             weights_.push_back(weight * step);
             locals_.push_back(at(places_.back()));
@@ -60,6 +72,25 @@ BeltSpline::BeltSpline(double width, double interval, double finest) {
             }
         }
     }
+}
+
+Eigen::MatrixXd BeltSpline::from(const BeltSpline& other) const {
+    // At the places of the one with more of them, where the products are all integrated.
+    const BeltSpline& denser = places_.size() < other.places_.size() ? other : *this;
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count(), count());
+    Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(count(), other.count());
+    for (std::size_t q = 0; q < denser.places_.size(); ++q) {
+        const double y = denser.places_[q], w = denser.weights_[q];
+        const Local a = at(y), b = other.at(y);
+        for (std::size_t r = 0; r < kLocal; ++r)
+            for (std::size_t s = 0; s < kLocal; ++s) {
+                const auto row = static_cast<Eigen::Index>(r),
+                           column = static_cast<Eigen::Index>(s);
+                own(a.first + row, a.first + column) += w * a.value[r] * a.value[s];
+                mixed(a.first + row, b.first + column) += w * a.value[r] * b.value[s];
+            }
+    }
+    return own.llt().solve(mixed);
 }
 
 BeltSpline::Local BeltSpline::at(double y) const {

@@ -15,6 +15,8 @@ class BeltSpline {
 
     /// `interval`: mm, largest distance of the knots; `finest`: at the side edges.
     BeltSpline(double width, double interval, double finest);
+    /// `lines`: mm, from side edge to side edge, ascending; knots lie there.
+    explicit BeltSpline(std::vector<double> lines);
 
     int count() const { return static_cast<int>(knots_.size()) - 4; }
 
@@ -26,7 +28,14 @@ class BeltSpline {
     /// At y, mm from the belt's middle.
     Local at(double y) const;
 
-    /// Places (mm) and weights of Gauss's rule, kPlaces to an interval of the knots, in turn.
+    /// mm, from side edge to side edge: where the knots lie.
+    const std::vector<double>& lines() const { return lines_; }
+    /// The coefficients nearest to those of another spline by least squares; the same function
+    /// where all knots of the other one are among these, or where it is one of these splines.
+    Eigen::MatrixXd from(const BeltSpline& other) const;
+
+    /// Places (mm) and weights of Gauss's rule: the first of each interval of the knots, the
+    /// second, the third.
     const std::vector<double>& places() const { return places_; }
     const std::vector<double>& weights() const { return weights_; }
     /// The splines at `places`.
@@ -40,7 +49,7 @@ class BeltSpline {
     const Eigen::MatrixXd& value_curvature() const { return value_curvature_; }
 
   private:
-    std::vector<double> knots_;  // mm
+    std::vector<double> lines_, knots_;  // mm
     std::vector<double> places_, weights_;
     std::vector<Local> locals_;
     Eigen::MatrixXd values_, slopes_, curvatures_, value_curvature_;

@@ -20,7 +20,7 @@ constexpr double kFlat = 0.1;   // of the energy's slope at its beginning: where
 Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPath& path,
                                            double& own) const {
     const int n = path.columns.count();
-    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(spline_.count(), n);
+    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(across_->spline.count(), n);
     own = request.problem->force_control ? 0.0 : 1.0 / request.problem->robot_compliance;
     for (int i = 0; i < n; ++i) {
         const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
@@ -31,62 +31,140 @@ Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPat
             const FaceForm form = face_form(path.columns, k, i);
             for (int p = form.first; p <= form.last; ++p)
                 for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    pushed(locals_[k].first + r, i - 1 + p) -=
+                    pushed(across_->locals[k].first + r, i - 1 + p) -=
                         w * form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
         }
     }
     return pushed;
 }
 
+Eigen::MatrixXd BeltSolver::signed_by_rows(Eigen::MatrixXd values) const {
+    const Eigen::Index size = matrix_.size();
+    for (Eigen::Index c = 0; c < values.cols(); ++c)
+        Eigen::Map<Eigen::MatrixXd>(values.col(c).data(), size, values.rows() / size)
+            .topRows(BeltStress::kTerms) *= -1.0;
+    return values;
+}
+
+std::vector<std::size_t> BeltSolver::switched(const Request& request) const {
+    std::vector<std::size_t> cells;
+    for (std::size_t c = 0; c < touching_in_factor_.size(); ++c)
+        if (request.touching[c] != touching_in_factor_[c]) cells.push_back(c);
+    return cells;
+}
+
+void BeltSolver::add_switched(const BeltPath& path, const std::vector<std::size_t>& cells) {
+    const int m = across_->spline.count(), size = m + BeltStress::kTerms;
+    const Eigen::Index known = static_cast<Eigen::Index>(switched_.size());
+    int first = path.columns.count();
+    for (const std::size_t at : cells) {
+        if (std::find(switched_.begin(), switched_.end(), at) != switched_.end()) continue;
+        first = std::min(first, std::max(static_cast<int>(at / rows_.size()) - 1, 0));
+        switched_.push_back(at);
+    }
+    const Eigen::Index added = static_cast<Eigen::Index>(switched_.size()) - known;
+    if (added == 0) return;
+    switched_borders_.conservativeResize(borders_.rows(), known + added);
+    auto to = switched_borders_.rightCols(added);
+    to.setZero();
+    for (Eigen::Index c = 0; c < added; ++c) {
+        const std::size_t at = switched_[static_cast<std::size_t>(known + c)];
+        const auto i = static_cast<int>(at / rows_.size());
+        const std::size_t k = at % rows_.size();
+        const FaceForm form = face_form(path.columns, k, i);
+        for (int p = form.first; p <= form.last; ++p)
+            for (int r = 0; r < BeltSpline::kLocal; ++r)
+                to(std::ptrdiff_t{size} * (i - 1 + p) + BeltStress::kTerms +
+                       across_->locals[k].first + r,
+                   c) = form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
+    }
+    matrix_.forward(to, first);
+    const Eigen::Index borders = borders_.cols(), count = borders + known + added;
+    products_.conservativeResize(count, count);
+    const Eigen::Index below = std::ptrdiff_t{size} * first;
+    const Eigen::MatrixXd signs = signed_by_rows(to.bottomRows(to.rows() - below));
+    products_.bottomLeftCorner(added, borders) =
+        signs.transpose() * borders_.bottomRows(signs.rows());
+    products_.bottomRightCorner(added, known + added) =
+        signs.transpose() * switched_borders_.bottomRows(signs.rows());
+    products_.topRightCorner(count - added, added) =
+        products_.bottomLeftCorner(added, count - added).transpose();
+}
+
 BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
                                   const BeltStress& stress, const BeltStress::Coupling& coupling,
                                   const Unbalanced& off, bool again) {
-    const int n = path.columns.count(), m = spline_.count(), size = m + BeltStress::kTerms;
+    const int n = path.columns.count(), m = across_->spline.count(), size = m + BeltStress::kTerms;
     const bool yield = yields(*request.problem);
-    std::vector<double> own;
-    if (!again) {
-        borders_.clear();
-        given_.clear();
-        if (yield) {
-            own.push_back(0.0);
-            borders_.push_back(pushed_by_lift(request, path, own.back()));
-        }
-        if (stress.mean_stiffness() > 0.0) {
-            borders_.push_back(coupling.mean);
-            own.push_back(-1.0 / stress.mean_stiffness());
-        }
-        borders_.push_back(coupling.lean);
-        own.push_back(-1.0 / stress.lean_stiffness());
-    }
-    const auto count = static_cast<Eigen::Index>(borders_.size());
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, again ? 1 : 1 + count);
-    const auto belt = [&](Eigen::Index c) {
+    const auto belt = [&](Eigen::MatrixXd& all, Eigen::Index c) {
         return Eigen::Map<Eigen::MatrixXd>(all.col(c).data(), size, n).bottomRows(m);
     };
-    belt(0) = off.belt;
-    if (!again)
-        for (Eigen::Index c = 0; c < count; ++c)
-            belt(1 + c) = borders_[static_cast<std::size_t>(c)];
-    matrix_.solve(all);
-    if (!again) {
-        border_matrix_.resize(count, count);
-        for (Eigen::Index c = 0; c < count; ++c) {
-            given_.emplace_back(belt(1 + c));
-            for (Eigen::Index r = 0; r < count; ++r)
-                border_matrix_(r, c) =
-                    -borders_[static_cast<std::size_t>(r)].cwiseProduct(given_.back()).sum();
-            border_matrix_(c, c) += own[static_cast<std::size_t>(c)];
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(std::ptrdiff_t{size} * n, 1);
+    belt(left, 0) = off.belt;
+    std::vector<std::size_t> cells;
+    if (again) {
+        matrix_.forward(left);
+        cells = switched(request);
+        add_switched(path, cells);
+    } else {
+        const bool mean = stress.mean_stiffness() > 0.0;
+        const Eigen::Index count = 1 + (yield ? 1 : 0) + (mean ? 1 : 0);
+        Eigen::MatrixXd all = Eigen::MatrixXd::Zero(left.rows(), count + 1);
+        border_own_.resize(count);
+        Eigen::Index c = 0;
+        if (yield) {
+            belt(all, c) = pushed_by_lift(request, path, border_own_[c]);
+            ++c;
         }
+        if (mean) {
+            belt(all, c) = coupling.mean;
+            border_own_[c++] = -1.0 / stress.mean_stiffness();
+        }
+        belt(all, c) = coupling.lean;
+        border_own_[c++] = -1.0 / stress.lean_stiffness();
+        all.col(c) = left;
+        matrix_.forward(all);
+        left = all.col(c);
+        borders_ = all.leftCols(count);
+        products_ = borders_.transpose() * signed_by_rows(borders_);
+        switched_.clear();
+        switched_borders_.resize(borders_.rows(), 0);
     }
-    Step step;
-    step.deflection = belt(0);
-    Eigen::VectorXd rest(count);
-    for (Eigen::Index r = 0; r < count; ++r)
-        rest[r] = -borders_[static_cast<std::size_t>(r)].cwiseProduct(step.deflection).sum();
+    // Of the borders, and of the springs that are to be added.
+    const Eigen::Index borders = borders_.cols();
+    const Eigen::Index count = borders + static_cast<Eigen::Index>(cells.size());
+    Eigen::MatrixXd used(left.rows(), count);
+    used.leftCols(borders) = borders_;
+    Eigen::VectorXd own(count);
+    own.head(borders) = border_own_;
+    // The lift pushes by the springs that there are: a change of the basis.
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(products_.rows(), count);
+    basis.topLeftCorner(borders, borders).setIdentity();
+    for (std::size_t s = 0; s < cells.size(); ++s) {
+        const Eigen::Index c = borders + static_cast<Eigen::Index>(s);
+        const auto known =
+            std::find(switched_.begin(), switched_.end(), cells[s]) - switched_.begin();
+        used.col(c) = switched_borders_.col(known);
+        basis(borders + known, c) = 1.0;
+        const auto i = static_cast<int>(cells[s] / rows_.size());
+        const double own_spring = spring(request, path.columns, i, cells[s] % rows_.size());
+        const double more = request.touching[cells[s]] != 0 ? own_spring : -own_spring;
+        own[c] = -1.0 / more;
+        if (!yield) continue;
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+        basis(borders + known, 0) = -more * cosine;
+        used.col(0) -= more * cosine * used.col(c);
+        own[0] += more * cosine * cosine;
+    }
+    Eigen::MatrixXd matrix = -basis.transpose() * products_ * basis;
+    matrix.diagonal() += own;
+    Eigen::VectorXd rest = -used.transpose() * signed_by_rows(left);
     if (yield) rest[0] += off.work;
-    const Eigen::VectorXd others = border_matrix_.partialPivLu().solve(rest);
-    for (Eigen::Index c = 0; c < count; ++c)
-        step.deflection -= others[c] * given_[static_cast<std::size_t>(c)];
+    const Eigen::VectorXd others = matrix.partialPivLu().solve(rest);
+    left -= used * others;
+    matrix_.backward(left);
+    Step step;
+    step.deflection = belt(left, 0);
     if (yield) step.lift = others[0];
     return step;
 }
@@ -106,11 +184,7 @@ double BeltSolver::go(const Request& request, const BeltPath& path, const BeltSt
     const auto work = [](const BeltModes& s, const BeltModes& e) {
         return s.function.cwiseProduct(e.function).sum() + s.mean * e.mean + s.lean * e.lean;
     };
-    Eigen::ArrayXXd cells(at.cells.rows(), n);
-    for (int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < rows_.size(); ++k)
-            cells(static_cast<Eigen::Index>(k), i) =
-                deflection_at(path.columns, step.deflection, k, i);
+    const Eigen::ArrayXXd cells = face_at_cells(path.columns, step.deflection);
     const Eigen::MatrixXd bent = bending_.times(step.deflection);
     double share = 1.0;
     if (!whole) {

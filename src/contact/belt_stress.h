@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "belt_path.h"
-#include "belt_sheet.h"
-#include "belt_spline.h"
+#include "belt_terms.h"
 #include "block_banded.h"
 
 namespace beltgrinding {
@@ -15,26 +14,6 @@ struct BeltModes {
     Eigen::MatrixXd function;  ///< of the stress function (kTerms, columns)
     double mean = 0.0;         ///< N/mm along the belt; or mm mm
     double lean = 0.0;         ///< N/mm more at the edge at +y; or mm mm
-};
-
-/// Polynomials across the belt, which are 0 with their slope at the side edges, and what they make
-/// of the splines.
-struct BeltTerms {
-    static constexpr int kTerms = 6;
-    static constexpr int kPadded = 8;  ///< rows, for whole registers
-    using Terms = Eigen::Matrix<double, kPadded, Eigen::Dynamic>;
-
-    BeltTerms(double width, const BeltSpline& spline);
-
-    const BeltSpline& spline;
-    Terms weighted;             ///< at the spline's places, times their weights
-    Terms bent;                 ///< integrals with splines' curvatures
-    Eigen::VectorXd even, odd;  ///< integrals of splines, and of them times 2 y / width
-    Eigen::MatrixXd value_value, value_curvature, curvature_curvature;  ///< of the polynomials
-    /// By term, the bands of its integral with the splines' values (rows) and curvatures, the other
-    /// way round, and with two slopes.
-    Eigen::MatrixXd along, across, twisted;
-    BeltBands::Band stretched, leaning;  ///< of two splines' values, and of them times 2 y / width
 };
 
 /// Stresses in the belt's plane by an Airy stress function, which is 0 with its slope at the side
@@ -76,8 +55,9 @@ class BeltStress {
     Coupling coupling(const Shape& shape) const;
     /// What stresses resist the deflection with, N: (splines, columns).
     Eigen::MatrixXd resistance(const Coupling& coupling, const BeltModes& stress) const;
-    /// Sets the rows and columns of the stress function, which come first in each block.
-    void add_to(BlockBanded& matrix, const Coupling& coupling) const;
+    /// Adds the rows and columns of the stress function, which come first in each block, to the
+    /// blocks in column i.
+    void add_to(BlockBanded& matrix, int i, const Coupling& coupling) const;
     /// N/mm by mm mm.
     double mean_stiffness() const { return stretching_ / width_; }
     double lean_stiffness() const { return leaning_; }

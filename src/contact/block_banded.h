@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 namespace beltgrinding {
@@ -20,7 +21,9 @@ class BlockBanded {
 
     int count() const { return count_; }
     int size() const { return size_; }
-    void set_zero();
+    int negative() const { return negative_; }
+    /// Sets the blocks in column i to zero.
+    void clear(int i);
     /// The block in row `i + below`, column `i`; `below`: 0 to 2. In the diagonal only the lower
     /// triangle counts.
     Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> block(int i, int below) {
@@ -35,15 +38,16 @@ class BlockBanded {
     /// The factor of Cholesky in place of the matrix, L J L' with J = -1 in negative rows, else 1.
     /// False if there is none.
     bool factorise();
+    /// The same for the blocks in column i alone, where those before have been factorised.
+    bool factorise(int i);
     /// Solves for the columns of `values`, with the factor.
     void solve(Eigen::MatrixXd& values) const;
+    /// The halves of that: L^-1 and L'^-1 J times `values`. The rows of the blocks before `first`
+    /// are zero.
+    void forward(Eigen::Ref<Eigen::MatrixXd> values, int first = 0) const;
+    void backward(Eigen::MatrixXd& values) const;
 
   private:
-    /// Rows of a panel's column that may not be zero.
-    int rows_of(int column) const {
-        return 2 * size_ +
-               std::min(size_, std::max(column + std::min(reach_, size_) + 1, negative_));
-    }
     /// The blocks of a column, one below the other, column by column.
     double* panel(int i) { return blocks_.data() + std::ptrdiff_t{i} * height_ * size_; }
     const double* panel(int i) const {
@@ -51,8 +55,9 @@ class BlockBanded {
     }
 
     int count_ = 0, size_ = 0, negative_ = 0, reach_ = 0;
-    int height_ = 0;  // of a panel: three blocks, rounded up to whole registers
-    std::vector<double> blocks_, corner_, shifted_;
+    int height_ = 0;  // of a panel: three blocks, and zeros that a register may reach into
+    std::vector<double> blocks_;
+    std::vector<double> inverse_;  // of the factor's diagonal
 };
 
 }  // namespace beltgrinding

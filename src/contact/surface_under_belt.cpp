@@ -12,6 +12,7 @@ constexpr double kNothing = -std::numeric_limits<double>::infinity();
 constexpr double kSteepest = 0.25;  // cosine: surfaces that face the belt less do not meet it
 constexpr int kPasses = 4;          // of Newton's method along a normal
 constexpr double kExact = 1e-9;     // mm: close enough; straight down at once
+constexpr double kHalfCell = 0.5;   // that the map reaches beyond its cells' middles
 constexpr double kLayer = 1.0;      // mm/mm: a greater step between rows is no slope
 
 /// Difference quotient of what exists on either side, 0 where nothing does.
@@ -59,11 +60,12 @@ SurfaceUnderBelt::SurfaceUnderBelt(const ContactGrid& grid, const ContactProblem
             height_(i, k) += slope_(i, k) * (row.y - grid.y(row.row));
         }
     }
+    by_row_ = height_.transpose();
 }
 
 SurfaceUnderBelt::Height SurfaceUnderBelt::at(int row, double x) const {
     const double place = x / grid_.ds + 0.5 * (grid_.nx - 1);
-    if (!(place >= -0.5) || !(place <= grid_.nx - 0.5)) return {kNothing, 0.0, 0.0};
+    if (!(place >= -kHalfCell) || !(place <= grid_.nx - 1 + kHalfCell)) return {kNothing, 0.0, 0.0};
     const int nearest = std::clamp(static_cast<int>(std::lround(place)), 0, grid_.nx - 1);
     const double cover =
         problem_.coverage[rows_[static_cast<std::size_t>(row)].row * grid_.nx + nearest];
@@ -113,36 +115,111 @@ std::vector<RidgePoint> SurfaceUnderBelt::ridge() const {
     return points;
 }
 
+SurfaceUnderBelt::Height SurfaceUnderBelt::along_normal(int row, const BeltPath& path, int column,
+                                                        double lift, double& u) const {
+    const auto c = static_cast<std::size_t>(column);
+    const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
+    Height h{};
+    u = 0.0;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        h = at(row, path.x[c] - u * sine);
+        if (!(h.cover > 0.0)) break;
+        const double facing = cosine + h.slope * sine;
+        if (facing < kSteepest) {
+            h.cover = 0.0;
+            break;
+        }
+        const double off = path.z[c] + u * cosine - h.z - lift;
+        u -= off / facing;
+        if (sine == 0.0 || std::abs(off) < kExact) break;
+    }
+    return h;
+}
+
+void SurfaceUnderBelt::along_normals(const BeltPath& path, int column, double lift, int first,
+                                     Normals& normals) const {
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    const auto c = static_cast<std::size_t>(column);
+    const double middle = path.x[c] / grid_.ds + 0.5 * (grid_.nx - 1);
+    // Newton's differences, for t columns from the first one on.
+    const auto z0 = by_row_.col(first), z1 = by_row_.col(first + 1), z2 = by_row_.col(first + 2),
+               z3 = by_row_.col(first + 3);
+    const Eigen::ArrayXd d1 = z1 - z0, d2 = 0.5 * (z2 - 2.0 * z1 + z0),
+                         d3 = (z3 - 3.0 * z2 + 3.0 * z1 - z0) / 6.0;
+    const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
+    Eigen::ArrayXd u = Eigen::ArrayXd::Zero(rows), slope(rows), t(rows), off(rows), facing(rows);
+    for (int pass = 0; pass < kPasses; ++pass) {
+        t = (middle - first) - sine / grid_.ds * u;
+        slope = (d1 + (2.0 * t - 1.0) * d2 + (3.0 * t * (t - 2.0) + 2.0) * d3) / grid_.ds;
+        facing = cosine + sine * slope;
+        off = (path.z[c] - lift) + cosine * u - (z0 + t * (d1 + (t - 1.0) * (d2 + (t - 2.0) * d3)));
+        u -= off / facing;
+        if (sine == 0.0) break;
+        bool exact = true;
+        for (Eigen::Index k = 0; k < rows; ++k) exact = exact && !(std::abs(off[k]) >= kExact);
+        if (exact) break;
+    }
+    const Eigen::ArrayXd place = middle - sine / grid_.ds * u;
+    // The cubic of other columns would be met beyond the middle ones, but for those at the ends.
+    const double low = first == 0 ? 0.0 : first + 1.0;
+    const double high = first == grid_.nx - 4 ? grid_.nx - 1.0 : first + 2.0;
+    for (Eigen::Index k = 0; k < rows; ++k) {
+        if (!(place[k] >= low && place[k] <= high && facing[k] >= kSteepest)) continue;
+        normals.found[static_cast<std::size_t>(k)] = 1;
+        normals.u[k] = u[k];
+        normals.place[k] = place[k];
+        normals.slope[k] = slope[k];
+    }
+}
+
+void SurfaceUnderBelt::along_normals(const BeltPath& path, int column, double lift,
+                                     Normals& normals) const {
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    normals.found.assign(rows_.size(), 0);
+    for (Eigen::ArrayXd* one : {&normals.u, &normals.place, &normals.slope}) one->resize(rows);
+    const double middle =
+        path.x[static_cast<std::size_t>(column)] / grid_.ds + 0.5 * (grid_.nx - 1);
+    if (grid_.nx < 4 || !(middle >= 0.0) || !(middle <= grid_.nx - 1)) return;
+    const int first = std::clamp(static_cast<int>(std::floor(middle)) - 1, 0, grid_.nx - 4);
+    along_normals(path, column, lift, first, normals);
+    if (std::find(normals.found.begin(), normals.found.end(), 0) == normals.found.end()) return;
+    // Normals lean over the next column's middle; which side, the path's nearest column tells.
+    const int other = middle - std::floor(middle) < 0.5 ? first - 1 : first + 1;
+    if (other >= 0 && other <= grid_.nx - 4) along_normals(path, column, lift, other, normals);
+}
+
 BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
     const auto rows = static_cast<Eigen::Index>(rows_.size());
     const int n = path.columns.count();
     BeltGap gap;
     gap.reach.setConstant(rows, n, kNothing);
     gap.cover.setZero(rows, n);
+    Normals normals;
     for (int i = 0; i < n; ++i) {
         const auto c = static_cast<std::size_t>(i);
+        if (const double place = path.x[c] / grid_.ds + 0.5 * (grid_.nx - 1);
+            !(place >= -kHalfCell) || !(place <= grid_.nx - 1 + kHalfCell))
+            continue;  // beside the map
         const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
+        along_normals(path, i, lift, normals);
         for (Eigen::Index k = 0; k < rows; ++k) {
             double u = 0.0;
             Height h{};
-            for (int pass = 0; pass < kPasses; ++pass) {
-                h = at(static_cast<int>(k), path.x[c] - u * sine);
-                if (!(h.cover > 0.0)) break;
-                const double facing = cosine + h.slope * sine;
-                if (facing < kSteepest) {
-                    h.cover = 0.0;
-                    break;
-                }
-                const double off = path.z[c] + u * cosine - h.z - lift;
-                u -= off / facing;
-                if (sine == 0.0 || std::abs(off) < kExact) break;
+            int cell = 0;
+            if (normals.found[static_cast<std::size_t>(k)] != 0) {
+                cell = static_cast<int>(std::lround(normals.place[k]));
+                u = normals.u[k];
+                h.slope = normals.slope[k];
+                h.cover =
+                    problem_.coverage[rows_[static_cast<std::size_t>(k)].row * grid_.nx + cell];
+            } else {
+                h = along_normal(static_cast<int>(k), path, i, lift, u);
+                cell = std::clamp(static_cast<int>(std::lround((path.x[c] - u * sine) / grid_.ds +
+                                                               0.5 * (grid_.nx - 1))),
+                                  0, grid_.nx - 1);
             }
             if (!(h.cover > 0.0)) continue;
             // The middle surface lies half a thickness off, along the surface's own normal.
-            const int cell =
-                std::clamp(static_cast<int>(std::lround((path.x[c] - u * sine) / grid_.ds +
-                                                        0.5 * (grid_.nx - 1))),
-                           0, grid_.nx - 1);
             const double across = slope_(cell, k);
             const double facing =
                 (cosine + h.slope * sine) / std::sqrt(1.0 + h.slope * h.slope + across * across);

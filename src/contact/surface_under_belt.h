@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "belt_path.h"
@@ -41,12 +42,26 @@ class SurfaceUnderBelt {
         double cover;     // 0: nothing there
     };
     Height at(int row, double x) const;
+    /// The place of a row on the normal of a path's column, mm from the path, and the surface
+    /// there.
+    Height along_normal(int row, const BeltPath& path, int column, double lift, double& u) const;
+    /// The same for all rows, where a column's normals leave four columns of the grid that are all
+    /// there, nowhere: one cubic is all that they meet.
+    struct Normals {
+        Eigen::ArrayXd u, place, slope;  // mm, columns of the grid, mm/mm
+        std::vector<std::uint8_t> found;
+    };
+    void along_normals(const BeltPath& path, int column, double lift, Normals& normals) const;
+    /// By the columns of the grid from `first` on, where the normals stay between the middle ones.
+    void along_normals(const BeltPath& path, int column, double lift, int first,
+                       Normals& normals) const;
 
     const ContactGrid& grid_;
     const ContactProblem& problem_;
     const std::vector<BeltRow>& rows_;
     double half_;             // thickness, mm
     Eigen::ArrayXXd height_;  // mm, (nx, rows); -inf: nothing there
+    Eigen::ArrayXXd by_row_;  // the same, (rows, nx)
     Eigen::ArrayXXd slope_;   // along y, mm/mm
 };
 

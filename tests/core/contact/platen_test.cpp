@@ -47,8 +47,7 @@ TEST_P(PlatenReference, IsThatOfFiniteElements) {
     EXPECT_NEAR(rows.x_max, truth.x_max, 0.7);
     EXPECT_NEAR(rows.y_max, truth.y_max, 0.7);
     expect_rows(in_pairs(rows.by_x), in_pairs(truth.by_x), 0.1);
-    // The reference's rubber stiffens where it is compressed most, in the middle.
-    expect_rows(in_pairs(rows.by_y), in_pairs(truth.by_y), 0.12);
+    expect_rows(in_pairs(rows.by_y), in_pairs(truth.by_y), 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Crest, PlatenReference,

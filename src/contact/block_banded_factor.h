@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace beltgrinding {
+
+constexpr int kWidest = 8;    ///< columns of a panel that are factorised at a time
+constexpr int kTogether = 4;  ///< columns, or right-hand sides, that share what is loaded
+
+/// A factor's panels, one behind the other.
+struct Factor {
+    const double *blocks, *inverse;
+    int count, size, negative, reach;
+    std::ptrdiff_t height;
+    int begin = 0;  ///< panel from which on right-hand sides are not zero
+
+    /// Rows of the columns before `end` of panel i that may not be 0.
+    int rows(int i, int end) const {
+        const int two = size * std::min(2, count - i);
+        return i + 2 < count ? two + std::min(size, std::max(end + reach, negative)) : two;
+    }
+    /// Where the columns end that are looked at together with `first`.
+    int end(int first) const {
+        return first < negative ? std::min(first + kWidest, negative)
+                                : std::min(first + kWidest, size);
+    }
+};
+
+}  // namespace beltgrinding

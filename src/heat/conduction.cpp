@@ -42,6 +42,7 @@ Conduction::Conduction(const PartHeat& part, int rings)
       level_(nodes_.size(), kUnmarked),
       due_(nodes_.size(), kUnmarked),
       fast_(nodes_.size(), 0),
+      spans_(nodes_.size(), 0),
       there_(nodes_.size(), 0),
       last_sweep_(state_.time),
       noted_(state_.time) {
@@ -294,8 +295,10 @@ void Conduction::heat(double duration) {
         inject(gain);
         if (i + 1 < times)
             conductor_.conduct(zone_, between, nodes_.dispersion / (diffusivity_ * between),
-                               zone_rows_, zone_sums_);
+                               zone_rows_);
     }
+    zone_sums_.resize(zone_.nodes.size());
+    sum_rows(zone_rows_.data(), zone_sums_.size(), zone_sums_.data());
     for (const std::uint32_t k : heated_) {
         direct_[k] =
             (nodes_.own[k].direct * flux(k) + nodes_.other[k].direct * flux(nodes_.opposite[k])) /

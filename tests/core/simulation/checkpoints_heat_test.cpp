@@ -129,7 +129,8 @@ TEST(Checkpoints, HeatAndFinishOfSeveralPrograms) {
         for (std::size_t k = 0; k < programs.size(); ++k) {
             if (kept != nullptr && !same) (*kept)[k].clear();
             one.options.outputs.first_motion = 100 * k;
-            const Ground ground = run(one, work, programs[k], kept != nullptr ? &(*kept)[k] : nullptr);
+            const Ground ground =
+                run(one, work, programs[k], kept != nullptr ? &(*kept)[k] : nullptr);
             same = same && ground.unchanged;
             outcomes.push_back(ground.outcome);
             if (resumed != nullptr) resumed->push_back(ground.resumed);

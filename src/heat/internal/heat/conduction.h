@@ -103,9 +103,14 @@ class Conduction {
     void sweep(double now, std::span<const std::uint32_t> must, bool everything);
     void find_due(double now, std::span<const std::uint32_t> must, bool everything);
     void find_beside(double now);
-    double span_length(std::size_t span) const;
+    std::array<double, kSpans> span_ends() const;
+    /// How many of a sweep's spans each node takes part in; those of more come first.
+    void order(double now);
     void divide(double now);
-    void conduct(HeatPatch& patch);
+    /// Calls visit(way, time) for the ways of a node that are conducted through; `time`: s, for
+    /// which they have not been.
+    template <class Visit>
+    void for_due_ways(std::uint32_t node, double now, Visit visit) const;
     std::uint8_t level_of(std::uint32_t node, double now) const;
     /// What is due is brought to the state's time; the zone is given up.
     void catch_up();
@@ -137,12 +142,14 @@ class Conduction {
     std::vector<std::uint8_t> level_;     // by node: swept every unit_ times 2^level s
     std::vector<std::uint8_t> due_;       // by node: kDue or kBeside in the sweep
     std::vector<std::uint8_t> fast_;      // by node of the sweep: has more than the slow modes
+    std::vector<std::uint8_t> spans_;     // by node of the sweep: that it takes part in
     std::vector<std::uint32_t> touched_;  // nodes of the sweep
-    std::vector<std::uint32_t> there_;    // by node: in the patch that is being made
+    std::vector<std::uint32_t> ordered_;  // the same
+    std::vector<std::uint32_t> there_;    // by node of the sweep: in `ordered_`
     std::array<HeatPatch, kSpans> swept_;
-    std::vector<float> rows_, sums_;  // K, of a patch
-    double last_sweep_;               // s: when
-    double noted_;                    // s: time of the last part
+    std::vector<float> rows_;  // K, of the sweep, as ordered
+    double last_sweep_;        // s: when
+    double noted_;             // s: time of the last part
     RowConductor conductor_;
     std::array<Factors, 64> known_;  // by their duration
     double hottest_ = 0.0;

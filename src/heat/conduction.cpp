@@ -42,8 +42,10 @@ Conduction::Conduction(const PartHeat& part, int rings)
       level_(nodes_.size(), kUnmarked),
       due_(nodes_.size(), kUnmarked),
       fast_(nodes_.size(), 0),
+      spans_(nodes_.size(), 0),
       there_(nodes_.size(), 0),
-      last_sweep_(state_.time) {
+      last_sweep_(state_.time),
+      noted_(state_.time) {
     rate_.resize(nodes_.neighbour.size());
     mean_rate_.resize(nodes_.neighbour.size());
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
@@ -144,27 +146,33 @@ void Conduction::make_zone() {
     state_.radius = 0.0;
     for (const std::uint32_t k : powered_)
         state_.radius = std::max(state_.radius, (nodes_.point[k] - state_.centre).norm());
-    const std::size_t inside = zone_.nodes.size();
-    zone_rows_.resize((inside + 2 * beyond_.size()) * kModes);
-    std::uint32_t place = 0;
     for (const auto* list : {&zone_.nodes, &beyond_}) {
         for (const std::uint32_t k : *list) {
             if (state_.warm[k] == 0) state_.current[k] = state_.conducted[k] = state_.time;
             state_.warm[k] = 1;
             state_.last[k] = state_.time;
-            place_[k] = place++;
         }
     }
-    for (std::size_t i = 0; i < inside; ++i) {
+    place_zone();
+    for (std::size_t i = 0; i < zone_.nodes.size(); ++i) {
         const std::uint32_t k = zone_.nodes[i];
         std::copy_n(&state_.modes[k * kModes], kModes, &zone_rows_[i * kModes]);
         level_[k] = kUnmarked;  // is in no sweep
-        if (nodes_.opposite[k] != ThermalNodes::kNone) thin_.push_back(k);
     }
-    zone_.slow.assign(inside + 2 * beyond_.size(), 0);
-    join_zone();
     zone_time_ = state_.time;
     take_beyond();
+}
+
+void Conduction::place_zone() {
+    const std::size_t all = zone_.nodes.size() + 2 * beyond_.size();
+    zone_rows_.resize(all * kModes);
+    zone_.slow.assign(all, 0);
+    std::uint32_t place = 0;
+    for (const auto* list : {&zone_.nodes, &beyond_})
+        for (const std::uint32_t k : *list) place_[k] = place++;
+    for (const std::uint32_t k : zone_.nodes)
+        if (nodes_.opposite[k] != ThermalNodes::kNone) thin_.push_back(k);
+    join_zone();
 }
 
 // After its nodes come those beyond, which stay as they are, and then once more, for what flows
@@ -287,8 +295,10 @@ void Conduction::heat(double duration) {
         inject(gain);
         if (i + 1 < times)
             conductor_.conduct(zone_, between, nodes_.dispersion / (diffusivity_ * between),
-                               zone_rows_, zone_sums_);
+                               zone_rows_);
     }
+    zone_sums_.resize(zone_.nodes.size());
+    sum_rows(zone_rows_.data(), zone_sums_.size(), zone_sums_.data());
     for (const std::uint32_t k : heated_) {
         direct_[k] =
             (nodes_.own[k].direct * flux(k) + nodes_.other[k].direct * flux(nodes_.opposite[k])) /

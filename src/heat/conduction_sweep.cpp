@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "heat/conduction.h"
@@ -14,23 +15,29 @@ constexpr std::size_t kModes = DepthModes::kModes;
 // A sweep's interval: of the time in which what is there changes, so much where heat gets farther
 // in it than kShort, alpha t over spacing^2, else more. Where heat is still to come from the
 // source, by kShort less.
-constexpr double kShare = 0.08, kShortShare = 0.25;
+constexpr double kShare = 0.1, kShortShare = 0.25;
 constexpr double kShort = 1.0;
 constexpr double kGrow = 0.25;      // of the time since heat came: an interval when none comes
-constexpr double kFirstSpan = 2.0;  // of the unit
-constexpr double kLonger = 16.0;    // each span than those after it
+constexpr double kFirstSpan = 4.0;  // of the unit
+constexpr double kLonger = 4.0;     // from a span's end to the next one's
 constexpr int kLevels = 32;
 constexpr double kCold = 0.01;    // K: less does not warm the neighbours
-constexpr float kNoFast = 1e-5f;  // K: less of each of the faster modes is none
+constexpr float kNoFast = 1e-3f;  // K: less of each of the faster modes is none
 enum : std::uint8_t { kDue = 0, kBeside = 1 };
 
 }  // namespace
 
-/// s, of what is conducted together: the last of a sweep's time, before it longer ones.
-double Conduction::span_length(std::size_t span) const {
-    if (span + 1 == kSpans) return HUGE_VAL;
-    return span == 0 ? kFirstSpan * unit_
-                     : span_length(span - 1) * (span == 1 ? kLonger - 1.0 : kLonger);
+/// s, from a sweep back, between which is conducted together: the last of its time, before it
+/// longer ones.
+std::array<double, Conduction::kSpans> Conduction::span_ends() const {
+    std::array<double, kSpans> ends;
+    double end = kFirstSpan * unit_;
+    for (double& one : ends) {
+        one = end;
+        end *= kLonger;
+    }
+    ends.back() = HUGE_VAL;
+    return ends;
 }
 
 // What was heated changes in the time since; what is not yet, in that of the way to it.
@@ -42,7 +49,10 @@ std::uint8_t Conduction::level_of(std::uint32_t node, double now) const {
     const double brief = kShort * nodes_.spacing * nodes_.spacing / diffusivity_;
     const double wanted =
         std::min({kShortShare * since, std::max(kShare * since, brief), kShare * way - brief});
-    const int level = wanted > unit_ ? std::ilogb(wanted / unit_) : 0;
+    if (wanted <= unit_) return 0;
+    // The whole part of its logarithm: the exponent of the number.
+    const auto bits = std::bit_cast<std::uint64_t>(wanted / unit_);
+    const auto level = static_cast<int>(bits >> 52U) - 1023;
     return static_cast<std::uint8_t>(std::min(level, kLevels - 1));
 }
 
@@ -93,80 +103,109 @@ void Conduction::find_beside(double now) {
     for_marked(due_, kBeside, [this](std::uint32_t k) { touched_.push_back(k); });
 }
 
-// What is conducted for long begins alone; the others, when it has come to their time, join it. So
-// long intervals do not make many stages of short ones.
-void Conduction::divide(double now) {
-    std::array<double, kSpans> lengths;
-    for (std::size_t span = 0; span < kSpans; ++span) lengths[span] = span_length(span);
-    for (const std::uint32_t k : touched_) {
-        const bool beside = due_[k] == kBeside;
-        const double conducted = state_.conducted[k];
-        std::array<double, kSpans> sums{};
-        std::size_t spans = 0;  // that the node takes part in
-        for (std::uint32_t e = nodes_.first[k]; e < nodes_.first[k + 1]; ++e) {
-            const std::uint32_t other = nodes_.neighbour[e];
-            if (due_[other] == kUnmarked || (beside && due_[other] == kBeside) || in_zone(other))
-                continue;
-            double left = now - std::max(conducted, state_.conducted[other]);
-            for (std::size_t span = 0; left > 0.0; left -= lengths[span++]) {
-                const double length = std::min(left, lengths[span]);
-                const auto part = static_cast<float>(length);
-                HeatPatch& patch = swept_[span];
-                patch.longest = std::max(patch.longest, length);
-                for (; spans <= span; ++spans) {
-                    swept_[spans].nodes.push_back(k);
-                    swept_[spans].first.push_back(
-                        static_cast<std::uint32_t>(swept_[spans].ways.size()));
-                }
-                patch.ways.push_back({other, part * rate_[e], part * mean_rate_[e]});
-                sums[span] += part * std::max(rate_[e], mean_rate_[e]);
-            }
-        }
-        for (std::size_t span = 0; span < spans; ++span)
-            swept_[span].most = std::max(swept_[span].most, sums[span]);
+template <class Visit>
+void Conduction::for_due_ways(std::uint32_t node, double now, Visit visit) const {
+    const bool beside = due_[node] == kBeside;
+    const double conducted = state_.conducted[node];
+    for (std::uint32_t e = nodes_.first[node]; e < nodes_.first[node + 1]; ++e) {
+        const std::uint32_t other = nodes_.neighbour[e];
+        if (due_[other] == kUnmarked || (beside && due_[other] == kBeside)) continue;
+        const double left = now - std::max(conducted, state_.conducted[other]);
+        if (left > 0.0) visit(e, left);
     }
 }
 
-void Conduction::conduct(HeatPatch& patch) {
-    const std::size_t count = patch.nodes.size();
-    patch.first.push_back(static_cast<std::uint32_t>(patch.ways.size()));
-    patch.slow.resize(count);
-    rows_.resize(count * kModes);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        there_[patch.nodes[i]] = i;
-        std::copy_n(&state_.modes[patch.nodes[i] * kModes], kModes, &rows_[i * kModes]);
+void Conduction::order(double now) {
+    const auto ends = span_ends();
+    std::array<std::uint32_t, kSpans + 2> begin{};  // by spans, descending; nodes
+    for (const std::uint32_t k : touched_) {
+        double longest = 0.0;
+        for_due_ways(k, now,
+                     [&](std::uint32_t, double left) { longest = std::max(longest, left); });
+        std::uint8_t spans = longest > 0.0 ? 1 : 0;
+        while (spans > 0 && longest > ends[spans - 1U]) ++spans;
+        spans_[k] = spans;
+        ++begin[kSpans - spans + 1];
     }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        bool slow = fast_[patch.nodes[i]] == 0;
-        for (std::uint32_t e = patch.first[i]; e < patch.first[i + 1]; ++e) {
-            std::uint32_t& other = patch.ways[e].other;
+    for (std::size_t n = 0; n <= kSpans; ++n) begin[n + 1] += begin[n];
+    ordered_.resize(touched_.size());
+    for (const std::uint32_t k : touched_) {
+        there_[k] = begin[kSpans - spans_[k]]++;
+        ordered_[there_[k]] = k;
+    }
+}
+
+// What is conducted for long begins alone; the others, when it has come to their time, join it. So
+// long intervals do not make many stages of short ones.
+void Conduction::divide(double now) {
+    const auto ends = span_ends();
+    std::array<std::uint32_t, kSpans> count{};  // ways
+    std::size_t most = 0;
+    for (const std::uint32_t k : ordered_) most += nodes_.first[k + 1] - nodes_.first[k];
+    for (std::size_t span = 0; span < kSpans; ++span) {
+        HeatPatch& patch = swept_[span];
+        patch.first.clear();
+        patch.slow.clear();
+        patch.most = patch.longest = 0.0;
+        if (patch.ways.size() < most) patch.ways.resize(most);
+    }
+    for (const std::uint32_t k : ordered_) {
+        const std::uint8_t spans = spans_[k];
+        if (spans == 0) break;
+        for (std::size_t span = 0; span < spans; ++span) swept_[span].first.push_back(count[span]);
+        std::array<double, kSpans> sums{};
+        bool slow = fast_[k] == 0;
+        for_due_ways(k, now, [&](std::uint32_t e, double left) {
+            const std::uint32_t other = nodes_.neighbour[e], place = there_[other];
             slow = slow && fast_[other] == 0;
-            other = there_[other];
+            double before = 0.0;
+            for (std::size_t span = 0; span == 0 || left > ends[span - 1]; ++span) {
+                const double length = std::min(left, ends[span]) - before;
+                before = ends[span];
+                const auto part = static_cast<float>(length);
+                HeatPatch& patch = swept_[span];
+                patch.longest = std::max(patch.longest, length);
+                patch.ways[count[span]++] = {place, part * rate_[e], part * mean_rate_[e]};
+                sums[span] += part * std::max(rate_[e], mean_rate_[e]);
+            }
+        });
+        for (std::size_t span = 0; span < spans; ++span) {
+            swept_[span].slow.push_back(slow ? 1 : 0);
+            swept_[span].most = std::max(swept_[span].most, sums[span]);
         }
-        patch.slow[i] = slow ? 1 : 0;
     }
-    conductor_.conduct(patch, 1.0, nodes_.dispersion / (diffusivity_ * patch.longest), rows_,
-                       sums_);
-    for (std::size_t i = 0; i < count; ++i)
-        std::copy_n(&rows_[i * kModes], kModes, &state_.modes[patch.nodes[i] * kModes]);
-    patch.clear();
+    for (std::size_t span = 0; span < kSpans; ++span) swept_[span].first.push_back(count[span]);
 }
 
 void Conduction::sweep(double now, std::span<const std::uint32_t> must, bool everything) {
     put_beyond_back();
     find_due(now, must, everything);
     find_beside(now);
-    for (const std::uint32_t k : touched_) {
-        float* row = &state_.modes[k * kModes];
+    order(now);
+    const std::size_t count = ordered_.size();
+    if (rows_.size() < count * kModes) rows_.resize(count * kModes);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t k = ordered_[i];
+        float* row = &rows_[i * kModes];
+        std::copy_n(&state_.modes[k * kModes], kModes, row);
         const double since = std::max(now - state_.current[k], 0.0);
         fast_[k] = decay_row(row, factors(since).decay.data()) > kNoFast ? 1 : 0;
         state_.current[k] = now;
     }
     divide(now);
-    for (std::size_t span = kSpans; span-- > 0;)
-        if (!swept_[span].nodes.empty()) conduct(swept_[span]);
+    for (std::size_t span = kSpans; span-- > 0;) {
+        const HeatPatch& patch = swept_[span];
+        if (!patch.slow.empty())
+            conductor_.conduct(patch, 1.0, nodes_.dispersion / (diffusivity_ * patch.longest),
+                               rows_);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t k = ordered_[i];
+        const float* row = &rows_[i * kModes];
+        std::copy_n(row, kModes, &state_.modes[k * kModes]);
+        note_peak(k, sum_of_row(row));
+    }
     for (const std::uint32_t k : touched_) {
-        note_peak(k, sum_of_row(&state_.modes[k * kModes]));
         if (due_[k] == kDue) {
             state_.conducted[k] = now;
             level_[k] = level_of(k, now);

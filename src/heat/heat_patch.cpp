@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLeastStiff = 1e-3;
 constexpr double kCoarser = 1.1;         // from one stiffness that is computed to the next
+constexpr double kOther = 1.02;          // the same of errors, to the nearest
 constexpr double kTolerance = 0.02;      // of what is left out, at waves from node to node
 constexpr std::size_t kFewest = 2;       // terms
 constexpr std::size_t kMostKept = 1024;  // series
@@ -63,21 +64,25 @@ void HeatPatch::clear() {
 const std::vector<double>& RowConductor::terms(double& stiff, double error) {
     const double power = std::ceil(std::log(std::max(stiff, kLeastStiff)) / std::log(kCoarser));
     stiff = std::pow(kCoarser, power);
+    const double other = std::round(std::log(error) / std::log(kOther));
+    error = std::pow(kOther, other);
     if (known_.size() > kMostKept) known_.clear();
-    auto& found = known_[{power, error}];
+    auto& found = known_[{power, other}];
     if (found.empty()) found = series(stiff, error);
     return found;
 }
 
 void RowConductor::conduct(const HeatPatch& patch, double duration, double error,
-                           std::vector<float>& rows, std::vector<float>& sums) {
+                           std::vector<float>& rows) {
     const HeatWays ways{patch.slow.size(), patch.first.data(), patch.ways.data(),
                         patch.slow.data()};
     double stiff = 2.0 * duration * patch.most;
     const std::vector<double>& series = terms(stiff, error);
     const double share = 2.0 * duration / stiff;
-    for (auto& stage : stages_) stage.resize(rows.size());
-    // Clenshaw's recurrence, whose first step is a multiple of the rows.
+    for (auto& stage : stages_)
+        if (stage.size() < rows.size()) stage.resize(rows.size());
+    // Clenshaw's recurrence, whose first step is a multiple of the rows. The last one may take
+    // their place, but where it is the first.
     const std::size_t last = series.size() - 1;
     const float *now = rows.data(), *before = rows.data();
     for (std::size_t k = last; k-- > 0;) {
@@ -86,14 +91,19 @@ void RowConductor::conduct(const HeatPatch& patch, double duration, double error
         if (k + 1 == last)
             stage = {twice * series[last] + series[k], 0.0, 0.0, twice * share * series[last]};
         if (k + 2 == last) stage = {twice, 0.0, series[k] - series[last], twice * share};
-        float* const next = stages_[k % 2].data();
+        float* const next = k == 0 && last > 1 ? rows.data() : stages_[k % 2].data();
         conduct_stage(ways, stage, now, before, rows.data(), next);
         before = now;
         now = next;
     }
-    rows.swap(stages_[0]);
-    sums.resize(ways.nodes);
-    sum_rows(rows.data(), ways.nodes, sums.data());
+    if (last == 1) std::copy_n(stages_[0].data(), ways.nodes * kModes, rows.data());
+}
+
+void RowConductor::conduct(const HeatPatch& patch, double duration, double error,
+                           std::vector<float>& rows, std::vector<float>& sums) {
+    conduct(patch, duration, error, rows);
+    sums.resize(patch.slow.size());
+    sum_rows(rows.data(), sums.size(), sums.data());
 }
 
 }  // namespace beltgrinding

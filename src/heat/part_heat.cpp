@@ -122,6 +122,10 @@ void PartHeat::set_thickness(const std::vector<float>& thickness) {
     nodes_ = std::move(nodes);
 }
 
+const std::vector<float>& PartHeat::thickness() const {
+    return nodes_->thickness;
+}
+
 void PartHeat::set_state(HeatState state) {
     const std::size_t n = nodes_->size();
     if (state.modes.size() != n * DepthModes::kModes || state.current.size() != n ||

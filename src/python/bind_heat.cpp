@@ -24,6 +24,18 @@ void bind_heat(py::module_& m) {
             "samples",
             [](const PartHeat& heat) { return own(std::vector<std::uint32_t>(heat.samples())); },
             "(nodes,): the sample that each node is.")
+        .def_property_readonly(
+            "conductivity", [](const PartHeat& heat) { return heat.material().conductivity; },
+            "W/(m K)")
+        .def_property_readonly(
+            "heat_capacity", [](const PartHeat& heat) { return heat.material().heat_capacity; },
+            "J/(kg K)")
+        .def_property_readonly(
+            "density", [](const PartHeat& heat) { return heat.material().density; }, "kg/m3")
+        .def_property_readonly(
+            "thickness",
+            [](const PartHeat& heat) { return own(std::vector<float>(heat.thickness())); },
+            "(nodes,) mm: the section's under each node; infinite: a half-space.")
         .def("set_thickness", &PartHeat::set_thickness, py::arg("thickness"),
              "(nodes,) mm: the section's under each node; NaN: a half-space. Before any heat.");
 }

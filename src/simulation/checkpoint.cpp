@@ -32,6 +32,7 @@ std::size_t Checkpoint::bytes() const {
     const ContactSolution& contact = pressing.solution;
     return sizeof(Checkpoint) + bytes_of(seen) + bytes_of(records) + bytes_of(touched) +
            bytes_of(deepened) + bytes_of(blocks) + bytes_of(ground) + bytes_of(trace) +
+           bytes_of(finish) + heat.bytes() + passes.bytes() +
            static_cast<std::size_t>(shifts.size()) * sizeof(double) + influence.bytes() +
            grinding.force_influence.bytes() + recording.bytes() + bytes_of(monitor.events) +
            static_cast<std::size_t>(contact.pressure.size() + contact.axial.size()) *
@@ -53,6 +54,7 @@ Checkpoint joined(const Checkpoint& before, const Checkpoint& next) {
                    next.blocks.end(), std::back_inserter(both.blocks));
     both.ground.clear();
     both.trace.clear();
+    both.finish.clear();
     const Eigen::Index laws = next.shifts.cols();
     constexpr Eigen::Index kLanes = SampleBlocks::kLanes;
     both.shifts.resize(static_cast<Eigen::Index>(both.blocks.size()) * kLanes, laws);
@@ -69,6 +71,7 @@ Checkpoint joined(const Checkpoint& before, const Checkpoint& next) {
         const std::size_t at = later ? *later : *place(before);
         both.ground.push_back(from.ground[at]);
         if (!from.trace.empty()) both.trace.push_back(from.trace[at]);
+        if (!from.finish.empty()) both.finish.push_back(from.finish[at]);
         both.shifts.middleRows(static_cast<Eigen::Index>(k) * kLanes, kLanes) =
             from.shifts.middleRows(static_cast<Eigen::Index>(at) * kLanes, kLanes);
     }
@@ -77,6 +80,8 @@ Checkpoint joined(const Checkpoint& before, const Checkpoint& next) {
     both.grinding.integrated_rate = next.grinding.integrated_rate;
     both.grinding.force_influence.append(next.grinding.force_influence);
     both.recording.append(next.recording);
+    both.heat.append(next.heat);
+    both.passes.append(next.passes);
     both.monitor = next.monitor;
     both.pressing = next.pressing;
     both.wheel = next.wheel;

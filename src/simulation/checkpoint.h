@@ -8,7 +8,9 @@
 
 #include "actuated_wheel.h"
 #include "beltgrinding/simulation.h"
+#include "finish_keeper.h"
 #include "grinding.h"
+#include "heat/conduction.h"
 #include "heightfield/sample_blocks.h"
 #include "influence_keeper.h"
 #include "pressing.h"
@@ -32,11 +34,14 @@ struct Checkpoint {
     std::vector<SampleBlocks::Deepened> deepened;
     std::vector<std::uint32_t> blocks;  // that may have changed, ascending
     std::vector<SampleBlocks::Ground> ground;
-    std::vector<TraceKeeper::Block> trace;  // empty: none is kept
-    Eigen::ArrayXXd shifts;                 // of the blocks' positions; as Grinding::shifts
+    std::vector<TraceKeeper::Block> trace;    // empty: none is kept
+    std::vector<FinishKeeper::Block> finish;  // of the blocks; empty: none is kept
+    Eigen::ArrayXXd shifts;                   // of the blocks' positions; as Grinding::shifts
     InfluenceKeeper::Part influence;
     Grinding::Part grinding;
     Recording::Part recording;
+    Conduction::Part heat;
+    FinishKeeper::Part passes;
 
     // As of now.
     ProcessMonitor::State monitor;

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "heat_keeper.h"
+
 namespace beltgrinding {
 
 CheckpointKeeper::CheckpointKeeper(Checkpoints& kept, StepQueue& steps, const SampleBlocks& blocks,
@@ -22,6 +24,8 @@ CheckpointKeeper::CheckpointKeeper(Checkpoints& kept, StepQueue& steps, const Sa
     context.force_influence = outputs.force_influence;
     context.moves = process.force_control && !process.dynamics.ideal();
     if (outputs.recording != nullptr) context.recording = outputs.recording->begun();
+    if (options.heat.part != nullptr) context.heat_nodes = options.heat.part->size();
+    context.finish = options.finish.wanted;
     if (kept_.context_ != context) kept_.clear();
     kept_.context_ = context;
 
@@ -53,6 +57,7 @@ void CheckpointKeeper::restore(SampleBlocks& blocks) const {
 
 void CheckpointKeeper::restore(const Parts& parts) {
     std::vector<const Recording::Part*> recorded;
+    std::vector<const Conduction::Part*> heated;
     std::size_t planned = 0;
     for (const auto& one : kept_.kept_) {
         std::size_t record = 0;
@@ -64,10 +69,16 @@ void CheckpointKeeper::restore(const Parts& parts) {
         parts.records.insert(parts.records.end(), one->records.begin(), one->records.end());
         for (std::size_t k = 0; k < one->blocks.size() && parts.trace != nullptr; ++k)
             parts.trace->restore(one->blocks[k], one->trace[k]);
+        if (parts.finish != nullptr) {
+            for (std::size_t k = 0; k < one->blocks.size(); ++k)
+                parts.finish->restore(one->blocks[k], one->finish[k]);
+            parts.finish->restore(one->passes);
+        }
         parts.grinding.restore_shifts(one->blocks, one->shifts);
         parts.grinding.restore(one->grinding);
         if (parts.influence != nullptr) parts.influence->restore(one->influence);
         recorded.push_back(&one->recording);
+        heated.push_back(&one->heat);
     }
     if (!kept_.kept_.empty()) {
         const Checkpoint& now = *kept_.kept_.back();
@@ -78,6 +89,7 @@ void CheckpointKeeper::restore(const Parts& parts) {
         parts.touched = now.any_contact;
         motion_ = now.motion;
     }
+    if (parts.heat != nullptr) parts.heat->restore(heated);
     go_on(parts);
     parts.grinding.watch(changed_);
 }
@@ -118,6 +130,13 @@ void CheckpointKeeper::take(const Parts& parts, std::size_t planned) {
             for (const std::uint32_t block : now.blocks)
                 now.trace.push_back(parts.trace->block(block));
         }
+        if (parts.finish != nullptr) {
+            now.finish.reserve(now.blocks.size());
+            for (const std::uint32_t block : now.blocks)
+                now.finish.push_back(parts.finish->block(block));
+            now.passes = parts.finish->next_part();
+        }
+        if (parts.heat != nullptr) now.heat = parts.heat->next_part();
         now.shifts = parts.grinding.shifts(now.blocks);
         now.grinding = parts.grinding.next_part();
         if (parts.influence != nullptr) now.influence = parts.influence->next_part();

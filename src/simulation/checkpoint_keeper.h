@@ -19,6 +19,8 @@ class CheckpointKeeper {
         Grinding& grinding;
         TraceKeeper* trace;          // null: none is kept
         InfluenceKeeper* influence;  // the same
+        HeatKeeper* heat;            // the same
+        FinishKeeper* finish;        // the same
         ActuatedWheel* wheel;        // null: the force is met at every moment
         Recording* recording;        // null: there is none
         std::vector<StepRecord>& records;

@@ -169,6 +169,65 @@ void FinishKeeper::end(std::size_t position, Pass& pass) {
     finish_.outside[position] = outside;
 }
 
+// Calls visit(lane, position).
+template <class Visit>
+void FinishKeeper::for_lanes(std::uint32_t block, Visit visit) const {
+    const std::size_t first = std::size_t{block} * Block::kLanes;
+    const std::size_t count = std::min(Block::kLanes, passes_.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) visit(lane, first + lane);
+}
+
+FinishKeeper::Block FinishKeeper::block(std::uint32_t number) const {
+    Block block{};
+    for_lanes(number, [&](std::size_t lane, std::size_t position) {
+        block.pass[lane] = passes_[position];
+        block.settled[lane] = finish_.settled[position];
+        block.unknown[lane] = finish_.unknown[position];
+        block.lay[lane] = finish_.lay[position];
+        block.crossing[lane] = finish_.crossing[position];
+        block.passes[lane] = finish_.passes[position];
+        block.motion[lane] = finish_.motion[position];
+        block.outside[lane] = finish_.outside[position];
+    });
+    return block;
+}
+
+void FinishKeeper::restore(std::uint32_t number, const Block& block) {
+    for_lanes(number, [&](std::size_t lane, std::size_t position) {
+        passes_[position] = block.pass[lane];
+        finish_.settled[position] = block.settled[lane];
+        finish_.unknown[position] = block.unknown[lane];
+        finish_.lay[position] = block.lay[lane];
+        finish_.crossing[position] = block.crossing[lane];
+        finish_.passes[position] = block.passes[lane];
+        finish_.motion[position] = block.motion[lane];
+        finish_.outside[position] = block.outside[lane];
+    });
+}
+
+void FinishKeeper::Part::append(const Part& next) {
+    std::vector<Step> both = std::move(steps);
+    both.insert(both.end(), next.steps.begin(), next.steps.end());
+    *this = next;
+    steps = std::move(both);
+}
+
+FinishKeeper::Part FinishKeeper::next_part() {
+    const auto from = steps_.begin() + static_cast<std::ptrdiff_t>(noted_);
+    noted_ = steps_.size();
+    return {{from, steps_.end()}, any_, now_, motion_, travel_, advance_};
+}
+
+void FinishKeeper::restore(const Part& part) {
+    steps_.insert(steps_.end(), part.steps.begin(), part.steps.end());
+    noted_ = steps_.size();
+    any_ = part.any;
+    now_ = part.now;
+    motion_ = part.motion;
+    travel_ = part.travel;
+    advance_ = part.advance;
+}
+
 void FinishKeeper::keep(HeightField& field) {
     for (std::size_t position = 0; position < passes_.size(); ++position)
         if (passes_[position].time > 0.0f) end(position, passes_[position]);

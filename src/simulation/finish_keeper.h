@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,7 +28,6 @@ class FinishKeeper {
     /// Ends all passes and hands the finish over to the field.
     void keep(HeightField& field);
 
-  private:
     /// What a pass has of a step that is its last one.
     struct Step {
         float begins, ends;  // mm of the wheel's way
@@ -42,6 +42,39 @@ class FinishKeeper {
         float time = 0.0f;     // s
         std::uint32_t step = 0;
     };
+    /// A block's passes and what they have left.
+    struct Block {
+        static constexpr std::size_t kLanes = SampleBlocks::kLanes;
+        std::array<Pass, kLanes> pass;
+        std::array<float, kLanes> settled, unknown, crossing;
+        std::array<Vec3f, kLanes> lay;
+        std::array<std::uint32_t, kLanes> passes, motion;
+        std::array<std::uint8_t, kLanes> outside;
+    };
+    Block block(std::uint32_t number) const;
+    void restore(std::uint32_t number, const Block& block);
+    /// What goes on from step to step, but the blocks.
+    struct Part {
+        std::vector<Step> steps;  // since the one before
+        // As of now.
+        bool any = false;
+        PathStep now;
+        std::uint32_t motion = 0;
+        double travel = 0.0;          // mm
+        Vec3 advance = Vec3::Zero();  // mm/s
+
+        std::size_t bytes() const { return sizeof(Part) + steps.size() * sizeof(Step); }
+        /// Becomes both in one; `next` is the one after it.
+        void append(const Part& next);
+    };
+    /// Since the last call, or the beginning.
+    Part next_part();
+    /// The parts come in their order.
+    void restore(const Part& part);
+
+  private:
+    template <class Visit>
+    void for_lanes(std::uint32_t block, Visit visit) const;
     void end(std::size_t position, Pass& pass);
 
     const SampleBlocks& blocks_;
@@ -50,6 +83,7 @@ class FinishKeeper {
     FinishTrace finish_;              // by position
     std::vector<Pass> passes_;        // by position
     std::vector<Step> steps_;
+    std::size_t noted_ = 0;  // of them: in a part
     bool any_ = false;
     PathStep now_;
     std::uint32_t motion_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "beltgrinding/simulation.h"
@@ -26,6 +26,9 @@ class HeatKeeper {
     /// if nothing flowed in.
     double hottest() const { return conduction_.hottest(); }
     std::size_t hottest_position() const;
+    /// What goes on between steps; see `Conduction`.
+    Conduction::Part next_part() { return conduction_.next_part(); }
+    void restore(std::span<const Conduction::Part* const> parts) { conduction_.restore(parts); }
     /// Hands over to the part and the field, at the program's end.
     void keep(double duration, HeightField& field);
 

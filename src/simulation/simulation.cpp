@@ -123,9 +123,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     SampleBlocks& blocks = *built;
     if (recording != nullptr) recording->begin(field, path.duration(), blocks.samples());
     std::optional<CheckpointKeeper> keeper;
-    // The heat in the part and its finish are not among what they hold.
-    if (options.outputs.checkpoints != nullptr && options.heat.part == nullptr &&
-        !options.finish.wanted) {
+    if (options.outputs.checkpoints != nullptr) {
         keeper.emplace(*options.outputs.checkpoints, steps, blocks, options);
         keeper->restore(blocks);
     }
@@ -162,6 +160,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
                                           grinding,
                                           trace ? &*trace : nullptr,
                                           influence ? &*influence : nullptr,
+                                          heat ? &*heat : nullptr,
+                                          finish ? &*finish : nullptr,
                                           wheel ? &*wheel : nullptr,
                                           recording,
                                           result.steps,

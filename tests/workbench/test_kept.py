@@ -394,6 +394,7 @@ def outcome(job, **options):
     arrays += [field.height, field.height_sd, field.faces, field.flags, field.triangles]
     arrays += [field.spacing, field.depth, *field.trace.values(), *result.steps.values()]
     arrays += [*result.motions.values(), result.shifts, *(field.finish or {}).values()]
+    arrays += (field.heat or {}).values()
     summary = {key: value for key, value in result.summary.items() if key != "wall_time_s"}
     told = [summary, result.events, result.verdict]
     return [
@@ -563,7 +564,25 @@ def dense_edges(job):
     job["stock"] = {"kind": "mesh", "file": str(job.pop("folder") / "stock.ply")}
 
 
-@pytest.mark.parametrize("variant", [half_space, springy_robot, slow_force, dense_edges])
+def warmth(job):
+    job["heat"] = copy.deepcopy(HEAT)
+
+
+def finish(job):
+    job["finish"] = copy.deepcopy(FINISH)
+
+
+def warmth_and_finish(job):
+    slow_force(job)
+    warmth(job)
+    finish(job)
+    job["heat"]["conductivity_W_mK"] = 190.0
+
+
+VARIANTS = [half_space, springy_robot, slow_force, dense_edges, warmth, finish, warmth_and_finish]
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
 def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(variant, folder):
     def made(at=None):
         job = raster_job(folder)
@@ -582,6 +601,26 @@ def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(varia
     for at, quick in found.items():
         with kept.instead(kept.Kept(0)):
             assert outcome(made(at)) == quick, at
+
+
+HEAT_EDITS = {"conductivity_W_mK": 16.0, "heat_capacity_J_kgK": 490.0, "density_kg_m3": 7800.0}
+HEAT_EDITS |= {"friction": [0.3, 0.7], "burn_temperature_C": 21.0}
+
+
+@pytest.mark.parametrize("key", HEAT_EDITS)
+def test_another_material_or_friction_takes_no_states(key, folder):
+    job = raster_job(folder)
+    job["heat"] = {**HEAT, "start_temperature_C": 20.0}
+    other = copy.deepcopy(job)
+    other["heat"][key] = HEAT_EDITS[key]
+    with kept.instead(kept.Kept()) as stages:
+        before = outcome(copy.deepcopy(job))
+        quick = outcome(copy.deepcopy(other))
+        assert "grinding" not in stages.hits
+        assert outcome(job) == before
+        assert stages.hits["grinding"] == 1
+    with kept.instead(kept.Kept(0)):
+        assert outcome(other) == quick != before
 
 
 def test_a_run_that_nothing_follows_keeps_no_states(folder):

@@ -49,3 +49,12 @@ def options(job, field, shape, warnings, context=None):
         "start": float(given["start_temperature_C"]),
         "burn": float(given["burn_temperature_C"]),
     }
+
+
+def plain(heated):
+    """What ``options`` returned as plain data, for a digest: of a core.PartHeat what it was made of, with the field."""
+    if not heated:
+        return {}
+    part = heated["part"]
+    made_of = (part.spacing, part.conductivity, part.heat_capacity, part.density, part.thickness)
+    return heated | {"part": made_of}

@@ -144,14 +144,12 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
         finish=finished,
     )
     shifts = np.zeros((field.size, len(options["shifted_laws"])))
-    # The heat in the part and its finish are not among what a checkpoint holds.
-    whole = not heated and not finished
     checkpoints = RunCheckpoints(
         field,
-        (wheel, compliance, law, options),
+        (wheel, compliance, law, options | {"heat": heat.plain(heated)}),
         recording is not None,
         len(paths),
-        resume and whole,
+        resume,
     )
     phases.end("hash")
     found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}

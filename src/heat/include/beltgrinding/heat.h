@@ -71,6 +71,8 @@ class PartHeat {
     /// (nodes): the section's thickness under each, mm; NaN or far: a half-space. Before any heat.
     /// Throws InputError on another number or one that is not positive.
     void set_thickness(const std::vector<float>& thickness);
+    /// (nodes): the same; infinite: a half-space.
+    const std::vector<float>& thickness() const;
     /// As it was given.
     const HeatMaterial& material() const { return material_; }
     /// What it is at the moment.

@@ -40,6 +40,37 @@ class Conduction {
     /// The state, all of it brought to its time.
     const HeatState& settle();
 
+    /// What changed between two moments between steps, and what goes on from the latter. What it
+    /// began with and all parts since make up all that a later step depends on, to the last bit.
+    struct Part {
+        struct Node {
+            std::uint32_t node;
+            float peak;                       // K
+            std::uint32_t source;             // motion
+            std::uint8_t level;               // of sweeps
+            double current, conducted, last;  // s, as in HeatState
+            DepthModes::Row modes;            // K
+        };
+        // Since the one before.
+        std::vector<Node> nodes;  // ascending
+        // As of now.
+        double time = 0.0, heated = 0.0, zone_time = 0.0, last_sweep = 0.0;  // s
+        std::uint32_t motion = HeatState::kNever;
+        Vec3 centre = Vec3::Zero();
+        double radius = 0.0;
+        std::vector<std::uint32_t> zone, beyond;  // nodes
+        std::vector<std::uint8_t> ring;           // of the zone's
+        std::vector<float> rows;                  // K, as of the zone
+
+        std::size_t bytes() const;
+        /// Becomes both in one; `next` is the one after it.
+        void append(const Part& next);
+    };
+    /// Since the last call, or the beginning.
+    Part next_part();
+    /// Goes on behind the last of `parts`, which are all from the beginning.
+    void restore(std::span<const Part* const> parts);
+
   private:
     static constexpr std::size_t kSpans = 5;  // of a sweep's time
     static constexpr std::uint8_t kOutside = 255;
@@ -57,6 +88,8 @@ class Conduction {
     void forget_direct();
     bool zone_holds() const;
     void make_zone();
+    /// Of the nodes in it and beyond it, what follows from which they are.
+    void place_zone();
     void find_zone(std::vector<std::uint32_t>& beside);
     void join_zone();
     /// What is beyond the zone goes back to the state, with what flowed there; and comes from it.
@@ -70,9 +103,14 @@ class Conduction {
     void sweep(double now, std::span<const std::uint32_t> must, bool everything);
     void find_due(double now, std::span<const std::uint32_t> must, bool everything);
     void find_beside(double now);
-    double span_length(std::size_t span) const;
+    std::array<double, kSpans> span_ends() const;
+    /// How many of a sweep's spans each node takes part in; those of more come first.
+    void order(double now);
     void divide(double now);
-    void conduct(HeatPatch& patch);
+    /// Calls visit(way, time) for the ways of a node that are conducted through; `time`: s, for
+    /// which they have not been.
+    template <class Visit>
+    void for_due_ways(std::uint32_t node, double now, Visit visit) const;
     std::uint8_t level_of(std::uint32_t node, double now) const;
     /// What is due is brought to the state's time; the zone is given up.
     void catch_up();
@@ -104,11 +142,14 @@ class Conduction {
     std::vector<std::uint8_t> level_;     // by node: swept every unit_ times 2^level s
     std::vector<std::uint8_t> due_;       // by node: kDue or kBeside in the sweep
     std::vector<std::uint8_t> fast_;      // by node of the sweep: has more than the slow modes
+    std::vector<std::uint8_t> spans_;     // by node of the sweep: that it takes part in
     std::vector<std::uint32_t> touched_;  // nodes of the sweep
-    std::vector<std::uint32_t> there_;    // by node: in the patch that is being made
+    std::vector<std::uint32_t> ordered_;  // the same
+    std::vector<std::uint32_t> there_;    // by node of the sweep: in `ordered_`
     std::array<HeatPatch, kSpans> swept_;
-    std::vector<float> rows_, sums_;  // K, of a patch
-    double last_sweep_;               // s: when
+    std::vector<float> rows_;  // K, of the sweep, as ordered
+    double last_sweep_;        // s: when
+    double noted_;             // s: time of the last part
     RowConductor conductor_;
     std::array<Factors, 64> known_;  // by their duration
     double hottest_ = 0.0;

@@ -14,9 +14,9 @@ namespace beltgrinding {
 
 /// Some nodes and the ways between them.
 struct HeatPatch {
-    std::vector<std::uint32_t> nodes;  ///< ascending
+    std::vector<std::uint32_t> nodes;  ///< ascending; none if only their rows are known
     std::vector<std::uint32_t> first;  ///< (nodes + 1), of `ways`
-    std::vector<HeatWay> ways;         ///< to numbers in `nodes`
+    std::vector<HeatWay> ways;         ///< to numbers of nodes; there may be more behind the last
     std::vector<std::uint8_t> slow;    ///< by node: nothing is left of its faster modes
     double most = 0.0;                 ///< greatest sum of a node's rates
     double longest = 0.0;              ///< s, of intervals of the ways' own
@@ -31,9 +31,10 @@ class RowConductor {
   public:
     static constexpr std::size_t kModes = DepthModes::kModes;
 
-    /// `rows` (nodes, modes) become what they are after `duration` (of the patch's rates).
-    /// `error`: the nodes' dispersion over the diffusivity times the time. `sums` (nodes) become
-    /// the rows' sums.
+    /// `rows` (nodes, modes) become what they are after `duration` (of the patch's rates); those
+    /// behind them stay. `error`: the nodes' dispersion over the diffusivity times the time.
+    void conduct(const HeatPatch& patch, double duration, double error, std::vector<float>& rows);
+    /// `sums` (nodes) become the rows' sums besides.
     void conduct(const HeatPatch& patch, double duration, double error, std::vector<float>& rows,
                  std::vector<float>& sums);
 

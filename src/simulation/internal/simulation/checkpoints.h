@@ -14,8 +14,8 @@ struct Checkpoint;
 /// States of a simulation on its way along a path, from which one along another path that begins
 /// the same goes on: it gives what it would from its start, to the last bit. Whether two paths
 /// begin the same is decided step by step by what the engine sees of them (place, times, feed,
-/// force, the parts that steps are cut into), as far as the state was taken; all else, the field
-/// and the settings, must be the same, which its owner vouches for.
+/// force, the parts that steps are cut into), as far as the state was taken; all else, the field,
+/// the settings and the part's heat, must be the same, which its owner vouches for.
 ///
 /// They hold what changed between them, are shared by copies, and never change. Bounded: of more
 /// than `kMost`, or of more bytes than are allowed, neighbours become one.
@@ -40,7 +40,8 @@ class Checkpoints {
     /// What else the states depend on.
     struct Context {
         std::size_t samples = 0, shifted_laws = 0;
-        std::size_t first_motion = 0;
+        std::size_t first_motion = 0, heat_nodes = 0;
+        bool finish = false;
         bool trace = false, influence = false, force_influence = false, moves = false;
         std::optional<Recording::Begin> recording;
         bool operator==(const Context&) const = default;

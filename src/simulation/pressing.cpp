@@ -152,7 +152,7 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     };
     solve_once();
     if (!map_.holds_for(solution_.pressure)) {
-        all_edges_ = true;
+        all_edges_ = tool_.flat;
         map_.look_at_all_edges(blocks);
         solve_once();
     }

@@ -151,7 +151,8 @@ class Pressing {
     std::optional<double> localised_;    // mm along z: where `hold` last looked for segments
     Eigen::ArrayXd gap_;                 // mm, by cell, of the last solution
     double stands_at_ = 0.0;             // mm along z, by that
-    bool all_edges_ = false;  // at this pose pressure was where edges had not been looked at
+    // Of a belt, whose contacts take long: at this pose pressure was where no edges were looked at.
+    bool all_edges_ = false;
     bool warm_ = false;
     State state_ = State::kNoContact;  // of the last time that it was pressed
     double largest_indentation_;

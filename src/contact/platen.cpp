@@ -262,19 +262,11 @@ class PreparedPlaten final : public PreparedContact {
                 touching.push_back(state.load.data()[k] > 0.0 ? 1 : 0);
             before = std::move(state);
         }
-        if (!middle_.flat())
+        if (middle_.flat())
+            add_pressure(problem.coverage, state, solution.pressure);
+        else
             solution.pressure =
                 pressure_on_grid(solver_, grid(), problem.coverage, belt_.thickness, state);
-        for (int i = 0; middle_.flat() && i < state.path.columns.count(); ++i) {
-            const int column = state.path.cell[static_cast<std::size_t>(i)];
-            if (column < 0) continue;
-            for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
-                const int cell = solver_.rows()[k].row * grid().nx + column;
-                if (problem.coverage[cell] > 0.0)
-                    solution.pressure[cell] += state.load(static_cast<Eigen::Index>(k), i) /
-                                               (grid().cell_area() * problem.coverage[cell]);
-            }
-        }
         solution.approach = depth + state.lift;
         solution.force = (solution.pressure * problem.coverage).sum() * grid().cell_area();
         solution.area =
@@ -284,6 +276,20 @@ class PreparedPlaten final : public PreparedContact {
         solution.converged = state.converged;
         last_ = {solution.pressure, std::move(state), backing.pressure(), solution.approach};
         return solution;
+    }
+    /// Of a flat platen, whose columns are the grid's.
+    void add_pressure(const Eigen::ArrayXd& coverage, const BeltState& state,
+                      Eigen::ArrayXd& pressure) const {
+        for (int i = 0; i < state.path.columns.count(); ++i) {
+            const int column = state.path.cell[static_cast<std::size_t>(i)];
+            if (column < 0) continue;
+            for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+                const int cell = solver_.rows()[k].row * grid().nx + column;
+                if (coverage[cell] > 0.0)
+                    pressure[cell] += state.load(static_cast<Eigen::Index>(k), i) /
+                                      (grid().cell_area() * coverage[cell]);
+            }
+        }
     }
     double face() const {
         return platen_.layer_surface_stiffness > 0.0 ? platen_.layer_surface_stiffness

@@ -23,8 +23,8 @@ class Key:
         """Raises InputError for what is no key of a job; ``where``: the place of the text in the study."""
         self.text, self.where = text, where
         self.steps = _steps(text, where)
-        self.definitions = _job_schema()["definitions"]
-        self.rule = self._rule(_job_schema())
+        self.definitions = job_schema()["definitions"]
+        self.rule = self._rule(job_schema())
 
     def _rule(self, whole):
         rule, so_far = whole, ""
@@ -74,7 +74,7 @@ class Key:
     def changed(self, job, value, how="set"):
         """A copy of ``job`` with the value; what it does not touch is shared with ``job``. Raises InputError where there is
         nothing to add to, no such place in a list, or a value that the schema forbids."""
-        return self._changed(job, _job_schema(), 0, "", value, how)
+        return self._changed(job, job_schema(), 0, "", value, how)
 
     def _changed(self, held, rule, depth, so_far, value, how):
         if depth == len(self.steps):
@@ -114,7 +114,8 @@ class Key:
 
 
 @lru_cache(maxsize=None)
-def _job_schema():
+def job_schema():
+    """The JSON Schema of a job, read once; not to be changed."""
     return schemas.schema("job")
 
 

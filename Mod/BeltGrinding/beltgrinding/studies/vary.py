@@ -12,9 +12,9 @@ import numpy as np
 
 from ..base import frames, schemas
 from ..engine import InputError
-from ..job import load as jobs, machine
+from ..job import machine
 from . import table
-from .keys import Key
+from .keys import Key, job_schema
 
 PART = "part"
 AXES = ("x_mm", "y_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg")
@@ -164,7 +164,7 @@ def job_of(job, found, values, placement):
 def _filled(job, sections):
     """Defaults of what the job had no need of before: parts of another kind of belt machine, a part of which a value was
     set alone. ``sections``: those that were changed."""
-    rules = jobs.schema()["properties"]
+    rules = job_schema()["properties"]
     for name in sections & {key for key, rule in rules.items() if rule.get("type") == "object"}:
         job = {**job, name: schemas.filled(job[name], rules[name])}
     if "belt_machine" in sections:

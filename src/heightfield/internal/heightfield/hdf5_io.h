@@ -101,17 +101,7 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
 /// same data make the same bytes. Throws FileFault.
 std::string image_of(const std::function<void(hid_t)>& write);
 
-template <class T>
-inline void write_array(hid_t file, const char* name, const std::vector<T>& data, hid_t type,
-                        hsize_t row) {
-    const Handle set = create_array(file, name, type, data.size(), row);
-    if (!data.empty()) {
-        require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0,
-                "hdf5.not_writable", "cannot write it");
-    }
-}
-
-/// The same of arrays that follow one another.
+/// Writes arrays that follow one another as one data set, rows of `row` values. Throws FileFault.
 template <class T>
 inline void write_array(hid_t file, const char* name, const std::vector<std::span<const T>>& parts,
                         hid_t type, hsize_t row) {
@@ -129,6 +119,12 @@ inline void write_array(hid_t file, const char* name, const std::vector<std::spa
                 "hdf5.not_writable", "cannot write it");
         start[0] += count[0];
     }
+}
+
+template <class T>
+inline void write_array(hid_t file, const char* name, const std::vector<T>& data, hid_t type,
+                        hsize_t row) {
+    write_array(file, name, std::vector<std::span<const T>>{data}, type, row);
 }
 
 template <class T>

@@ -15,12 +15,8 @@ from .panel import Panel
 
 COLUMNS = 9
 NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK, RA, LAY = range(COLUMNS)
-IN_TABLE = (
-    NAME,
-    FACES,
-    LOWER,
-    UPPER,
-)  # what a narrow dock has room for; the rest is of the chosen zone
+# What a narrow dock has room for; the rest is of the chosen zone.
+IN_TABLE = (NAME, FACES, LOWER, UPPER)
 FIELDS = {EDGE: "zoneEdge", THIN: "zoneThin", THICK: "zoneThick", RA: "zoneRa", LAY: "zoneLay"}
 LIMITS = ((LOWER, UPPER, "tolerance_mm"), (THIN, THICK, "thickness_mm"))
 HEIGHT = 140  # pixels

@@ -53,10 +53,8 @@ class CellView:
             self.root.addChild(separator(*nodes, things))
         self.bodies, self.tinted = {}, ()  # {name: node}; names
         self.belt = None  # of a machine without a wheel, as a job has it
-        self.part, self.pressed = (
-            None,
-            False,
-        )  # (points, triangles); whether it is drawn in the belt
+        self.part = None  # (points, triangles)
+        self.pressed = False  # the belt is drawn as the part presses it
         self.robot = RobotView()
         self.root.addChild(self.robot.root)
         self.scenes = [

@@ -1,10 +1,11 @@
-#include "collision_mesh.h"
+#include "collision/collision_mesh.h"
 
 #include <cassert>  // FCL's headers use it without including it
 
 // The one file with FCL.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
@@ -156,6 +157,31 @@ NearestPoints CollisionMesh::nearest(const CollisionMesh& other, const Frame& th
     return found;
 }
 
+bool CollisionMesh::within(const CollisionMesh& other, const Frame& this_from_other,
+                           double distance) const {
+    for (const Chunk& a : impl_->chunks) {
+        for (const Chunk& b : other.impl_->chunks) {
+            const double apart = (a.centre - this_from_other * b.centre).norm();
+            if (apart - a.radius - b.radius > distance) continue;
+            if (distance > 0.0) {
+                // What lies farther apart than this is not followed.
+                fcl::DistanceResultd result(distance);
+                const fcl::DistanceRequestd request(false);
+                fcl::distance(a.model.get(), fcl::Transform3d::Identity(), b.model.get(),
+                              this_from_other, request, result);
+                if (result.o1 != nullptr && result.min_distance < distance) return true;
+            } else {
+                fcl::CollisionResultd result;
+                const fcl::CollisionRequestd request;
+                fcl::collide(a.model.get(), fcl::Transform3d::Identity(), b.model.get(),
+                             this_from_other, request, result);
+                if (result.isCollision()) return true;
+            }
+        }
+    }
+    return false;
+}
+
 double CollisionMesh::reach(const Vec3& point) const {
     double farthest = 0.0;
     for (const Vec3f& vertex : impl_->mesh.vertices) {
@@ -178,6 +204,17 @@ bool CollisionMesh::contains(const Vec3& point) const {
     }
     // Either orientation: a body may come inside out.
     return std::abs(angle) > 0.5 * kSolidAngle;
+}
+
+bool CollisionMesh::surrounds(const CollisionMesh& other, const Frame& this_from_other) const {
+    const auto& vertices = other.impl_->mesh.vertices;
+    // Winding numbers take their time; mostly a vertex lies outside of all.
+    return impl_->closed &&
+           std::all_of(vertices.begin(), vertices.end(),
+                       [&](const Vec3f& vertex) {
+                           return impl_->box.contains(this_from_other * vertex.cast<double>());
+                       }) &&
+           contains(this_from_other * other.some_vertex());
 }
 
 Vec3 CollisionMesh::some_vertex() const {

@@ -7,7 +7,7 @@
 
 #include "beltgrinding/run_context.h"
 #include "collision/collision_check.h"
-#include "collision_mesh.h"
+#include "collision/collision_mesh.h"
 #include "pair_motion.h"
 
 namespace beltgrinding {

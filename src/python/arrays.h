@@ -68,6 +68,11 @@ py::bytes bytes_from(Write&& write) {
 Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name,
                  const std::optional<Fact>& context = std::nullopt);
 
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Rigid transforms from an array (n, 4, 4); messages number them from 1.
+std::vector<Frame> poses_from(const Doubles& frames);
+
 void bind_base(py::module_& m);
 void bind_geometry(py::module_& m);
 void bind_height_field(py::module_& m);

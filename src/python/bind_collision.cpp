@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "collision/collision_check.h"
+#include "collision/standing.h"
 #include "dict.h"
 
 namespace beltgrinding::python {
@@ -74,6 +75,21 @@ py::dict collisions(const ToolPath& path, const py::list& given, double clearanc
     return told(find(path, given, clearance, resolution, arm, context), path, arm);
 }
 
+py::array_t<std::int32_t> standing(const std::vector<CollisionMesh>& held,
+                                   const std::vector<std::pair<CollisionMesh, double>>& given,
+                                   const Doubles& frames, const RunContext* context) {
+    const std::vector<Frame> poses = poses_from(frames);
+    std::vector<FixedBody> fixed;
+    fixed.reserve(given.size());
+    for (const auto& [mesh, margin] : given) fixed.push_back({mesh, margin});
+    std::vector<std::int32_t> met;
+    {
+        const py::gil_scoped_release release;
+        met = first_met(held, fixed, poses, context != nullptr ? *context : RunContext());
+    }
+    return own(std::move(met));
+}
+
 }  // namespace
 
 void bind_collision(py::module_& m) {
@@ -101,6 +117,18 @@ void bind_collision(py::module_& m) {
           py::arg("clearance") = CollisionOptions().clearance,
           py::arg("resolution") = CollisionOptions().resolution, py::arg("arm") = nullptr,
           py::arg("context") = nullptr, "check_collisions, as CollisionFindings.");
+    py::class_<CollisionMesh>(m, "CollisionMesh", "A mesh as first_met takes it.")
+        .def(py::init([](const TriangleMesh& mesh, const RunContext* context) {
+                 const py::gil_scoped_release release;
+                 return CollisionMesh(mesh, context != nullptr ? *context : RunContext());
+             }),
+             py::arg("mesh"), py::arg("context") = nullptr,
+             "From a TriangleMesh, mm. Raises InputError, Cancelled.");
+    m.def("first_met", &standing, py::arg("held"), py::arg("fixed"), py::arg("work_from_contact"),
+          py::arg("context") = nullptr,
+          "For each pose (n, 4, 4) the number of the first of held, CollisionMesh in the contact "
+          "frame, that touches one of fixed, (CollisionMesh in the work frame, margin mm), or lies "
+          "within it, or it within that; -1: none. (n,) int32.");
 }
 
 }  // namespace beltgrinding::python

@@ -78,7 +78,6 @@ py::dict to_dict(const SimulationResult& result) {
     return d;
 }
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
 

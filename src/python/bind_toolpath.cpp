@@ -6,7 +6,6 @@
 namespace beltgrinding::python {
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
 
 void check_rows(const py::array& array, py::ssize_t columns, const char* name) {
@@ -92,17 +91,6 @@ py::dict raster(const Doubles& points, const Doubles& normals, const Indices& tr
     result["uncovered_area"] = found.uncovered_area;
     result["area"] = found.area;
     return result;
-}
-
-std::vector<Frame> poses_from(const Doubles& frames) {
-    if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
-        throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
-    std::vector<Frame> poses(static_cast<std::size_t>(frames.shape(0)));
-    using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-    for (std::size_t i = 0; i < poses.size(); ++i)
-        poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i), "frame",
-                              Fact{"call.pose", "pose {pose}: ", {{"pose", i + 1}}});
-    return poses;
 }
 
 }  // namespace

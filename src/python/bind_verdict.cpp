@@ -106,7 +106,6 @@ py::object to_dict(const std::optional<WavinessFigures>& figures) {
     return d;
 }
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
 }  // namespace

@@ -27,6 +27,17 @@ Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name,
     return Frame(matrix);
 }
 
+std::vector<Frame> poses_from(const Doubles& frames) {
+    if (frames.ndim() != 3 || frames.shape(1) != 4 || frames.shape(2) != 4)
+        throw InputError("call.frames", "frames must have the shape (n, 4, 4)");
+    std::vector<Frame> poses(static_cast<std::size_t>(frames.shape(0)));
+    using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        poses[i] = frame_from(Eigen::Map<const Rows>(frames.data() + 16 * i), "frame",
+                              Fact{"call.pose", "pose {pose}: ", {{"pose", i + 1}}});
+    return poses;
+}
+
 void bind_base(py::module_& m) {
     define_facts(m);
     static PyObject* const input_error = py::object(m.attr("InputError")).release().ptr();

@@ -8,8 +8,6 @@ namespace {
 using namespace beltgrinding;
 using namespace beltgrinding::python;
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 std::vector<Vec3> points_from(const Doubles& array, const char* what) {
     if (array.size() == 0) return {};
     if (array.ndim() != 2 || array.shape(1) != 3)

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "collision/collision_check.h"
-#include "collision_mesh.h"
+#include "collision/collision_mesh.h"
 
 namespace beltgrinding {
 namespace {

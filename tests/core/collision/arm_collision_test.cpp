@@ -8,7 +8,7 @@
 
 #include "beltgrinding/error.h"
 #include "collision/collision_check.h"
-#include "collision_mesh.h"
+#include "collision/collision_mesh.h"
 
 namespace beltgrinding {
 namespace {

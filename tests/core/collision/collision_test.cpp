@@ -11,7 +11,7 @@
 
 #include "base/threads.h"
 #include "beltgrinding/error.h"
-#include "collision_mesh.h"
+#include "collision/collision_mesh.h"
 
 namespace beltgrinding {
 namespace {

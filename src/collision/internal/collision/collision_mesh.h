@@ -28,6 +28,9 @@ class CollisionMesh {
     NearestPoints nearest(const CollisionMesh& other, const Frame& this_from_other,
                           const NearestPoints& known = {}, double error = 0.0) const;
 
+    /// Whether the surfaces come within `distance` mm of each other.
+    bool within(const CollisionMesh& other, const Frame& this_from_other, double distance) const;
+
     /// mm from `point` to the vertex that is farthest from it.
     double reach(const Vec3& point) const;
 
@@ -35,6 +38,9 @@ class CollisionMesh {
     /// (Jacobson, Kavan, Sorkine-Hornung: Robust inside-outside segmentation using generalized
     /// winding numbers, 2013).
     bool contains(const Vec3& point) const;
+    /// Whether the surface is closed and all of the other mesh lies inside of it, if the surfaces
+    /// do not cross.
+    bool surrounds(const CollisionMesh& other, const Frame& this_from_other) const;
     Vec3 some_vertex() const;
 
   private:

@@ -1687,6 +1687,10 @@
         <source>thickness of the arms beside the belt, from roller to roller and back to the pulleys, mm; 0: none are looked at</source>
         <translation>Dicke der Arme neben dem Band, von Rolle zu Rolle und zurück zu den Umlenkrollen, mm; 0: keine werden betrachtet</translation>
     </message>
+    <message>
+        <source>the job&apos;s stock, where the passes depend on it</source>
+        <translation>das Aufmaß des Auftrags, wo die Bahnen davon abhängen</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -54,6 +54,7 @@ def without_programs(job, folder):
     data["design"]["brep"] = OwnBrep(shape.exportBrepToString())
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.to_job(stock, folder)
+    data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), folder)
     data["programs"] = [{"poses": []}]
     return jobs.validate(data, folder)
 

@@ -7,17 +7,18 @@ import FreeCAD
 import numpy as np
 
 from ..engine import InputError, core
-from ..job import load as jobs
+from ..job import load as jobs, machine as machines
 from ..job.workpiece import OwnBrep
 from ..raster import raster_path as raster, region
 from ..raster.reachable import NO_PASS, NO_ROOM
-from . import job_data, job_object, stored_facts, waiting
+from . import bodies, job_data, job_inputs, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
 from .fields import field_of
 from .geometry import faces_digest
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import type_of
 from .robot_path import RobotPath, set_arrays
+from .stock import Stock
 
 KEYS = (
     Key("Along", "Enumeration", "Passes", "raster.along"),
@@ -100,6 +101,10 @@ class RasterPath(RobotPath):
         if "RegionPoints" not in obj.PropertiesList:
             text = "passes only near these points of the faces; none: everywhere"
             obj.addProperty("App::PropertyVectorList", "RegionPoints", "Passes", text)
+        if "Stock" not in obj.PropertiesList:
+            text = "the job's stock, where the passes depend on it"
+            obj.addProperty("App::PropertyLink", "Stock", "Passes", text)
+        obj.setEditorMode("Stock", 2)
         if "Proposed" not in obj.PropertiesList:
             text = "laid as a first proposal, and nobody has looked at it since"
             obj.addProperty("App::PropertyBool", "Proposed", "Passes", text, 4)
@@ -129,10 +134,26 @@ def generate(obj):
     """Lays the passes of a raster path if what they come from has changed; for the way ``auto``, the best one is put
     in its place. Raises InputError, Cancelled."""
     job, settings, digest = _inputs(obj)
+    stock = _stock(obj)
+    if obj.Stock is not stock:  # so that it is touched with it
+        obj.Stock = stock
     if digest == obj.Inputs:
         return
+    with job_inputs.scratch_folder() as folder:
+        _lay(obj, _with_geometry(obj, job, folder), settings, digest)
+
+
+def _with_geometry(obj, job, folder):
+    """The job validated, with what ``_inputs`` leaves out; meshes are written to ``folder``."""
     job["design"]["brep"] = OwnBrep(job["design"]["brep"].exportBrepToString())
-    job = jobs.validate(job)
+    job["cell"]["bodies"] = bodies.to_job(obj.Machine, folder)
+    stock = _stock(obj)
+    if stock is not None:
+        job["stock"] = stock.Proxy.to_job(stock, folder)
+    return jobs.validate(job)
+
+
+def _lay(obj, job, settings, digest):
     if settings.get("along") == "auto":
         text = FreeCAD.Qt.translate("BeltGrinding", "Comparing ways of the passes")
         found = waiting.wait(lambda context: raster.raster(job, settings, context), text)
@@ -229,9 +250,29 @@ def _inputs(obj):
     digest = faces_digest(shape.Faces[number - 1] for number in numbers)
     # Not what a document of before there were repeats has not: its passes need not be laid anew.
     told = {key: value for key, value in settings.items() if (key, value) != ("repeats", 1)}
-    text = json.dumps([data, told, digest], sort_keys=True)
+    # Nor what one without bodies has not, and whose wheel goes alone.
+    placed, stock = bodies.digest(obj.Machine), _stock(obj)
+    more = [placed] if placed else []
+    if stock is not None:
+        more.append([stock.Proxy.settings(stock), stock.Proxy.digest(stock)])
+    text = json.dumps([data, told, digest, *more], sort_keys=True)
     data["design"]["brep"] = shape
     return data, settings, hashlib.sha256(text.encode()).hexdigest()
+
+
+def _stock(obj):
+    """The job's stock, where passes depend on it: under position control, and where something goes with the wheel that
+    must keep off it. Else None."""
+    machine = obj.Machine
+    held = machine.Kind == machines.SMALL_WHEEL
+    if machine.Kind in (machines.FREE_BELT, machines.PLATEN):
+        held = machine.FrameLength.Value > 0.0
+    if machine.Control != "position" and not held and not bodies.listed(machine):
+        return None
+    group = obj.getParentGroup()
+    if type_of(group) != job_object.BeltGrindingJob.TYPE:
+        return None
+    return job_data.child(group, Stock)
 
 
 def to_what_is_left(obj):

@@ -1,5 +1,5 @@
-"""Where the wheel would stand in the part, or in what is fixed to it: there it is leaned about the belt's travel,
-within a limit, or the pass is left out.
+"""Where the wheel would stand in the part, or in what is fixed to it, or what goes with the wheel would meet them: there it
+is leaned about the belt's travel, within a limit, or the pass is left out.
 
 A lean about the wheel's own axis would change nothing of the wheel, so that with the belt along the pass the lean is
 one about the feed. A leaned wheel stands on the pass with the point of its profile that lies deepest then: of a flat
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..cell import collision
 from ..engine import InputError, core
-from . import passes, tool as tools
+from . import held, passes, tool as tools
 
 PART_SAMPLES = 400_000  # at most, of the part and of all bodies
 CHORD = 0.2  # of the length on which the wheel stands fit_mm deep in a plane: from sample to sample
@@ -40,6 +40,7 @@ class Clearing:
         steps = np.linspace(0.0, math.radians(most), count + 1)[1:]
         self.leans = np.concatenate([[0.0], np.column_stack([steps, -steps]).ravel()])
         self._turns = np.array([_about_x(lean) for lean in self.leans])
+        self.held = held.Held(job, shape, warnings, context)
         self._mount(job, advance)
         try:
             self._points = self._solid(job, shape, warnings)
@@ -55,14 +56,23 @@ class Clearing:
                 )
             )
 
+    @property
+    def name(self):
+        """Fact: what it looks at, as a subject."""
+        if not self.held.names:
+            return self.tool.name
+        return core.Fact("raster.with_held", "{tool}, or what goes with it,", tool=self.tool.name)
+
     def with_wheel(self, job):
         """The same with the wheel of another job on the same part."""
         found = copy.copy(self)
+        found.held = copy.copy(self.held)
         found._mount(job)
         return found
 
     def _mount(self, job, advance=0.0):
         self.tool = tools.of(job, advance)
+        self.held.mount(job["belt_machine"], advance)
         self._shifts = np.array([self.tool.shift(lean) for lean in self.leans])
 
     def _solid(self, job, shape, warnings):
@@ -72,10 +82,11 @@ class Clearing:
         spacing = max(wanted, math.sqrt(area / PART_SAMPLES))
         part, _ = core.sample_faces(shape, [], spacing, context=self.context)
         points = [part.points]
+        _, with_part = held.sides(job)
         for body in job["cell"]["bodies"]:
-            placed = _in_work(job, body)
-            if placed is None:
+            if body["frame"] not in with_part:
                 continue
+            placed = np.linalg.inv(with_part[body["frame"]])
             mesh = collision.read_body(body, body["name"], warnings, self.context)
             found = _on_mesh(mesh, wanted, PART_SAMPLES)
             points.append(found @ placed[:3, :3].T + placed[:3, 3])
@@ -83,7 +94,16 @@ class Clearing:
 
     def depth(self, frames):
         """mm (n,) that the whole undeformed wheel stands in the part, or in bodies fixed to it, at work_from_contact
-        (n, 4, 4)."""
+        (n, 4, 4); inf where what goes with it meets them, or comes as near as the fit."""
+        found = self.tool_depth(frames)
+        if self.blind:
+            return found
+        free = np.flatnonzero(found <= self.fit)
+        found[free[self.held.first_met(frames[free], self.fit) >= 0]] = np.inf
+        return found
+
+    def tool_depth(self, frames):
+        """The same of the wheel alone."""
         if self.blind or not len(frames):
             return np.zeros(len(frames))
         return self.tool.depth(frames, self._points, self.context)
@@ -94,15 +114,22 @@ class Clearing:
             return np.ones(len(frames), dtype=bool)
         return self.depth(frames) <= self.fit
 
-    def fits(self, frames):
-        """(n,) bool: the wheel fits, at one of its leans at least."""
-        found = self.depth(frames) <= self.fit
+    def fits(self, frames, alone=False):
+        """(n,) bool: the wheel fits, at one of its leans at least; ``alone``: whatever goes with it."""
+        depth = self.tool_depth if alone else self.depth
+        found = depth(frames) <= self.fit
         for k in range(1, len(self.leans)):
             left = np.flatnonzero(~found)
             if not len(left):
                 break
-            found[left] = self.depth(self._leaned(frames[left], k)) <= MARGIN * self.fit
+            found[left] = depth(self._leaned(frames[left], k)) <= MARGIN * self.fit
         return found
+
+    def in_the_way(self, frames):
+        """Names of what goes with the wheel and is in its way at frames (n, 4, 4), what is most often first."""
+        met = self.held.first_met(frames, self.fit)
+        counts = np.bincount(met[met >= 0], minlength=len(self.held.names))
+        return [self.held.names[k] for k in np.argsort(-counts, kind="stable") if counts[k]]
 
     def cleared(self, levels):
         """Pieces of passes by level, as the core's lines (dict(points, normals, tangents (n, 3), closed)), leaned
@@ -250,18 +277,6 @@ class Clearing:
 def _about_x(angle):
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
-def _in_work(job, body):
-    """work_from_(the body's frame) 4 x 4; None for a body that moves against the part, or with the wheel."""
-    if body["frame"] == "part":
-        return np.eye(4)
-    cell = passes.cell_of(job)
-    if body["frame"] == "base" and cell["holding"] == "tool_in_hand":
-        return np.linalg.inv(cell["base_from_work"])
-    if body["frame"] == "tool" and cell["holding"] == "part_in_hand":
-        return np.linalg.inv(cell["tcp_from_work"])
-    return None
 
 
 def _on_mesh(mesh, spacing, most):

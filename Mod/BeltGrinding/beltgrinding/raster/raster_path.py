@@ -105,7 +105,7 @@ def _repeat(result, count, clearing, warnings):
                 "raster.way_back_blocked",
                 "from the end of the passes straight back to their beginning {tool} goes through the part; lead the "
                 "robot there by hand, or enlarge clearance_mm",
-                tool=clearing.tool.name,
+                tool=clearing.name,
             )
         )
     poses, once = len(result["frames"]), result["passes"]
@@ -193,7 +193,7 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
         warned = {**settings, "where_it_collides": "warn"}
         clearing = Clearing(job, shape, warned, [], context, advance)
         result = passes.assemble(levels, settings, cell, entry, clearing)
-        _tell_no_room(result, clearing.tool, warnings)
+        _tell_no_room(result, clearing, warnings)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
@@ -393,7 +393,7 @@ def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
 def _fit(clearing, settings, result, warnings):
     fit = np.zeros(len(result["frames"]))
     touching = np.flatnonzero(result["contact"])
-    fit[touching] = clearing.depth(result["contacts"][touching])
+    fit[touching] = clearing.tool_depth(result["contacts"][touching])
     tight = np.flatnonzero(fit > settings["fit_mm"] * (1.0 + 1e-6) + 1e-9)
     if len(tight):
         worst = int(np.argmax(fit))
@@ -409,6 +409,19 @@ def _fit(clearing, settings, result, warnings):
                 pose=worst + 1,
             )
         )
+    met = clearing.held.first_met(result["contacts"][touching])
+    if (met >= 0).any():
+        warnings.append(
+            core.Fact(
+                "raster.held_does_not_fit",
+                "at {count} poses, first at pose {pose}, what goes with {tool} meets the part, or what is fixed to it: "
+                "{bodies}; lay the passes another way, or make room",
+                count=int((met >= 0).sum()),
+                pose=int(touching[np.argmax(met >= 0)]) + 1,
+                tool=clearing.tool.name,
+                bodies=", ".join(clearing.in_the_way(result["contacts"][touching])),
+            )
+        )
     return fit
 
 
@@ -420,7 +433,7 @@ def _tell_ways(clearing, result, warnings):
                 "raster.ways_blocked",
                 "off the passes {tool} goes through the part: on {ways} straight rapid ways, first to pose {pose}, "
                 "and {stuck} ends of passes have no room above them; lead the robot there by hand, or take {smaller}",
-                tool=clearing.tool.name,
+                tool=clearing.name,
                 smaller=clearing.tool.smaller,
                 ways=len(blocked),
                 pose=blocked[0] + 1 if blocked else 0,
@@ -429,17 +442,31 @@ def _tell_ways(clearing, result, warnings):
         )
 
 
-def _tell_no_room(result, tool, warnings):
-    if result["passes"]:
+def _tell_no_room(result, clearing, warnings):
+    if not result["passes"]:
+        return
+    contacts = result["contacts"][result["contact"]]
+    if (clearing.tool_depth(contacts) <= clearing.fit).any():
         warnings.append(
             core.Fact(
-                "raster.no_room",
-                "{tool} fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
-                "with it; take {smaller}, or another direction",
-                tool=tool.name,
-                smaller=tool.smaller,
+                "raster.no_room_for_held",
+                "what goes with {tool} would meet the part, or what is fixed to it, wherever {tool} itself has room on these "
+                "faces ({bodies}): the passes are laid as if it did not, and must not be ground so; lay them another way, or "
+                "make room",
+                tool=clearing.tool.name,
+                bodies=", ".join(clearing.in_the_way(contacts)),
             )
         )
+        return
+    warnings.append(
+        core.Fact(
+            "raster.no_room",
+            "{tool} fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
+            "with it; take {smaller}, or another direction",
+            tool=clearing.tool.name,
+            smaller=clearing.tool.smaller,
+        )
+    )
 
 
 def program(result, tool="", base=""):

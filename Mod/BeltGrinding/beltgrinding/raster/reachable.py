@@ -44,10 +44,11 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
     everywhere.
 
     Returns dict(points, normals (n, 3), areas (n,), triangles (m, 3), faces (n,) from 0, fits (n,) bool, state (n,): GROUND,
-    NO_ROOM (the wheel would stand in the part, with its belt as the passes want it, however it is leaned), NO_PASS
+    NO_ROOM (the wheel would stand in the part, or what goes with it would meet it, with its belt as the passes want it, however it is leaned), NO_PASS
     (it fits, and no pass touches it), NOT_WANTED (nor is it in the region); counted (n,): the areas in the region, to
     which all that follows belongs; share: of the area that the wheel gets to; by_face: {face from 1: the same};
-    another_way: the same share with the belt in whichever direction, about). Raises InputError, Cancelled.
+    alone (n,) bool: the wheel fits, whatever goes with it; in_the_way: names of what is, where it alone fits; another_way:
+    the same share as ``share`` with the belt in whichever direction, about). Raises InputError, Cancelled.
     """
     area = sum(shape.face_area(face) for face in faces)
     spacing = math.sqrt(area / PLACES)
@@ -58,7 +59,11 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
     ways = np.vstack([piece["tangents"] for pieces in levels for piece in pieces])
     tangents = _along(ways[nearest(points, line)], normals)
     angle = math.radians(settings["belt_angle_deg"])
-    fits = clearing.fits(passes.contact_frames(points, normals, tangents, angle))
+    frames = passes.contact_frames(points, normals, tangents, angle)
+    fits = clearing.fits(frames)
+    alone = fits.copy()
+    if clearing.held.names:
+        alone[~fits] = clearing.fits(frames[~fits], alone=True)
     state = np.where(fits, NO_PASS, NO_ROOM)
     state[touched(points, contacts, clearing.tool, extents)] = GROUND
     counted = areas
@@ -76,10 +81,9 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
         "fits": fits,
         "state": state,
         "share": _share(fits, counted),
-        "by_face": {
-            int(face) + 1: _share(fits[owner == face], counted[owner == face])
-            for face in np.unique(owner[counted > 0])
-        },
+        "by_face": _by_face(fits, owner, counted),
+        "alone": alone,
+        "in_the_way": clearing.in_the_way(frames[alone & ~fits & (counted > 0)]),
         "another_way": _another_way(clearing, points, normals, counted, fits),
     }
 
@@ -152,14 +156,14 @@ def told(seen, tool, settings, warnings):
     """Adds what ``look`` found to the list of warnings. Returns dict(share, faces: {face from 1: share} of the faces
     that the wheel does not get to all of, left_out, no_pass: of the area)."""
     areas = seen["counted"]
-    share, found = seen["share"], seen["by_face"]
-    lacking = {face: value for face, value in found.items() if value < WHOLE}
+    share, alone = seen["share"], _share(seen["alone"], areas)
     no_pass = _share(seen["state"] == NO_PASS, areas)
-    if share < WHOLE:
+    if alone < WHOLE:
+        lacking = _lacking(_by_face(seen["alone"], seen["faces"], areas))
         words = {
             "tool": tool.name,
             "smaller": tool.smaller,
-            "share": 100.0 * share,
+            "share": 100.0 * alone,
             "fit": settings["fit_mm"],
             "faces": ", ".join(f"Face{k} {100.0 * v:.0f} %" for k, v in list(lacking.items())[:8]),
         }
@@ -183,16 +187,27 @@ def told(seen, tool, settings, warnings):
                     **words,
                 )
             )
-        if seen["another_way"] > share + BETTER:
-            warnings.append(
-                core.Fact(
-                    "raster.another_way",
-                    "with the belt in other directions {tool} would get to {share:.0f} % of the area: try "
-                    "another belt angle, or passes along another direction",
-                    tool=tool.name,
-                    share=100.0 * seen["another_way"],
-                )
+    if alone - share > 1.0 - WHOLE:
+        warnings.append(
+            core.Fact(
+                "raster.held_in_the_way",
+                "on {share:.0f} % of the area {tool} itself has room, but what goes with it would meet the part, or what is "
+                "fixed to it: {bodies}",
+                share=100.0 * (alone - share),
+                tool=tool.name,
+                bodies=", ".join(seen["in_the_way"]),
             )
+        )
+    if share < WHOLE and seen["another_way"] > share + BETTER:
+        warnings.append(
+            core.Fact(
+                "raster.another_way",
+                "with the belt in other directions {tool} would get to {share:.0f} % of the area: try "
+                "another belt angle, or passes along another direction",
+                tool=tool.name,
+                share=100.0 * seen["another_way"],
+            )
+        )
     if no_pass > 2.0 * (1.0 - WHOLE):
         warnings.append(
             core.Fact(
@@ -204,10 +219,21 @@ def told(seen, tool, settings, warnings):
         )
     return {
         "share": share,
-        "faces": lacking,
+        "faces": _lacking(seen["by_face"]),
         "left_out": _share(seen["state"] == NO_ROOM, areas),
         "no_pass": no_pass,
     }
+
+
+def _by_face(fits, owner, areas):
+    return {
+        int(face) + 1: _share(fits[owner == face], areas[owner == face])
+        for face in np.unique(owner[areas > 0])
+    }
+
+
+def _lacking(shares):
+    return {face: value for face, value in shares.items() if value < WHOLE}
 
 
 def _share(fits, areas):

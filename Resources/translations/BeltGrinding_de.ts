@@ -1691,6 +1691,10 @@
         <source>the job&apos;s stock, where the passes depend on it</source>
         <translation>das Aufmaß des Auftrags, wo die Bahnen davon abhängen</translation>
     </message>
+    <message>
+        <source>what the user should know of the runs</source>
+        <translation>was der Benutzer von den Läufen wissen sollte</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

@@ -368,6 +368,24 @@ def failing():
     }
 
 
+def test_forces_of_the_programs_own_are_told_where_the_machines_varies():
+    given = study_of()
+    assert not making.prepare(making.validate(given)).warnings
+    poses = [dict(pose) for pose in given["job"]["programs"][0]["poses"]]
+    poses[0]["force_N"] = 12.0
+    poses[-1].update(force_N=3.0, rapid=True)  # in the air
+    given["job"]["programs"] = [{"poses": poses, "name": "pass"}]
+    (fact,) = making.prepare(making.validate(given)).warnings
+    assert fact.code == "studies.own_forces" and fact.arguments["own"] == 1
+    assert fact.arguments["count"] == sum(not pose.get("rapid") for pose in poses)
+    other = {"name": "feed", "key": "programs[*].feed_mm_s", "values": [10.0, 20.0]}
+    assert not making.prepare(making.validate({**given, "vary": [other]})).warnings
+    # One force for all poses takes their place.
+    given["job"]["programs"][0]["force_N"] = 20.0
+    (fact,) = making.prepare(making.validate(given)).warnings
+    assert fact.arguments["own"] == fact.arguments["count"]
+
+
 def test_a_run_that_fails_says_why_and_the_others_go_on(tmp_path, counted):
     found = make(failing(), tmp_path)
     assert found.table["status"].tolist() == ["done", "error", "done"] and not found.broken_off

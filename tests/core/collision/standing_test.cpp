@@ -47,8 +47,9 @@ using Numbers = std::vector<std::int32_t>;
 TEST(Standing, TouchesWhereItsCornerReaches) {
     const double corner = std::sqrt(2.0);  // of the cube, turned by 45 degrees
     const double turn = 0.25 * M_PI;
-    EXPECT_EQ(met({cube}, {{wall}}, {at(8.99), at(9.01), at(10.0 - corner - 0.01, turn),
-                                     at(10.0 - corner + 0.01, turn), at(21.01), at(20.99)}),
+    EXPECT_EQ(met({cube}, {{wall}},
+                  {at(8.99), at(9.01), at(10.0 - corner - 0.01, turn),
+                   at(10.0 - corner + 0.01, turn), at(21.01), at(20.99)}),
               (Numbers{-1, 0, -1, 0, -1, 0}));
 }
 

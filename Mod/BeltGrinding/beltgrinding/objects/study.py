@@ -18,7 +18,7 @@ from ..studies import (
     table as tables,
     vary,
 )
-from . import job_inputs, result_files, study_keys
+from . import job_inputs, result_files, stored_facts, study_keys
 from .job_data import children, inspection
 from .properties import Key, Output, add_keys, add_outputs, to_job
 from .proxy import Proxy
@@ -39,6 +39,8 @@ OUTPUTS = (
     Output("Yield", "Float", "Study", "runs whose verdict is pass, percent; -1: not known"),
     Output("OutOfDate", "Bool", "Study", "an input, the tolerance or a setting has changed since"),
     Output("OpenedRun", "Integer", "Study", "run that the document was set to last; 0: none"),
+    Output("Warnings", "StringList", "Study", "what the user should know of the runs"),
+    stored_facts.output("Warnings", "Study"),
     Output("Design", "String", "Study", "the design as design.json has it", True),
     Output("Answers", "String", "Study", "answers as answers.json has them", True),
     Output("Base", "String", "Study", "the job's settings that were varied, as JSON", True),
@@ -167,7 +169,7 @@ class Work:
             answered = answers.answers(study, prepared.design, made)
             if not cancelled:
                 checking.check(answered, study, context)
-        return Found(self, made, prepared.design, answered, cancelled)
+        return Found(self, made, prepared.design, answered, cancelled, prepared.warnings)
 
     def _workers(self, prepared):
         """Without Dask, or for a run or two, this process alone."""
@@ -223,9 +225,9 @@ def _plain(value):
 class Found:
     """A study's table with what the document keeps of it; made in any thread."""
 
-    def __init__(self, work, table, design, answered, cancelled):
+    def __init__(self, work, table, design, answered, cancelled, warnings):
         self.work, self.table, self.design = work, table, design
-        self.answers, self.cancelled = answered, cancelled
+        self.answers, self.cancelled, self.warnings = answered, cancelled, warnings
         self.file = result_files.Written({TABLE: table.csv_bytes()})
 
 
@@ -238,6 +240,7 @@ def store(obj, found):
     obj.RunsFailed = int((status == tables.FAILED).sum())
     obj.Design = json.dumps({**found.design, "vary": found.work.study["vary"]})
     obj.Answers = "" if found.answers is None else json_bytes(found.answers).decode()
+    stored_facts.store(obj, "Warnings", found.warnings)
     obj.Base = json.dumps(found.work.base)
     whole = [one for one in (found.answers or {}).get("yield", ()) if one["of"] == "overall"]
     share = whole[0]["share"] if whole else None

@@ -12,7 +12,18 @@ from ..base.files import absolute, at_key, in_file, json_bytes, remove_tree
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
 from ..job import inputs, load as jobs
-from . import batch, cluster, clusters, design as designs, figures, one, store, table, vary
+from . import (
+    batch,
+    cluster,
+    clusters,
+    design as designs,
+    figures,
+    one,
+    own_forces,
+    store,
+    table,
+    vary,
+)
 from .hashes import Hashes
 
 TOLD_S = 0.5  # between two tellings of the progress, at least
@@ -118,6 +129,7 @@ def prepare(study, context=None):
     context = context or core.RunContext()
     found = vary.variables(study)
     names, base_jobs, warnings = batch.parts(study["job"], found, context)
+    warnings += own_forces.told(found, study["job"])
     made = designs.design(study, found)
     bases = [one.Base(job, study["vary"], study["placement"]) for job in base_jobs]
     hashes = Hashes(base_jobs)

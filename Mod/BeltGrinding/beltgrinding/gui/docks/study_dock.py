@@ -8,7 +8,7 @@ import FreeCADGui as Gui
 from ...base.files import cannot_be_written, write_whole
 from ...base.messages import sentence
 from ...engine import InputError
-from ...objects import api
+from ...objects import api, stored_facts
 from ...studies import names, report, table as tables
 from ..common.compat import QtCore, QtGui, translate
 from ..common.messages import error_text, inform, tell
@@ -26,6 +26,7 @@ DPI = 100
 LARGE = 0.9  # of the screen
 HIDDEN = (tables.HASH,)
 NUMBER = QtCore.Qt.UserRole
+MOST_WARNINGS = 4  # lines above the table; all are in the tip
 
 
 class _Cell(QtGui.QTableWidgetItem):
@@ -51,6 +52,9 @@ class StudyDock(ObjectDock):
         self.told = QtGui.QLabel()
         self.told.setObjectName("studyFigures")
         self.told.setWordWrap(True)
+        self.warnings = QtGui.QLabel()
+        self.warnings.setObjectName("studyWarnings")
+        self.warnings.setWordWrap(True)
         self.rows = QtGui.QTableWidget(0, 0)
         self.rows.setObjectName("studyRows")
         self.rows.verticalHeader().hide()
@@ -75,7 +79,7 @@ class StudyDock(ObjectDock):
         buttons = QtGui.QHBoxLayout()
         for button in (self.opens, self.save, self.tells):
             buttons.addWidget(button)
-        for widget in (self.told, self.rows):
+        for widget in (self.told, self.warnings, self.rows):
             layout.addWidget(widget)
         layout.addLayout(buttons)
         parts.addWidget(left)
@@ -139,6 +143,7 @@ class StudyDock(ObjectDock):
             self.told.setText(error_text(error))
         self._fill()
         self._tell()
+        self._warn()
         before = self.figure.blockSignals(True)
         chosen = self.figure.currentData()
         self.figure.clear()
@@ -153,6 +158,7 @@ class StudyDock(ObjectDock):
         self.table = self.answers = None
         self.rows.setRowCount(0)
         self.told.setText("")
+        self.warnings.hide()
         self.picture.show_bytes(b"")
         self._enable()
 
@@ -248,6 +254,14 @@ class StudyDock(ObjectDock):
             text = translate("BeltGrinding", "the document is set to run {}")
             lines.append(text.format(obj.OpenedRun))
         self.told.setText(", ".join(lines))
+
+    def _warn(self):
+        """What the user should know of the runs and of their answers."""
+        lines = stored_facts.sentences(self.obj, "Warnings", language(), alike=True)
+        lines += [sentence(one, language()) for one in (self.answers or {}).get("note_facts", ())]
+        self.warnings.setText("\n".join(lines[:MOST_WARNINGS]))
+        self.warnings.setToolTip("\n".join(lines))
+        self.warnings.setVisible(bool(lines) and not self.obj.OutOfDate)
 
     def _draw(self):
         """The chosen chart of the chosen figure."""

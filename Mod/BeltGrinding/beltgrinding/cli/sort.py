@@ -57,8 +57,7 @@ def _sort(arguments):
     outputs.check(arguments, files, [arguments.job, *arguments.scans])
     if arguments.slurm is not None:
         sorting.Tasks(job, arguments.scans, arguments.output, wanted, arguments.share, {})
-        again = f"beltgrind sort {arguments.job} {' '.join(arguments.scans)} -o {arguments.output}"
-        where.array(arguments, _command(arguments), again)
+        where.array(arguments, _command(arguments), _command(arguments))
         return
     last = []
 

@@ -59,7 +59,8 @@ def _study(arguments):
         making.lay_out(prepared, arguments.output, [arguments.study])
         place = Path(os.path.realpath(arguments.output))
         command = ["study", place / store.STUDY, "-o", place]
-        where.array(arguments, command, f"beltgrind study {arguments.study} -o {arguments.output}")
+        again = ["study", arguments.study, "-o", arguments.output]
+        where.array(arguments, command, again)
         return
     shown = _Shown(arguments.quiet)
 

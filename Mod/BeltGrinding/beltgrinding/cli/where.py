@@ -1,5 +1,7 @@
 """Where many tasks run: processes of this machine, a Dask cluster, an array of Slurm jobs."""
 
+import shlex
+
 from .messages import print_text
 
 
@@ -58,10 +60,10 @@ def chunk(arguments):
 
 def array(arguments, command, after):
     """Writes the script of --slurm, and submits it if that is wanted. ``command``: of each job, as ``slurm.write`` takes it;
-    ``after``: the command that collects what they made. Raises InputError."""
+    ``after``: words after ``beltgrind`` of the command that collects what they made. Raises InputError."""
     from ..studies import slurm
 
     path = slurm.write(arguments.output, arguments.slurm, command, arguments.sbatch)
     said = slurm.submit(path) if arguments.submit else f"submit it by: sbatch {path}"
     if not arguments.quiet:
-        print_text(f"{path}\n{said}\nthen: {after}")
+        print_text(f"{path}\n{said}\nthen: {shlex.join(['beltgrind', *map(str, after)])}")

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -250,7 +251,10 @@ def test_an_array_of_slurm_jobs_sorts_and_the_next_command_collects(
     command += ["--settings", "quick.json"]
     assert cli.main([*command, "--slurm", "2", "--sbatch=--time=01:00:00"]) == 0
     script = out / "slurm" / "sort.sbatch"
-    assert f"submit it by: sbatch {script}" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f"submit it by: sbatch '{script}'" in said
+    then = shlex.split(said.rpartition("then: ")[2])
+    assert then[:2] == ["beltgrind", "sort"]
     assert "#SBATCH --array=1-2\n" in script.read_text()
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     for number, there in ((1, 2), (2, 3)):  # deep and thick, then even
@@ -261,7 +265,7 @@ def test_an_array_of_slurm_jobs_sorts_and_the_next_command_collects(
         assert done.returncode == 0 and done.stdout == "", done.stderr
         kept = list((out / sorting.KEPT).rglob("*.json"))
         assert len(kept) == there and not (out / sorting.TABLE).exists()
-    assert cli.main([*command, "--workers", "0"]) == 0
+    assert cli.main([*then[1:], "--workers", "0"]) == 0
     assert "3 were there already" in capsys.readouterr().out
     assert (out / sorting.TABLE).read_bytes() == (batch[0] / sorting.TABLE).read_bytes()
     assert cli.main([*command, "--submit"]) == 2

@@ -64,6 +64,6 @@ def array(arguments, command, after):
     from ..studies import slurm
 
     path = slurm.write(arguments.output, arguments.slurm, command, arguments.sbatch)
-    said = slurm.submit(path) if arguments.submit else f"submit it by: sbatch {path}"
+    said = slurm.submit(path) if arguments.submit else f"submit it by: {shlex.join(['sbatch', str(path)])}"
     if not arguments.quiet:
         print_text(f"{path}\n{said}\nthen: {shlex.join(['beltgrind', *map(str, after)])}")

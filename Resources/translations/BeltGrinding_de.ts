@@ -1695,6 +1695,10 @@
         <source>what the user should know of the runs</source>
         <translation>was der Benutzer von den Läufen wissen sollte</translation>
     </message>
+    <message>
+        <source>hash of the surface that the mesh is of</source>
+        <translation>Hash der Oberfläche, deren Netz es ist</translation>
+    </message>
 </context>
 <context>
     <name>BeltGrinding</name>

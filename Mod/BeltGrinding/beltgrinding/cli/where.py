@@ -60,10 +60,15 @@ def chunk(arguments):
 
 def array(arguments, command, after):
     """Writes the script of --slurm, and submits it if that is wanted. ``command``: of each job, as ``slurm.write`` takes it;
-    ``after``: words after ``beltgrind`` of the command that collects what they made. Raises InputError."""
+    ``after``: words after ``beltgrind`` of the command that collects what they made. Raises InputError.
+    """
     from ..studies import slurm
 
     path = slurm.write(arguments.output, arguments.slurm, command, arguments.sbatch)
-    said = slurm.submit(path) if arguments.submit else f"submit it by: {shlex.join(['sbatch', str(path)])}"
+    said = (
+        slurm.submit(path)
+        if arguments.submit
+        else f"submit it by: {shlex.join(['sbatch', str(path)])}"
+    )
     if not arguments.quiet:
         print_text(f"{path}\n{said}\nthen: {shlex.join(['beltgrind', *map(str, after)])}")

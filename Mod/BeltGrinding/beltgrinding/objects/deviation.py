@@ -1,8 +1,10 @@
 """The deviation in the document: a coloured mesh with its statistics as properties."""
 
+import hashlib
 import io
 import json
 import math
+from typing import NamedTuple
 
 import Mesh
 import numpy as np
@@ -95,6 +97,7 @@ OUTPUTS = (
     Output("RemovedVolume", "Volume", "Statistics", "removed by grinding"),
     Output("DesignArea", "Area", "Statistics", "of the faces"),
     Output("Shown", "String", "Deviation", "which result the colours show", True),
+    Output("MeshOf", "String", "Deviation", "hash of the surface that the mesh is of", True),
 )
 STATISTICS = {
     "Minimum": "min",
@@ -215,14 +218,27 @@ def bands_of(obj):
     return min(max(obj.Bands, 0), MOST_BANDS)
 
 
-_ready = []  # (field, its Mesh.Mesh, limits, statistics) that a worker has made
+class _Ready(NamedTuple):
+    """What a worker has made of a field for the next ``show`` of it."""
+
+    field: object
+    surface: str  # hash
+    mesh: object  # Mesh.Mesh; None where it is there already
+    limits: tuple
+    statistics: dict
 
 
-def prepare(field, tolerance):
+_ready = []  # one _Ready, or none
+
+
+def prepare(field, tolerance, shown=""):
     """Makes the mesh of a core.HeightField and its statistics for (lower, upper) limits in mm, for the next
-    ``show`` of it; in any thread."""
+    ``show`` of it; in any thread. ``shown``: the hash of the surface whose mesh is there already, ``obj.MeshOf``.
+    """
     statistics = core.deviation_statistics(field, *tolerance)
-    _ready[:] = [(field, _mesh(field), tuple(tolerance), statistics)]
+    ply, surface = _ply(field)
+    mesh = None if surface == shown else _mesh(ply)
+    _ready[:] = [_Ready(field, surface, mesh, tuple(tolerance), statistics)]
 
 
 def forget_prepared():
@@ -231,19 +247,32 @@ def forget_prepared():
 
 
 def _statistics(field, tolerance):
-    for one, _, limits, found in _ready:
-        if one is field and limits == tuple(tolerance):
-            return found
+    for one in _ready:
+        if one.field is field and one.limits == tuple(tolerance):
+            return one.statistics
     return core.deviation_statistics(field, *tolerance)
 
 
-def _prepared(field):
-    return next((mesh for one, mesh, *_ in _ready if one is field), None)
+def _lay_mesh(obj, field):
+    """Gives the object the field's mesh, unless it has that already."""
+    one = next((one for one in _ready if one.field is field), None)
+    ply, surface = _ply(field) if one is None else (None, one.surface)
+    if surface == obj.MeshOf and obj.Mesh.CountPoints == len(field.height):
+        return
+    mesh = None if one is None else one.mesh
+    obj.Mesh = mesh or _mesh(ply or _ply(field)[0])
+    obj.MeshOf = surface
 
 
-def _mesh(field):
+def _ply(field):
+    """(PLY file of the ground surface, its hash)."""
+    ply = core.mesh_ply(field, True)
+    return ply, hashlib.sha256(ply).hexdigest()
+
+
+def _mesh(ply):
     mesh = Mesh.Mesh()
-    mesh.read(Stream=io.BytesIO(core.mesh_ply(field, True)), Format="PLY")
+    mesh.read(Stream=io.BytesIO(ply), Format="PLY")
     return mesh
 
 
@@ -317,5 +346,5 @@ def show(obj, field, scale, new_mesh=True):
     for name, key in SHARES.items():
         setattr(obj, name, 100.0 * statistics[key])
     if new_mesh:  # an assignment to Mesh drops the colours: it comes first
-        obj.Mesh = _prepared(field) or _mesh(field)
+        _lay_mesh(obj, field)
     obj.VertexColors = colours.tolist()

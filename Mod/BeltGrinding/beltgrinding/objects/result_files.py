@@ -4,7 +4,9 @@ import contextlib
 import hashlib
 import json
 import os
+import secrets
 import tempfile
+import weakref
 from pathlib import Path
 
 from ..base.files import cannot_be_written, write_new
@@ -38,33 +40,59 @@ def read(obj, name):
 
 
 class Written:
-    """Bytes, by name of property, written to files of a folder of their own, which goes when nobody holds it;
-    may be made in any thread. Raises InputError."""
+    """Bytes, by name of property, written to files that go when nobody holds it; may be made in any thread. ``folder``: a
+    document's ``TransientDir``, from which FreeCAD takes them as they are; from elsewhere it copies them. Raises
+    InputError."""
 
-    def __init__(self, contents):
-        self.folder = tempfile.TemporaryDirectory(prefix="beltgrinding-")
-        self.paths = {name: _path(self.folder.name, name) for name in contents}
+    def __init__(self, contents, folder=None):
+        self._own = None
+        if folder is None or not os.path.isdir(folder):
+            self._own = tempfile.TemporaryDirectory(prefix="beltgrinding-")
+            folder = self._own.name
+        self.folder = folder
+        mark = secrets.token_hex(4)
+        self.paths = {name: Path(folder, f"{name.lower()}-{mark}.h5") for name in contents}
+        self._mine = set(self.paths.values())
+        self._gone = weakref.finalize(self, _remove, self._mine)
         for name, data in contents.items():
-            with _written(self.folder.name):
-                write_new(self.paths[name], data, onto_disk=False)  # FreeCAD copies it
+            with _written(folder):
+                write_new(self.paths[name], data, onto_disk=False)  # FreeCAD moves or copies it
         self.sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+
+    def taken(self, obj, name):
+        """The object's property has got the file: the one that was written, maybe."""
+        if os.path.realpath(getattr(obj, name)) == os.path.realpath(self.paths[name]):
+            self._mine.discard(self.paths[name])
+
+    def discard(self):
+        """Removes what is left of the files."""
+        self._gone()
+        if self._own is not None:
+            self._own.cleanup()
 
 
 def store(obj, contents):
     """Puts bytes, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
-    nothing is then changed unless FreeCAD itself fails to copy a file.
+    nothing is then changed unless FreeCAD itself fails to take a file.
     """
     add_outputs(obj, OUTPUTS)
-    written = contents if isinstance(contents, Written) else Written(contents)
-    with written.folder as folder:
+    written = contents
+    if not isinstance(contents, Written):
+        written = Written(contents, obj.Document.TransientDir)
+    try:
         for name, path in written.paths.items():
-            with _written(folder):
+            with _written(written.folder):
                 setattr(obj, name, str(path))
+            written.taken(obj, name)
+    finally:
+        written.discard()
     setattr(obj, SUMS, json.dumps({**_sums(obj), **written.sums}))
 
 
-def _path(folder, name):
-    return Path(folder, name.lower() + ".h5")
+def _remove(paths):
+    for path in paths:
+        with contextlib.suppress(OSError):
+            path.unlink()
 
 
 @contextlib.contextmanager

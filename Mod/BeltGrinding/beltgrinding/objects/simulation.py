@@ -119,20 +119,20 @@ def _unpacked(values):
     return np.array(values)
 
 
-def files_of(result):
-    """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. Raises
-    InputError."""
+def files_of(result, folder=None):
+    """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. ``folder``: the
+    document's ``TransientDir``. Raises InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
     files = {"HeightField": result.field.hdf5(json.dumps(job))}
     if result.recording is not None:
         steps = {name: _packed(values) for name, values in result.steps.items()}
         files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
-    return result_files.Written(files)
+    return result_files.Written(files, folder)
 
 
 def store(obj, result, fingerprint, files=None):
     """Puts a ``job.Result`` into a Simulation object; ``files``: ``files_of`` it, if they are there."""
-    files = files or files_of(result)
+    files = files or files_of(result, obj.Document.TransientDir)
     try:
         _store(obj, result, files)
     except BaseException:

@@ -105,13 +105,16 @@ class Runner(Background):
 
     def __init__(self, job, progress, done, recording=None, then=None):
         self.document, self.name = job.Document, job.Name
+        self.transient = job.Document.TransientDir
         self.progress, self.ended = progress, done
         self.folder = job_inputs.scratch_folder()
         self.data = job_inputs.to_data(job, self.folder.name)
         self.fingerprint = job_inputs.fingerprint(job)
         self.start = time.monotonic()
         self.recorded, self.then = recording, then
-        self.shown = then is not None or job_data.child(job, deviation.Deviation) is not None
+        found = job_data.child(job, deviation.Deviation)
+        self.shown = then is not None or found is not None
+        self.surface = "" if found is None else found.MeshOf
         self.progress_at = self.start  # s, when it was told last
         super().__init__(self.work, self._finish)
         self.timer.setInterval(END_POLL)
@@ -122,9 +125,10 @@ class Runner(Background):
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
         with ThreadPoolExecutor(1) as beside:
-            files = beside.submit(results.files_of, result)
+            files = beside.submit(results.files_of, result, self.transient)
             if self.shown:
-                deviation.prepare(result.field, result.job["inspection"]["tolerance_mm"])
+                limits = result.job["inspection"]["tolerance_mm"]
+                deviation.prepare(result.field, limits, self.surface)
             return result, files.result()
 
     def grind(self, context):

@@ -22,7 +22,7 @@ constexpr double kThick = 0.2;
 // one. A fit to five of them, not a theory (docs/free-belt.md).
 constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
-constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
+constexpr double kStiffer = 0.75;    // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
 constexpr double kRough = 0.02;    // tolerance where only the rows that bear are asked for
 constexpr double kStuck = 1e-3;    // of a step

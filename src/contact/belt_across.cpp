@@ -15,10 +15,12 @@ constexpr double kWidest = 8.0;    // intervals
 
 }  // namespace
 
-BeltAcross::BeltAcross(const AbrasiveBelt& belt, const std::vector<BeltRow>& rows, BeltSpline given)
-    : spline(std::move(given)), sheet(belt, spline), terms(belt.width, spline) {
-    for (const BeltRow& row : rows) locals.push_back(spline.at(row.y));
-}
+BeltAcross::BeltAcross(const AbrasiveBelt& belt, const std::vector<BeltRow>& rows, double shear,
+                       BeltSpline given)
+    : spline(std::move(given)),
+      sheet(belt, spline),
+      terms(belt.width, spline),
+      face(spline, rows, shear) {}
 
 BeltKnots::BeltKnots(const BeltSpline& finest, const std::vector<BeltRow>& rows,
                      const std::vector<std::uint8_t>& touched) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "belt_face.h"
 #include "belt_sheet.h"
 #include "belt_spline.h"
 #include "belt_terms.h"
@@ -14,7 +15,9 @@ namespace beltgrinding {
 
 /// Splines across a belt and what its energy needs of them.
 struct BeltAcross {
-    BeltAcross(const AbrasiveBelt& belt, const std::vector<BeltRow>& rows, BeltSpline given);
+    /// `shear`: as of BeltFace.
+    BeltAcross(const AbrasiveBelt& belt, const std::vector<BeltRow>& rows, double shear,
+               BeltSpline given);
     // Its parts refer to the spline.
     BeltAcross(const BeltAcross&) = delete;
     BeltAcross& operator=(const BeltAcross&) = delete;
@@ -22,7 +25,7 @@ struct BeltAcross {
     const BeltSpline spline;
     const BeltSheet sheet;
     const BeltTerms terms;
-    std::vector<BeltSpline::Local> locals;  ///< by row
+    const BeltFace face;
 };
 
 /// What is left of a spline's knots where some rows bear pressure and others do not: as close as

@@ -28,15 +28,13 @@ class BeltBands {
     int splines() const { return splines_; }
     /// The block in row `i + below` and column `i`; `below`: 0 to 2.
     Eigen::Map<Band> block(int i, int below) { return {at(i, below), splines_, kDiagonals}; }
-    /// Adds w a b' at the splines from `first` on, to the block in row `i + below`, column `i`.
-    void add_product(int i, int below, int first, double w, const std::array<double, kLocal>& a,
-                     const std::array<double, kLocal>& b) {
-        double* to = at(i, below) + first;
-        for (std::size_t c = 0; c < kLocal; ++c)
-            for (std::size_t r = 0; r < kLocal; ++r)
-                to[(kLocal - 1 + r - c) * static_cast<std::size_t>(splines_) + c] +=
-                    w * a[r] * b[c];
-    }
+    /// The block in row `i + below`, column `i`, as a sum of shares of bands.
+    static constexpr std::size_t kShares = 5;
+    using Shares = std::array<double, kShares>;
+    void set(int i, int below, const Shares& shares, const std::array<Band, kShares>& bands);
+    /// Adds a x, or a x + b y, to the block in row `i + below`, column `i`.
+    void add(int i, int below, double a, const Band& x);
+    void add(int i, int below, double a, const Band& x, double b, const Band& y);
     /// Times (splines, columns).
     Eigen::MatrixXd times(const Eigen::MatrixXd& x) const;
     /// Adds its blocks in column i to those of a matrix, from their row and column `offset` on.

@@ -12,27 +12,35 @@ Eigen::ArrayXd pressure_on_grid(const BeltSolver& solver, const ContactGrid& gri
     const int n = path.columns.count(), nx = grid.nx;
     Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
     const double area = grid.cell_area();
-    for (std::size_t k = 0; k < solver.rows().size(); ++k) {
-        const auto row = static_cast<Eigen::Index>(k);
-        const auto place = [&](int i) {  // x of the belt's face, in columns of the grid
-            const auto c = static_cast<std::size_t>(i);
-            const double u = solver.deflection_at(path.columns, state.deflection, k, i);
-            return (path.x[c] + (0.5 * thickness - u) * std::sin(path.angle[c])) / grid.ds +
-                   0.5 * nx;
-        };
+    // x of the belt's face, in columns of the grid, where columns that bear are not the grid's own.
+    Eigen::ArrayXXd places;
+    bool needed = false;
+    for (int i = 0; i < n && !needed; ++i)
+        needed = path.cell[static_cast<std::size_t>(i)] < 0 && (state.load.col(i) > 0.0).any();
+    if (needed) {
+        places = solver.face_deflection(path.columns, state.deflection);
         for (int i = 0; i < n; ++i) {
+            const auto c = static_cast<std::size_t>(i);
+            const double sine = std::sin(path.angle[c]);
+            places.col(i) =
+                (path.x[c] + (0.5 * thickness - places.col(i)) * sine) / grid.ds + 0.5 * nx;
+        }
+    }
+    for (int i = 0; i < n; ++i) {
+        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+        for (std::size_t k = 0; k < solver.rows().size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
             if (!(state.load(row, i) > 0.0)) continue;
             // The force along z, shared by the columns of the grid that it lies on.
-            const double force =
-                state.load(row, i) * std::cos(path.angle[static_cast<std::size_t>(i)]);
+            const double force = state.load(row, i) * cosine;
             if (const int own = path.cell[static_cast<std::size_t>(i)]; own >= 0) {
                 const int cell = solver.rows()[k].row * nx + own;
                 if (coverage[cell] > 0.0) pressure[cell] += force / (area * coverage[cell]);
                 continue;
             }
-            const double here = place(i);
-            double from = i > 0 ? 0.5 * (place(i - 1) + here) : here;
-            double to = i + 1 < n ? 0.5 * (place(i + 1) + here) : here;
+            const double here = places(row, i);
+            double from = i > 0 ? 0.5 * (places(row, i - 1) + here) : here;
+            double to = i + 1 < n ? 0.5 * (places(row, i + 1) + here) : here;
             from = std::clamp(from, 0.0, nx - 1e-9);
             to = std::clamp(to, from + 1e-9, static_cast<double>(nx));
             for (int c = static_cast<int>(from); c < nx && c < to; ++c) {

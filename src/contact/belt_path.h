@@ -18,6 +18,7 @@ struct BeltColumns {
                                   ///< a column
 
     int count() const { return static_cast<int>(width.size()); }
+    bool operator==(const BeltColumns&) const = default;
     /// mm between the places of the slopes before and behind a column, which lie half-way between
     /// the columns' middles: a parabola has its curvature, an even moment no force.
     double apart(int i) const {

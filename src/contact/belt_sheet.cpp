@@ -1,45 +1,62 @@
 #include "belt_sheet.h"
 
+#include <algorithm>
 #include <array>
-
-#include "belt_curved.h"
+#include <vector>
 
 namespace beltgrinding {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Band = BeltBands::Band;
-
-/// Adds 1/2 s' P s, s the slope along the belt, at a border. At the ends the belt is held.
-void add_sloped(const BeltColumns& columns, int border, const Band& p, BeltBands& matrix) {
-    const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
-    const bool first = border == 0, last = border == columns.count();
-    if (!last) matrix.block(border, 0) += square * p;
-    if (first) return;
-    matrix.block(border - 1, 0) += square * p;
-    // Row: the column behind the border; column: that before it.
-    if (!last) matrix.block(border - 1, 1) -= square * p;
-}
 
 }  // namespace
 
 BeltSheet::BeltSheet(const AbrasiveBelt& belt, const BeltSpline& spline)
-    : bending_(belt.bending()), ratio_(belt.poissons_ratio), spline_(spline) {}
+    : bending_(belt.bending()), ratio_(belt.poissons_ratio), spline_(spline) {
+    const Matrix mixed = ratio_ * bending_ * spline_.value_curvature();
+    bands_ = {BeltBands::band_of(bending_ * spline_.values()), BeltBands::band_of(mixed),
+              BeltBands::band_of(mixed.transpose()),
+              BeltBands::band_of(bending_ * spline_.curvatures()),
+              BeltBands::band_of(2.0 * (1.0 - ratio_) * bending_ * spline_.slopes())};
+}
 
 BeltBands BeltSheet::bending(const BeltColumns& columns) const {
-    const int n = columns.count(), m = spline_.count();
-    BeltBands matrix(n, m);
-    const Matrix mixed = ratio_ * bending_ * spline_.value_curvature();
-    const CurvedForm<Band> form = {BeltBands::band_of(bending_ * spline_.values()),
-                                   BeltBands::band_of(mixed),
-                                   BeltBands::band_of(mixed.transpose())};
-    const Band c = BeltBands::band_of(bending_ * spline_.curvatures());
-    const Band twist = BeltBands::band_of(2.0 * (1.0 - ratio_) * bending_ * spline_.slopes());
+    enum : std::size_t { kCurved, kMixed, kTransposed, kAcross, kTwisted };
+    const int n = columns.count();
+    // By column and what is below it, how much there is of each band.
+    std::vector<std::array<BeltBands::Shares, 3>> shares(static_cast<std::size_t>(n));
+    const auto of = [&](int i, int below) -> BeltBands::Shares& {
+        return shares[static_cast<std::size_t>(i)][static_cast<std::size_t>(below)];
+    };
     for (int i = 0; i < n; ++i) {
-        matrix.block(i, 0) += columns.width[static_cast<std::size_t>(i)] * c;
-        add_curved(columns, i, form, matrix);
+        of(i, 0)[kAcross] += columns.width[static_cast<std::size_t>(i)];
+        // 1/2 k' A k + k' B c, k the second derivative along the belt of the value c.
+        const std::array<double, 3> k = columns.curvature(i);
+        if (k[1] == 0.0) continue;
+        const double h = columns.apart(i);
+        for (int q = 0; q < 3; ++q) {
+            for (int p = q; p < 3; ++p) {
+                BeltBands::Shares& to = of(i - 1 + q, p - q);
+                const double kp = k[static_cast<std::size_t>(p)];
+                const double kq = k[static_cast<std::size_t>(q)];
+                to[kCurved] += h * kp * kq;
+                if (q == 1) to[kMixed] += h * kp;
+                if (p == 1) to[kTransposed] += h * kq;
+            }
+        }
     }
-    for (int border = 0; border <= n; ++border) add_sloped(columns, border, twist, matrix);
+    // 1/2 s' P s, s the slope along the belt, at each border. At the ends the belt is held.
+    for (int border = 0; border <= n; ++border) {
+        const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
+        if (border < n) of(border, 0)[kTwisted] += square;
+        if (border > 0) of(border - 1, 0)[kTwisted] += square;
+        // Row: the column behind the border; column: that before it.
+        if (border > 0 && border < n) of(border - 1, 1)[kTwisted] -= square;
+    }
+    BeltBands matrix(n, spline_.count());
+    for (int i = 0; i < n; ++i)
+        for (int below = 0; below < std::min(3, n - i); ++below)
+            matrix.set(i, below, of(i, below), bands_);
     return matrix;
 }
 

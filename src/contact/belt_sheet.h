@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "belt_bands.h"
 #include "belt_path.h"
@@ -24,6 +25,9 @@ class BeltSheet {
   private:
     double bending_, ratio_;
     const BeltSpline& spline_;
+    // Of two splines: their values; the first one's value and the second one's curvature, and the
+    // other way round; their curvatures; their slopes.
+    std::array<BeltBands::Band, BeltBands::kShares> bands_;
 };
 
 }  // namespace beltgrinding

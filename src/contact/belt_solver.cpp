@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "belt_springs.h"
+
 namespace beltgrinding {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr double kThick = 0.2;
 // one. A fit to five of them, not a theory (docs/free-belt.md).
 constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
-constexpr double kStiffer = 0.5;     // of the stress, where with all of it the energy is no valley
+constexpr double kStiffer = 0.75;    // of the stress, where with all of it the energy is no valley
 constexpr double kLeastStress = 0.1;
 constexpr double kRough = 0.02;    // tolerance where only the rows that bear are asked for
 constexpr double kStuck = 1e-3;    // of a step
@@ -50,7 +52,7 @@ BeltSolver::BeltSolver(const AbrasiveBelt& belt, const BeltRun& run, const Conta
       shear_((sheet == Sheet::kThick ? 1.0 : kFree) * 0.5 * kThick * belt.thickness *
              belt.thickness),
       rows_(rows_under_belt(grid, belt.width)),
-      finest_(belt_, rows_,
+      finest_(belt_, rows_, shear_,
               BeltSpline(belt.width, kInterval * closer(sheet) * std::max(1.0, grid.dy),
                          kAtEdge * closer(sheet) * std::max(1.0, grid.dy))) {}
 
@@ -70,92 +72,85 @@ double BeltSolver::commanded(const Request& request, double lift) {
 }
 
 void BeltSolver::strain(const BeltStress& stress, Iterate& at) const {
-    at.shape = stress.shape(at.deflection);
     at.strain = stress.product(at.shape, at.shape);
     const BeltModes turned = stress.turned(at.deflection);
     at.strain.function += turned.function;
     at.strain.mean += turned.mean;
     at.strain.lean += turned.lean;
     at.stress = stress.stress(at.strain);
+    at.smooth = path_load_ - at.bent - stress.resistance(at.shape, at.stress);
 }
 
 BeltSolver::Unbalanced BeltSolver::unbalanced(Request& request, const BeltPath& path,
-                                              const BeltStress& stress,
-                                              const BeltStress::Coupling& coupling,
                                               const Iterate& at, bool bonded) {
     Unbalanced off;
-    off.belt = path_load_ - at.bent - stress.resistance(coupling, at.stress);
+    off.belt = at.smooth;
     const bool yield = yields(*request.problem);
     if (yield) off.work = commanded(request, at.lift);
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    forces_.resize(rows, at.cells.cols());
+    backing_forces_.resize(rows);
     for (int i = 0; i < path.columns.count(); ++i) {
-        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const auto row = static_cast<Eigen::Index>(k);
-            const double u = at.cells(row, i);
-            std::uint8_t& touches = request.touching[cell(i, k)];
-            double force = 0.0;
-            const double overlap = reach_at(request, path, i, k) + at.lift * cosine - u;
-            if (bonded ? touches != 0 : overlap > 0.0)
-                force = spring(request, path.columns, i, k) * overlap;
-            if (!bonded) {
-                const std::uint8_t now = overlap > 0.0 ? 1 : 0;
-                off.same = off.same && now == touches;
-                touches = now;
-            }
-            off.total += force;
-            if (yield) off.work -= force * cosine;
-            if (request.backing != nullptr) {
-                const double in = u - request.backing->rest()(row, i);
-                std::uint8_t& borne = borne_[cell(i, k)];
-                if (bonded ? borne != 0 : in > 0.0)
-                    force -= backing_spring(request, path.columns, i, k) * in;
-                if (!bonded) {
-                    const std::uint8_t now = in > 0.0 ? 1 : 0;
-                    off.borne = off.borne && now == borne;
-                    borne = now;
-                }
-            }
-            if (force == 0.0) continue;
-            const FaceForm form = face_form(path.columns, k, i);
-            for (int p = form.first; p <= form.last; ++p)
-                for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    off.belt(across_->locals[k].first + r, i - 1 + p) +=
-                        force *
-                        form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
+        const double raised = at.lift * cosine_[i];
+        const double* u = at.cells.col(i).data();
+        double* forces = forces_.col(i).data();
+        std::uint8_t* touching = &request.touching[cell(i, 0)];
+        if (bonded) {
+            for (Eigen::Index k = 0; k < rows; ++k)
+                forces[k] =
+                    touching[k] != 0 ? springs_(k, i) * (reach_(k, i) + raised - u[k]) : 0.0;
+        } else {
+            const bool same = press_springs(static_cast<int>(rows), reach_.col(i).data(), raised, u,
+                                            springs_.col(i).data(), forces, touching);
+            off.same = off.same && same;
         }
+        const double total = sum_apart(static_cast<int>(rows), forces);
+        off.total += total;
+        if (yield) off.work -= total * cosine_[i];
+        if (request.backing == nullptr) continue;
+        const double* rest = request.backing->rest().col(i).data();
+        std::uint8_t* borne = &borne_[cell(i, 0)];
+        if (bonded) {
+            for (Eigen::Index k = 0; k < rows; ++k)
+                if (borne[k] != 0) forces[k] -= backing_springs_(k, i) * (u[k] - rest[k]);
+            continue;
+        }
+        const bool same =
+            press_springs(static_cast<int>(rows), u, 0.0, rest, backing_springs_.col(i).data(),
+                          backing_forces_.data(), borne);
+        off.borne = off.borne && same;
+        forces_.col(i) -= backing_forces_;
     }
+    across_->face.push(path.columns, forces_, off.belt);
     return off;
 }
 
 bool BeltSolver::factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
-                           const BeltStress::Coupling& coupling, const Iterate& at, double most) {
+                           const Iterate& at, double most) {
     const BeltColumns& columns = path.columns;
+    coupling_ = stress.coupling(at.shape);
     const int n = columns.count(), size = across_->spline.count() + BeltStress::kTerms;
     touching_in_factor_ = request.touching;
     if (matrix_.count() != n || matrix_.size() != size)
         matrix_ = BlockBanded(n, size, BeltStress::kTerms, BeltSpline::kLocal - 1);
+    forces_.resize(at.cells.rows(), n);
+    for (int i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            double spring = request.touching[cell(i, k)] != 0 ? springs_(row, i) : 0.0;
+            if (request.backing != nullptr && borne_[cell(i, k)] != 0)
+                spring += backing_springs_(row, i);
+            forces_(row, i) = spring;
+        }
+    }
     for (double share = most;; share = share > kLeastStress ? kStiffer * share : 0.0) {
         bands_ = bending_;
         stress.stiffen(at.stress, share, bands_);
-        for (int i = 0; i < n; ++i) {
-            for (std::size_t k = 0; k < rows_.size(); ++k) {
-                double w = 0.0;
-                if (request.touching[cell(i, k)] != 0) w += spring(request, columns, i, k);
-                if (request.backing != nullptr && borne_[cell(i, k)] != 0)
-                    w += backing_spring(request, columns, i, k);
-                if (w == 0.0) continue;
-                const FaceForm form = face_form(columns, k, i);
-                for (int q = form.first; q <= form.last; ++q)
-                    for (int p = q; p <= form.last; ++p)
-                        bands_.add_product(i - 1 + q, p - q, across_->locals[k].first, w,
-                                           form.values[static_cast<std::size_t>(p)],
-                                           form.values[static_cast<std::size_t>(q)]);
-            }
-        }
+        across_->face.stiffen(columns, forces_, bands_);
         int i = 0;
         for (; i < n; ++i) {
             matrix_.clear(i);
-            stress.add_to(matrix_, i, coupling);
+            stress.add_to(matrix_, i, coupling_);
             bands_.add_to(matrix_, i, BeltStress::kTerms);
             if (!matrix_.factorise(i)) break;
         }
@@ -164,16 +159,11 @@ bool BeltSolver::factorise(const Request& request, const BeltPath& path, const B
     }
 }
 
-bool BeltSolver::touch(Request& request, const BeltPath& path, Iterate& at) const {
+bool BeltSolver::touch(Iterate& at) const {
     double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < path.columns.count(); ++i) {
-        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const double open = at.cells(static_cast<Eigen::Index>(k), i) -
-                                reach_at(request, path, i, k) - at.lift * cosine;
-            least = std::min(least, open / cosine);
-        }
-    }
+    for (Eigen::Index i = 0; i < at.cells.cols(); ++i)
+        least =
+            std::min(least, (at.cells.col(i) - reach_.col(i)).minCoeff() / cosine_[i] - at.lift);
     if (!std::isfinite(least)) return false;
     at.lift += least + kTouch;
     return true;
@@ -201,7 +191,7 @@ void BeltSolver::start(const Request& request, BeltState& state, Iterate& at) {
         }
     }
     if (wider_) at.deflection = to_wider_ * at.deflection;
-    at.cells = face_at_cells(columns, at.deflection);
+    at.cells = across_->face.deflection(columns, at.deflection);
 }
 
 std::vector<std::uint8_t> BeltSolver::rows_touched(
@@ -216,8 +206,9 @@ void BeltSolver::set_lines(const std::vector<double>& lines) {
     if (lines == across_->spline.lines()) return;
     across_ = &finest_;
     wider_.reset();
+    prepared_for_ = {};
     if (lines == finest_.spline.lines()) return;
-    wider_ = std::make_unique<BeltAcross>(belt_, rows_, BeltSpline(lines));
+    wider_ = std::make_unique<BeltAcross>(belt_, rows_, shear_, BeltSpline(lines));
     across_ = wider_.get();
     to_wider_ = wider_->spline.from(finest_.spline);
     from_wider_ = finest_.spline.from(wider_->spline);
@@ -272,22 +263,26 @@ BeltState BeltSolver::solve(BeltPath path, Request request) {
     return state;
 }
 
-BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
-    BeltState state;
-    state.path = std::move(path);
-    const ContactProblem& problem = *request.problem;
-    const BeltColumns& columns = state.path.columns;
-    const int n = columns.count();
+void BeltSolver::set_contact(Request& request, const BeltPath& path, const Iterate& at) {
+    const int n = path.columns.count();
     const auto rows = static_cast<Eigen::Index>(rows_.size());
-    const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
-    const double stretching =
-        run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
-    const BeltStress stress(belt_, across_->terms, state.path, pull_of(state.path, 0.0), stretching,
-                            run_.length);
-    bending_ = across_->sheet.bending(columns);
-    path_load_ = across_->sheet.path_load(state.path);
-    Iterate at;
-    start(request, state, at);
+    reach_.resize(rows, n);
+    springs_.resize(rows, n);
+    backing_springs_.resize(rows, n);
+    cosine_.resize(n);
+    const double face = face_ / (1.0 + face_ * request.problem->recession);
+    for (int i = 0; i < n; ++i) {
+        const auto c = static_cast<std::size_t>(i);
+        cosine_[i] = std::cos(path.angle[c]);
+        reach_.col(i) = request.gap->reach.col(i) + shear_ * path.turn[c];
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+            const auto row = static_cast<Eigen::Index>(k);
+            const double area = rows_[k].width * path.columns.width[c];
+            springs_(row, i) = face * request.gap->cover(row, i) * area;
+            if (request.backing != nullptr)
+                backing_springs_(row, i) = request.backing->stiffness() * area;
+        }
+    }
     const std::size_t all = rows_.size() * static_cast<std::size_t>(n);
     if (request.touching.size() != all) {
         request.touching.assign(all, 0);
@@ -314,40 +309,63 @@ BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
                 borne_[cell(i, k)] = bears ? 1 : 0;
             }
     }
+}
+
+BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
+    BeltState state;
+    state.path = std::move(path);
+    const ContactProblem& problem = *request.problem;
+    const BeltColumns& columns = state.path.columns;
+    const int n = columns.count();
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    const double unloaded = run_.length / (1.0 + belt_.tension / belt_.membrane());
+    const double stretching =
+        run_.rollers == BeltRun::Rollers::kFixed ? belt_.membrane() / unloaded : 0.0;
+    if (columns != prepared_for_) {
+        bending_ = across_->sheet.bending(columns);
+        compliance_ = BeltStress::Compliance(across_->terms, columns);
+        prepared_for_ = columns;
+    }
+    const BeltStress stress(belt_, across_->terms, state.path, compliance_,
+                            pull_of(state.path, 0.0), stretching, run_.length);
+    path_load_ = across_->sheet.path_load(state.path);
+    Iterate at;
+    start(request, state, at);
+    set_contact(request, state.path, at);
     at.bent = bending_.times(at.deflection);
+    at.shape = stress.shape(at.deflection);
     strain(stress, at);
     // Without a place to begin with, from the first touch.
     bool bonded =
         std::find(request.touching.begin(), request.touching.end(), 1) != request.touching.end();
     double share = 0.0, before = 0.0, most = 1.0;
+    Unbalanced off = unbalanced(request, state.path, at, bonded);
     for (state.iterations = 0;; ++state.iterations) {
         const bool first = state.iterations == 0;
-        BeltStress::Coupling coupling = stress.coupling(at.shape);
-        Unbalanced off = unbalanced(request, state.path, stress, coupling, at, bonded);
         const auto left = [&] { return std::max(off.belt.cwiseAbs().sum(), std::abs(off.work)); };
         bool good = !first && share == 1.0 && left() <= kGoodStep * before;
         double bears = 0.0;
         if (!first && request.backing != nullptr && share == 1.0 &&
             ((off.same && off.borne) || left() <= kUnbalanced * problem.tolerance * off.total)) {
             bears = request.backing->follow(at.cells);
-            off = unbalanced(request, state.path, stress, coupling, at, false);
+            off = unbalanced(request, state.path, at, false);
         }
         state.converged =
             !first && left() <= std::max(kUnbalanced * problem.tolerance * off.total, kNoForce) &&
             bears <= problem.tolerance;
         if (state.converged || state.iterations >= problem.max_iterations) break;
         if (problem.force_control && off.total == 0.0 && !bonded) {
-            if (!touch(request, state.path, at)) break;
-            off = unbalanced(request, state.path, stress, coupling, at, false);
+            if (!touch(at)) break;
+            off = unbalanced(request, state.path, at, false);
             good = false;
         }
         // The last factor is as good where its step was and few springs have switched.
         const bool again = good && switched(request).size() <= kMostSwitched;
         before = left();
-        if (!again && !factorise(request, state.path, stress, coupling, at, most)) break;
-        const Step to = step(request, state.path, stress, coupling, off, again);
+        if (!again && !factorise(request, state.path, stress, at, most)) break;
+        const Step to = step(request, state.path, stress, off, again);
         if (!to.deflection.allFinite() || !std::isfinite(to.lift)) break;
-        share = go(request, state.path, stress, off, to, bonded, at);
+        share = go(request, state.path, stress, to, bonded, at, off);
         bonded = false;
         // A step that leads nowhere: once more, by what is surely a valley; then there is no way.
         const bool stuck = share < kStuck;
@@ -355,16 +373,12 @@ BeltState BeltSolver::solve_on(BeltPath path, Request& request) {
         most = stuck ? 0.0 : 1.0;
     }
     state.load.setZero(rows, n);
-    for (int i = 0; i < n; ++i) {
-        const double cosine = std::cos(state.path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            const double overlap = reach_at(request, state.path, i, k) + at.lift * cosine -
-                                   at.cells(static_cast<Eigen::Index>(k), i);
-            if (overlap > 0.0)
-                state.load(static_cast<Eigen::Index>(k), i) =
-                    spring(request, columns, i, k) * overlap;
-        }
-    }
+    for (int i = 0; i < n; ++i)
+        state.load.col(i) =
+            (springs_.col(i) > 0.0)
+                .select(springs_.col(i) *
+                            (reach_.col(i) + at.lift * cosine_[i] - at.cells.col(i)).max(0.0),
+                        0.0);
     state.pull = stress.pull(at.stress);
     state.lift = at.lift;
     state.deflection =

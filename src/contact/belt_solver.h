@@ -67,9 +67,12 @@ class BeltSolver {
     /// mm that a path's own turn, 1/mm, moves the face by from half a thickness off the middle
     /// surface.
     double face_moved_by(double turn) const { return shear_ * turn; }
-    /// mm that the belt's face deflects by at the middles of a row and a column of the path.
-    double deflection_at(const BeltColumns& columns, const Eigen::MatrixXd& coefficients,
-                         std::size_t row, int column) const;
+    /// mm that the belt's face deflects by at the middles of rows and columns, of a state's
+    /// deflection.
+    Eigen::ArrayXXd face_deflection(const BeltColumns& columns,
+                                    const Eigen::MatrixXd& coefficients) const {
+        return finest_.face.deflection(columns, coefficients);
+    }
 
     struct Request {
         const ContactProblem* problem = nullptr;  ///< control, tolerance, iterations
@@ -92,20 +95,15 @@ class BeltSolver {
     void set_lines(const std::vector<double>& lines);
     /// By every other knot, to say where pressure is.
     BeltState solve_roughly(BeltPath path, Request& request);
-    /// mm of the face at a place across, by `along` the weights of the columns beside.
-    double face_of(const BeltSpline::Local& local, const std::array<double, 3>& along,
-                   const Eigen::MatrixXd& coefficients, int column) const;
-    /// The same at the middles of rows and columns, by the splines that there are now.
-    Eigen::ArrayXXd face_at_cells(const BeltColumns& columns,
-                                  const Eigen::MatrixXd& coefficients) const;
     /// A deflection, the work's lift, what they strain.
     struct Iterate {
         Eigen::MatrixXd deflection;  // (splines, columns), mm
         Eigen::MatrixXd bent;        // N that bending resists it with
-        Eigen::ArrayXXd cells;       // mm at the middles of rows and columns
+        Eigen::ArrayXXd cells;       // mm of the face, (rows, columns)
         double lift = 0.0;           // mm
         BeltModes strain, stress;
         BeltStress::Shape shape;
+        Eigen::MatrixXd smooth;  // N on the splines of all but the contact
     };
     /// What the energy falls by where the belt and the work give way, and where it touches.
     struct Unbalanced {
@@ -120,14 +118,16 @@ class BeltSolver {
         double lift = 0.0;
     };
     void start(const Request& request, BeltState& state, Iterate& at);
+    /// How far the face reaches, its springs; which cells touch and bear to begin with.
+    void set_contact(Request& request, const BeltPath& path, const Iterate& at);
+    /// Strain, stress and what they and the bending push with, of the deflection and its shape.
     void strain(const BeltStress& stress, Iterate& at) const;
     /// `bonded`: springs pull as well, and only where it is said to touch.
-    Unbalanced unbalanced(Request& request, const BeltPath& path, const BeltStress& stress,
-                          const BeltStress::Coupling& coupling, const Iterate& at, bool bonded);
+    Unbalanced unbalanced(Request& request, const BeltPath& path, const Iterate& at, bool bonded);
     /// The factor of the energy's second derivatives, with so much of the stress, up to the share
     /// `most`, as leaves them positive.
     bool factorise(const Request& request, const BeltPath& path, const BeltStress& stress,
-                   const BeltStress::Coupling& coupling, const Iterate& at, double most);
+                   const Iterate& at, double most);
     /// The cells that touch the work and do not so in the factor, or the other way round.
     std::vector<std::size_t> switched(const Request& request) const;
     /// Solves for what a unit spring at these cells pushes the belt with, by the left half of the
@@ -137,40 +137,23 @@ class BeltSolver {
     Eigen::MatrixXd signed_by_rows(Eigen::MatrixXd values) const;
     /// Newton's step by the factor; `again`: by that of a step before, but for its springs.
     Step step(const Request& request, const BeltPath& path, const BeltStress& stress,
-              const BeltStress::Coupling& coupling, const Unbalanced& off, bool again);
+              const Unbalanced& off, bool again);
     /// What the work's lift pushes the belt with, N/mm, and the work itself.
     Eigen::MatrixXd pushed_by_lift(const Request& request, const BeltPath& path, double& own) const;
-    /// Goes along the step, up to its end, where the energy is least; the share of it.
-    double go(const Request& request, const BeltPath& path, const BeltStress& stress,
-              const Unbalanced& off, const Step& step, bool whole, Iterate& at) const;
+    /// Goes along the step, up to its end, where the energy is least; the share of it. `off`: at
+    /// the beginning, then where it leads.
+    double go(Request& request, const BeltPath& path, const BeltStress& stress, const Step& step,
+              bool whole, Iterate& at, Unbalanced& off);
+    /// The share of the step at which the energy is least, which falls at its beginning and rises
+    /// by `end` mm N at its end.
+    double least_along(const Request& request, const BeltStress& stress, const Iterate& at,
+                       const Iterate& change, double first, double end) const;
     /// Lifts the work until it touches the belt. False: there is none.
-    bool touch(Request& request, const BeltPath& path, Iterate& at) const;
+    bool touch(Iterate& at) const;
     /// N that the work is pressed with where it has been lifted by so much.
     static double commanded(const Request& request, double lift);
-    double backing_spring(const Request& request, const BeltColumns& columns, int i,
-                          std::size_t k) const {
-        return request.backing->stiffness() * rows_[k].width *
-               columns.width[static_cast<std::size_t>(i)];
-    }
-    /// The face's deflection at a cell by the splines of the columns from `first` to `last`, of
-    /// i - 1, i and i + 1.
-    struct FaceForm {
-        int first = 1, last = 1;
-        std::array<std::array<double, BeltSpline::kLocal>, 3> values{};
-    };
-    FaceForm face_form(const BeltColumns& columns, std::size_t k, int i) const;
     std::size_t cell(int column, std::size_t row) const {
         return static_cast<std::size_t>(column) * rows_.size() + row;
-    }
-    /// mm along the normal at which the face meets the work, as the path's own turn has it.
-    double reach_at(const Request& request, const BeltPath& path, int i, std::size_t k) const {
-        return request.gap->reach(static_cast<Eigen::Index>(k), i) +
-               shear_ * path.turn[static_cast<std::size_t>(i)];
-    }
-    double spring(const Request& request, const BeltColumns& columns, int i, std::size_t k) const {
-        const double face = face_ / (1.0 + face_ * request.problem->recession);
-        return face * request.gap->cover(static_cast<Eigen::Index>(k), i) * rows_[k].width *
-               columns.width[static_cast<std::size_t>(i)];
     }
 
     AbrasiveBelt belt_;
@@ -184,13 +167,24 @@ class BeltSolver {
     std::unique_ptr<BeltAcross> wider_;
     Eigen::MatrixXd to_wider_, from_wider_;
     const BeltAcross* across_ = &finest_;
-    BeltBands bending_, bands_;
+    // Of these splines on the columns `prepared_for_`.
+    BeltColumns prepared_for_;
+    BeltBands bending_;
+    BeltStress::Compliance compliance_;
+    BeltBands bands_;
     Eigen::MatrixXd path_load_;  // (splines, columns), N
     BlockBanded matrix_;
+    BeltStress::Coupling coupling_;  // in the factor
     // Beside the belt, the work's lift, the mean stress, what of it is linear across: what they
     // push the belt with, by the left half of the factor, and what is left of their own matrix.
     Eigen::MatrixXd borders_;
     Eigen::VectorXd border_own_;
+    // By rows and columns: mm along the normal at which the face meets the work, as the path's own
+    // turn has it; N/mm of the face and of the backing. By column: of the path's angle.
+    Eigen::ArrayXXd reach_, springs_, backing_springs_;
+    Eigen::ArrayXd cosine_;
+    Eigen::ArrayXd backing_forces_;    // N, of a column
+    Eigen::ArrayXXd forces_;           // N on the face, or the springs that are taken into a factor
     std::vector<std::uint8_t> borne_;  // by cell: the backing bears
     std::vector<std::uint8_t> touching_in_factor_;
     // Springs that were switched since: the same, and their products with the borders and among

@@ -1,4 +1,4 @@
-// A step of Newton's method on the belt's energy, and the way along it.
+// A step of Newton's method on the belt's energy.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,29 +12,25 @@
 namespace beltgrinding {
 namespace {
 
-constexpr int kLineSteps = 20;  // of the search along a step
-constexpr double kFlat = 0.1;   // of the energy's slope at its beginning: where that ends
+constexpr Eigen::Index kAtOnce = 4;  // springs that are taken into a factor
 
 }  // namespace
 
 Eigen::MatrixXd BeltSolver::pushed_by_lift(const Request& request, const BeltPath& path,
                                            double& own) const {
-    const int n = path.columns.count();
-    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(across_->spline.count(), n);
+    Eigen::MatrixXd pushed = Eigen::MatrixXd::Zero(across_->spline.count(), path.columns.count());
+    Eigen::ArrayXXd forces = Eigen::ArrayXXd::Zero(springs_.rows(), springs_.cols());
     own = request.problem->force_control ? 0.0 : 1.0 / request.problem->robot_compliance;
-    for (int i = 0; i < n; ++i) {
-        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            if (request.touching[cell(i, k)] == 0) continue;
-            const double w = spring(request, path.columns, i, k) * cosine;
-            own += w * cosine;
-            const FaceForm form = face_form(path.columns, k, i);
-            for (int p = form.first; p <= form.last; ++p)
-                for (int r = 0; r < BeltSpline::kLocal; ++r)
-                    pushed(across_->locals[k].first + r, i - 1 + p) -=
-                        w * form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
+    for (Eigen::Index i = 0; i < forces.cols(); ++i) {
+        for (Eigen::Index k = 0; k < forces.rows(); ++k) {
+            if (request.touching[cell(static_cast<int>(i), static_cast<std::size_t>(k))] == 0)
+                continue;
+            const double w = springs_(k, i) * cosine_[i];
+            own += w * cosine_[i];
+            forces(k, i) = -w;
         }
     }
+    across_->face.push(path.columns, forces, pushed);
     return pushed;
 }
 
@@ -56,12 +52,9 @@ std::vector<std::size_t> BeltSolver::switched(const Request& request) const {
 void BeltSolver::add_switched(const BeltPath& path, const std::vector<std::size_t>& cells) {
     const int m = across_->spline.count(), size = m + BeltStress::kTerms;
     const Eigen::Index known = static_cast<Eigen::Index>(switched_.size());
-    int first = path.columns.count();
-    for (const std::size_t at : cells) {
-        if (std::find(switched_.begin(), switched_.end(), at) != switched_.end()) continue;
-        first = std::min(first, std::max(static_cast<int>(at / rows_.size()) - 1, 0));
-        switched_.push_back(at);
-    }
+    for (const std::size_t at : cells)
+        if (std::find(switched_.begin(), switched_.end(), at) == switched_.end())
+            switched_.push_back(at);
     const Eigen::Index added = static_cast<Eigen::Index>(switched_.size()) - known;
     if (added == 0) return;
     switched_borders_.conservativeResize(borders_.rows(), known + added);
@@ -71,29 +64,34 @@ void BeltSolver::add_switched(const BeltPath& path, const std::vector<std::size_
         const std::size_t at = switched_[static_cast<std::size_t>(known + c)];
         const auto i = static_cast<int>(at / rows_.size());
         const std::size_t k = at % rows_.size();
-        const FaceForm form = face_form(path.columns, k, i);
+        const BeltFace::Form form = across_->face.form(path.columns, k, i);
         for (int p = form.first; p <= form.last; ++p)
             for (int r = 0; r < BeltSpline::kLocal; ++r)
-                to(std::ptrdiff_t{size} * (i - 1 + p) + BeltStress::kTerms +
-                       across_->locals[k].first + r,
-                   c) = form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
+                to(std::ptrdiff_t{size} * (i - 1 + p) + BeltStress::kTerms + form.spline + r, c) =
+                    form.values[static_cast<std::size_t>(p)][static_cast<std::size_t>(r)];
     }
-    matrix_.forward(to, first);
     const Eigen::Index borders = borders_.cols(), count = borders + known + added;
     products_.conservativeResize(count, count);
-    const Eigen::Index below = std::ptrdiff_t{size} * first;
-    const Eigen::MatrixXd signs = signed_by_rows(to.bottomRows(to.rows() - below));
-    products_.bottomLeftCorner(added, borders) =
-        signs.transpose() * borders_.bottomRows(signs.rows());
-    products_.bottomRightCorner(added, known + added) =
-        signs.transpose() * switched_borders_.bottomRows(signs.rows());
-    products_.topRightCorner(count - added, added) =
-        products_.bottomLeftCorner(added, count - added).transpose();
+    // Cells ascend with the columns, and so do those from which on there is something: some at a
+    // time, whose products with themselves and those before are all that is not yet known.
+    for (Eigen::Index c = 0; c < added; c += kAtOnce) {
+        const Eigen::Index some = std::min(kAtOnce, added - c);
+        const std::size_t least = switched_[static_cast<std::size_t>(known + c)] / rows_.size();
+        const int first = std::max(static_cast<int>(least) - 1, 0);
+        matrix_.forward(to.middleCols(c, some), first);
+        const Eigen::Index rows = to.rows() - std::ptrdiff_t{size} * first;
+        const Eigen::Index at = borders + known + c, end = known + c + some;
+        const auto from = to.middleCols(c, some).bottomRows(rows);
+        products_.block(0, at, borders, some) = matrix_.products(borders_.bottomRows(rows), from);
+        products_.block(borders, at, end, some) =
+            matrix_.products(switched_borders_.leftCols(end).bottomRows(rows), from);
+        products_.block(at, 0, some, borders + end) =
+            products_.block(0, at, borders + end, some).transpose();
+    }
 }
 
 BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
-                                  const BeltStress& stress, const BeltStress::Coupling& coupling,
-                                  const Unbalanced& off, bool again) {
+                                  const BeltStress& stress, const Unbalanced& off, bool again) {
     const int n = path.columns.count(), m = across_->spline.count(), size = m + BeltStress::kTerms;
     const bool yield = yields(*request.problem);
     const auto belt = [&](Eigen::MatrixXd& all, Eigen::Index c) {
@@ -117,16 +115,16 @@ BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
             ++c;
         }
         if (mean) {
-            belt(all, c) = coupling.mean;
+            belt(all, c) = coupling_.mean;
             border_own_[c++] = -1.0 / stress.mean_stiffness();
         }
-        belt(all, c) = coupling.lean;
+        belt(all, c) = coupling_.lean;
         border_own_[c++] = -1.0 / stress.lean_stiffness();
         all.col(c) = left;
         matrix_.forward(all);
         left = all.col(c);
         borders_ = all.leftCols(count);
-        products_ = borders_.transpose() * signed_by_rows(borders_);
+        products_ = matrix_.products(borders_, borders_);
         switched_.clear();
         switched_borders_.resize(borders_.rows(), 0);
     }
@@ -147,11 +145,11 @@ BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
         used.col(c) = switched_borders_.col(known);
         basis(borders + known, c) = 1.0;
         const auto i = static_cast<int>(cells[s] / rows_.size());
-        const double own_spring = spring(request, path.columns, i, cells[s] % rows_.size());
+        const double own_spring = springs_(static_cast<Eigen::Index>(cells[s] % rows_.size()), i);
         const double more = request.touching[cells[s]] != 0 ? own_spring : -own_spring;
         own[c] = -1.0 / more;
         if (!yield) continue;
-        const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
+        const double cosine = cosine_[i];
         basis(borders + known, 0) = -more * cosine;
         used.col(0) -= more * cosine * used.col(c);
         own[0] += more * cosine * cosine;
@@ -167,100 +165,6 @@ BeltSolver::Step BeltSolver::step(const Request& request, const BeltPath& path,
     step.deflection = belt(left, 0);
     if (yield) step.lift = others[0];
     return step;
-}
-
-double BeltSolver::go(const Request& request, const BeltPath& path, const BeltStress& stress,
-                      const Unbalanced& off, const Step& step, bool whole, Iterate& at) const {
-    const int n = path.columns.count();
-    const BeltStress::Shape shape = stress.shape(step.deflection);
-    // Strains are e0 + s e1 + s^2 e2 on the way.
-    BeltModes e1 = stress.product(at.shape, shape);
-    const BeltModes turned = stress.turned(step.deflection);
-    e1.function = 2.0 * e1.function + turned.function;
-    e1.mean = 2.0 * e1.mean + turned.mean;
-    e1.lean = 2.0 * e1.lean + turned.lean;
-    const BeltModes e2 = stress.product(shape, shape);
-    const BeltModes s1 = stress.stress(e1), s2 = stress.stress(e2);
-    const auto work = [](const BeltModes& s, const BeltModes& e) {
-        return s.function.cwiseProduct(e.function).sum() + s.mean * e.mean + s.lean * e.lean;
-    };
-    const Eigen::ArrayXXd cells = face_at_cells(path.columns, step.deflection);
-    const Eigen::MatrixXd bent = bending_.times(step.deflection);
-    double share = 1.0;
-    if (!whole) {
-        const double rest = stress.pull({{}, 0.0, 0.0});
-        // The energy's slope, but for what is not smooth.
-        std::array<double, 4> smooth = {
-            -path_load_.cwiseProduct(step.deflection).sum() +
-                at.bent.cwiseProduct(step.deflection).sum() + work(at.stress, e1) + rest * e1.mean,
-            bent.cwiseProduct(step.deflection).sum() + 2.0 * work(at.stress, e2) + work(s1, e1) +
-                2.0 * rest * e2.mean,
-            3.0 * work(s1, e2), 2.0 * work(s2, e2)};
-        if (yields(*request.problem)) {
-            smooth[0] -= commanded(request, at.lift) * step.lift;
-            if (!request.problem->force_control)
-                smooth[1] += step.lift * step.lift / request.problem->robot_compliance;
-        }
-        const auto slope = [&](double s) {
-            double sum = smooth[0] + s * (smooth[1] + s * (smooth[2] + s * smooth[3]));
-            for (int i = 0; i < n; ++i) {
-                const double cosine = std::cos(path.angle[static_cast<std::size_t>(i)]);
-                for (std::size_t k = 0; k < rows_.size(); ++k) {
-                    const auto row = static_cast<Eigen::Index>(k);
-                    const double du = cells(row, i), u = at.cells(row, i) + s * du;
-                    const double overlap =
-                        reach_at(request, path, i, k) + (at.lift + s * step.lift) * cosine - u;
-                    if (overlap > 0.0)
-                        sum += spring(request, path.columns, i, k) * overlap *
-                               (step.lift * cosine - du);
-                    if (request.backing == nullptr) continue;
-                    const double in = u - request.backing->rest()(row, i);
-                    if (in > 0.0) sum += backing_spring(request, path.columns, i, k) * in * du;
-                }
-            }
-            return sum;
-        };
-        const double first = -(off.belt.cwiseProduct(step.deflection).sum() + off.work * step.lift);
-        double end = slope(1.0);
-        if (end > kFlat * std::abs(first)) {
-            double low = 0.0, high = 1.0, at_low = first, at_high = end;
-            share = 0.0;
-            for (int k = 0; k < kLineSteps; ++k) {
-                // Regula falsi, kept away from the ends.
-                const double part = std::clamp(at_low / (at_low - at_high), 0.1, 0.9);
-                const double middle = k % 3 == 2 ? 0.5 * (low + high) : std::lerp(low, high, part);
-                const double value = slope(middle);
-                if (value > 0.0) {
-                    high = middle;
-                    at_high = value;
-                } else {
-                    low = middle;
-                    at_low = value;
-                }
-                share = low;
-                if (low > 0.0 && std::abs(at_low) <= kFlat * std::abs(first)) break;
-            }
-            if (share == 0.0) share = high;
-        }
-    }
-    at.deflection += share * step.deflection;
-    at.bent += share * bent;
-    at.lift += share * step.lift;
-    at.cells += share * cells;
-    at.shape.x += share * shape.x;
-    at.shape.xy += share * shape.xy;
-    at.shape.xx += share * shape.xx;
-    at.shape.yy += share * shape.yy;
-    const auto add = [](BeltModes& to, double factor, const BeltModes& from) {
-        to.function += factor * from.function;
-        to.mean += factor * from.mean;
-        to.lean += factor * from.lean;
-    };
-    add(at.strain, share, e1);
-    add(at.strain, share * share, e2);
-    add(at.stress, share, s1);
-    add(at.stress, share * share, s2);
-    return share;
 }
 
 }  // namespace beltgrinding

@@ -49,8 +49,23 @@ Share share_of(const BeltColumns& columns, int border) {
 
 }  // namespace
 
+BeltStress::Compliance::Compliance(const BeltTerms& terms, const BeltColumns& columns)
+    : matrix(columns.count(), kTerms) {
+    using Square = Eigen::Matrix<double, kTerms, kTerms>;
+    const CurvedForm<Square> form = {terms.value_value, terms.value_curvature,
+                                     terms.value_curvature.transpose()};
+    const Square across = terms.curvature_curvature;
+    for (int i = 0; i < columns.count(); ++i) {
+        matrix.block(i, 0) += columns.width[static_cast<std::size_t>(i)] * across;
+        add_curved(columns, i, form, matrix);
+    }
+    factor = matrix;
+    if (!factor.factorise()) throw std::logic_error("BeltStress: not positive definite");
+}
+
 BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltTerms& terms, const BeltPath& path,
-                       double resting, double stretching, double run_length)
+                       const Compliance& compliance, double resting, double stretching,
+                       double run_length)
     : membrane_(belt.membrane()),
       width_(belt.width),
       resting_(resting),
@@ -59,17 +74,7 @@ BeltStress::BeltStress(const AbrasiveBelt& belt, const BeltTerms& terms, const B
       terms_(terms),
       spline_(terms.spline),
       path_(path),
-      compliance_(path.columns.count(), kTerms) {
-    const CurvedForm<Matrix> form = {terms.value_value, terms.value_curvature,
-                                     terms.value_curvature.transpose()};
-    for (int i = 0; i < path.columns.count(); ++i) {
-        const double h = path.columns.width[static_cast<std::size_t>(i)];
-        compliance_.block(i, 0) += h * terms.curvature_curvature;
-        add_curved(path.columns, i, form, compliance_);
-    }
-    factor_ = compliance_;
-    if (!factor_.factorise()) throw std::logic_error("BeltStress: not positive definite");
-}
+      compliance_(compliance) {}
 
 BeltStress::Shape BeltStress::shape(const Matrix& deflection) const {
     Shape shape;
@@ -128,7 +133,7 @@ BeltModes BeltStress::stress(const BeltModes& strain) const {
     BeltModes stress;
     Matrix all =
         membrane_ * Eigen::Map<const Matrix>(strain.function.data(), strain.function.size(), 1);
-    factor_.solve(all);
+    compliance_.factor.solve(all);
     stress.function = Eigen::Map<Matrix>(all.data(), kTerms, strain.function.cols());
     stress.mean = mean_stiffness() * strain.mean;
     stress.lean = lean_stiffness() * strain.lean;
@@ -139,30 +144,32 @@ void BeltStress::stiffen(const BeltModes& stress, double share, BeltBands& sheet
     const BeltColumns& columns = path_.columns;
     const int n = columns.count(), m = spline_.count();
     // Its work on w_xy^2 - w_xx w_yy, and on the belt's elongation.
-    const Matrix function = share * stress.function;
-    const Matrix along = terms_.along * function, across = terms_.across * function,
-                 twisted = terms_.twisted * function;
     using Band = BeltBands::Band;
-    const auto band = [m](const Matrix& of, int i) {
-        return Eigen::Map<const Band>(of.col(i).data(), m, BeltBands::kDiagonals);
+    Band along(m, BeltBands::kDiagonals), across = along, twisted = along, before = along;
+    const Band even = pull(stress) * terms_.stretched + share * stress.lean * terms_.leaning;
+    before.setZero();
+    const auto add_border = [&](int border, const Band& left, const Band& right) {
+        const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
+        const Band own = square * (even + left + right);
+        if (border < n) sheet.add(border, 0, 1.0, own);
+        if (border > 0) sheet.add(border - 1, 0, 1.0, own);
+        if (border > 0 && border < n) sheet.add(border - 1, 1, -1.0, own);
     };
     for (int i = 0; i < n; ++i) {
+        const Eigen::VectorXd function = share * stress.function.col(i);
+        BeltTerms::sum(terms_.twisted, function, twisted.data());
+        add_border(i, i > 0 ? before : twisted, twisted);
+        before.swap(twisted);
         const std::array<double, 3> k = columns.curvature(i);
         if (k[1] == 0.0) continue;
+        BeltTerms::sum(terms_.along, function, along.data());
+        BeltTerms::sum(terms_.across, function, across.data());
         const double apart = columns.apart(i);
-        sheet.block(i - 1, 1) -= apart * k[0] * band(across, i);
-        sheet.block(i, 0) -= apart * k[1] * (band(along, i) + band(across, i));
-        sheet.block(i, 1) -= apart * k[2] * band(along, i);
+        sheet.add(i - 1, 1, -apart * k[0], across);
+        sheet.add(i, 0, -apart * k[1], along, -apart * k[1], across);
+        sheet.add(i, 1, -apart * k[2], along);
     }
-    const Band even = pull(stress) * terms_.stretched + share * stress.lean * terms_.leaning;
-    for (int border = 0; border <= n; ++border) {
-        const double square = 1.0 / columns.between[static_cast<std::size_t>(border)];
-        const int l = std::max(border - 1, 0), r = std::min(border, n - 1);
-        const Band own = square * (even + band(twisted, l) + band(twisted, r));
-        if (border < n) sheet.block(border, 0) += own;
-        if (border > 0) sheet.block(border - 1, 0) += own;
-        if (border > 0 && border < n) sheet.block(border - 1, 1) -= own;
-    }
+    add_border(n, before, before);
 }
 
 BeltStress::Coupling BeltStress::coupling(const Shape& shape) const {
@@ -211,15 +218,49 @@ BeltStress::Coupling BeltStress::coupling(const Shape& shape) const {
     return coupling;
 }
 
-Eigen::MatrixXd BeltStress::resistance(const Coupling& coupling, const BeltModes& stress) const {
-    const int n = path_.columns.count(), m = spline_.count();
-    Matrix result = pull(stress) * coupling.mean + stress.lean * coupling.lean;
+Eigen::MatrixXd BeltStress::resistance(const Shape& shape, const BeltModes& stress) const {
+    const BeltColumns& columns = path_.columns;
+    const int n = columns.count(), m = spline_.count();
+    const auto places = static_cast<Eigen::Index>(spline_.places().size());
+    const Eigen::Map<const Eigen::ArrayXd> weights(spline_.weights().data(), places);
+    const Eigen::Map<const Eigen::ArrayXd> y(spline_.places().data(), places);
+    // The stress at the places, by their weights: of the function, and along the belt.
+    Eigen::ArrayXXd function(places, n);
     for (int i = 0; i < n; ++i)
-        for (int j = std::max(i - 1, 0); j <= std::min(i + 1, n - 1); ++j)
-            result.col(j) += coupling.function.middleCols((3 * i + j - i + 1) * m, m)
-                                 .topRows<kTerms>()
-                                 .transpose() *
-                             stress.function.col(i);
+        BeltTerms::sum(terms_.by_place, stress.function.col(i), function.col(i).data());
+    const Eigen::ArrayXd along = weights * (pull(stress) + (2.0 / width_ * stress.lean) * y);
+    Matrix result = Matrix::Zero(m, n);
+    Eigen::ArrayXd factors(places);
+    Eigen::VectorXd moments(m);
+    for (int i = 0; i < n; ++i) {
+        const double apart = columns.apart(i), turn = path_.turn[static_cast<std::size_t>(i)];
+        factors = -apart * (turn + shape.xx.col(i)) * function.col(i);
+        terms_.add_moments(Of::kCurvature, factors.data(), result.col(i).data());
+        const std::array<double, 3> k = columns.curvature(i);
+        if (k[1] != 0.0) {
+            factors = -apart * shape.yy.col(i) * function.col(i);
+            moments.setZero();
+            terms_.add_moments(Of::kValue, factors.data(), moments.data());
+            for (int p = 0; p < 3; ++p)
+                result.col(i - 1 + p) += k[static_cast<std::size_t>(p)] * moments;
+        }
+        if (turn == 0.0) continue;
+        const double turned = columns.width[static_cast<std::size_t>(i)] * turn;
+        result.col(i) -= turned * (pull(stress) * terms_.even + stress.lean * terms_.odd);
+    }
+    for (int border = 0; border <= n; ++border) {
+        const Share share = share_of(columns, border);
+        moments.setZero();
+        factors = function.col(share.first);
+        if (share.last != share.first) factors += function.col(share.last);
+        factors *= 2.0 * share.length * shape.xy.col(border);
+        terms_.add_moments(Of::kSlope, factors.data(), moments.data());
+        const double between = columns.between[static_cast<std::size_t>(border)];
+        factors = between * along * shape.x.col(border);
+        terms_.add_moments(Of::kValue, factors.data(), moments.data());
+        if (border < n) result.col(border) += moments / between;
+        if (border > 0) result.col(border - 1) -= moments / between;
+    }
     return result;
 }
 
@@ -230,7 +271,7 @@ void BeltStress::add_to(BlockBanded& matrix, int i, const Coupling& coupling) co
     };
     for (int below = 0; below < std::min(3, n - i); ++below) {
         auto to = matrix.block(i, below);
-        to.topLeftCorner(kTerms, kTerms) -= compliance_.block(i, below) / membrane_;
+        to.topLeftCorner(kTerms, kTerms) -= compliance_.matrix.block(i, below) / membrane_;
         if (below > 1) continue;
         // Rows: deflection of column i + below; columns: function of column i.
         to.bottomLeftCorner(m, kTerms) += from(i, i + below).transpose();

@@ -24,9 +24,17 @@ class BeltStress {
   public:
     static constexpr int kTerms = BeltTerms::kTerms;
 
-    /// `resting`: N/mm along the path itself; `stretching`: N/mm more for each mm of the belt.
+    /// What the stress function gives way by on some columns, times E t, and its factor.
+    struct Compliance {
+        Compliance() = default;
+        Compliance(const BeltTerms& terms, const BeltColumns& columns);
+        BlockBanded matrix, factor;
+    };
+
+    /// `compliance`: on the path's columns; `resting`: N/mm along the path itself; `stretching`:
+    /// N/mm more for each mm of the belt. All that is given has to outlive it.
     BeltStress(const AbrasiveBelt& belt, const BeltTerms& terms, const BeltPath& path,
-               double resting, double stretching, double run_length);
+               const Compliance& compliance, double resting, double stretching, double run_length);
 
     /// A deflection's derivatives at the spline's places: along the belt (x) and across (y), at the
     /// columns' borders and in the columns.
@@ -53,8 +61,8 @@ class BeltStress {
         Eigen::MatrixXd mean, lean;  ///< (splines, columns)
     };
     Coupling coupling(const Shape& shape) const;
-    /// What stresses resist the deflection with, N: (splines, columns).
-    Eigen::MatrixXd resistance(const Coupling& coupling, const BeltModes& stress) const;
+    /// What stresses resist the deflection of that shape with, N: (splines, columns).
+    Eigen::MatrixXd resistance(const Shape& shape, const BeltModes& stress) const;
     /// Adds the rows and columns of the stress function, which come first in each block, to the
     /// blocks in column i.
     void add_to(BlockBanded& matrix, int i, const Coupling& coupling) const;
@@ -67,7 +75,7 @@ class BeltStress {
     const BeltTerms& terms_;
     const BeltSpline& spline_;
     const BeltPath& path_;
-    BlockBanded compliance_, factor_;  // times E t
+    const Compliance& compliance_;
 };
 
 }  // namespace beltgrinding

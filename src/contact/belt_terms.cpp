@@ -67,6 +67,35 @@ void values_at_places(const Part& part, const double* coefficients, double* to) 
     }
 }
 
+/// The splines of an interval side by side, each over all intervals.
+#ifdef BELTGRINDING_CLONES
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void add_place_moments(const Part& part, const double* factors, double* to) {
+    const std::ptrdiff_t n = part.intervals;
+    for (int r = 0; r < kLocal; ++r) {
+        const double *b = part.values + r * n, *f = factors;
+        double* __restrict__ at = to + r;
+        static_assert(kPlaces == 3);
+        for (std::ptrdiff_t k = 0; k < n; ++k)
+            at[k] +=
+                b[k] * f[k] + b[kLocal * n + k] * f[n + k] + b[2 * kLocal * n + k] * f[2 * n + k];
+    }
+}
+
+#ifdef BELTGRINDING_CLONES
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void sum_terms(const double* values, std::ptrdiff_t count, const double* c,
+               double* __restrict__ to) {
+    static_assert(BeltTerms::kTerms == 6);
+    for (std::ptrdiff_t q = 0; q < count; ++q) {
+        const double* v = values + q;
+        to[q] = (v[0] * c[0] + v[count] * c[1]) + (v[2 * count] * c[2] + v[3 * count] * c[3]) +
+                (v[4 * count] * c[4] + v[5 * count] * c[5]);
+    }
+}
+
 }  // namespace
 
 BeltTerms::BeltTerms(double width, const BeltSpline& given) : spline(given) {
@@ -126,6 +155,7 @@ BeltTerms::BeltTerms(double width, const BeltSpline& given) : spline(given) {
             }
         }
     }
+    by_place = weighted.topRows<kTerms>().transpose();
     const Eigen::Index intervals = places / BeltSpline::kPlaces;
     for (Eigen::ArrayXXd& part : parts_) part.resize(intervals, BeltSpline::kPlaces * kLocal);
     for (Eigen::Index q = 0; q < places; ++q) {
@@ -149,6 +179,16 @@ void BeltTerms::moments(Of part, const double* factors, double* to) const {
     if (__builtin_cpu_supports("avx512f")) return moments_512(given, weighted.data(), factors, to);
 #endif
     moments_256(given, weighted.data(), factors, to);
+}
+
+void BeltTerms::add_moments(Of part, const double* factors, double* to) const {
+    const Eigen::ArrayXXd& of = parts_[static_cast<std::size_t>(part)];
+    add_place_moments({of.data(), of.rows()}, factors, to);
+}
+
+void BeltTerms::sum(const Matrix& by_term, const Eigen::Ref<const Eigen::VectorXd>& terms,
+                    double* to) {
+    sum_terms(by_term.data(), by_term.rows(), terms.data(), to);
 }
 
 void BeltTerms::at_places(Of part, const Matrix& coefficients, Eigen::ArrayXXd& to) const {

@@ -24,10 +24,17 @@ struct BeltTerms {
     void moments(Of part, const double* factors, double* to) const;
     /// The same at the places, (places, columns), of what has the coefficients in the columns.
     void at_places(Of part, const Eigen::MatrixXd& coefficients, Eigen::ArrayXXd& to) const;
+    /// Adds the sums of the splines' values or derivatives at the places times `factors`, by
+    /// spline.
+    void add_moments(Of part, const double* factors, double* to) const;
+    /// The sum of what there is by term (columns) times the terms' coefficients.
+    static void sum(const Eigen::MatrixXd& by_term, const Eigen::Ref<const Eigen::VectorXd>& terms,
+                    double* to);
 
     const BeltSpline& spline;
     /// At the spline's places, times their weights; below them, 1 and 2 y / width, the same.
     Terms weighted;
+    Eigen::MatrixXd by_place;   ///< the polynomials of it: (places, terms)
     Terms bent;                 ///< integrals with splines' curvatures
     Eigen::VectorXd even, odd;  ///< integrals of splines, and of them times 2 y / width
     Eigen::MatrixXd value_value, value_curvature, curvature_curvature;  ///< of the polynomials

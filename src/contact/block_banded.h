@@ -46,6 +46,9 @@ class BlockBanded {
     /// are zero.
     void forward(Eigen::Ref<Eigen::MatrixXd> values, int first = 0) const;
     void backward(Eigen::MatrixXd& values) const;
+    /// a' J b, of what `forward` has made.
+    Eigen::MatrixXd products(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                             const Eigen::Ref<const Eigen::MatrixXd>& b) const;
 
   private:
     /// The blocks of a column, one below the other, column by column.

@@ -20,6 +20,13 @@ struct Factor {
         const int two = size * std::min(2, count - i);
         return i + 2 < count ? two + std::min(size, std::max(end + reach, negative)) : two;
     }
+    /// As many, up to whole registers of `lanes` rows from `end` on where the vectors that are
+    /// solved for reach as far.
+    int rows(int i, int end, int lanes) const {
+        const int least = rows(i, end), most = size * (count - i);
+        const int whole = end + (least - end + lanes - 1) / lanes * lanes;
+        return whole <= most ? whole : least;
+    }
     /// Where the columns end that are looked at together with `first`.
     int end(int first) const {
         return first < negative ? std::min(first + kWidest, negative)

@@ -10,6 +10,36 @@ namespace {
 
 constexpr int kEight = 8;  // rows that sums are made of apart
 
+/// The square of the columns from `first` to `end` at the top of a panel, for several right-hand
+/// sides.
+template <int together>
+[[gnu::always_inline]] inline void substitute_square(const double* l, std::ptrdiff_t height,
+                                                     const double* inverse, int first, int end,
+                                                     double* x, std::ptrdiff_t length) {
+    if constexpr (together == kTogether) {
+        static_assert(kTogether == 4);
+        Four own[kWidest];
+        for (int k = first; k < end; ++k)
+            own[k - first] = Four{x[k], x[length + k], x[2 * length + k], x[3 * length + k]};
+        for (int k = first; k < end; ++k) {
+            const double* column = l + k * height;
+            const Four value = own[k - first] *= inverse[k];
+            for (int r = k + 1; r < end; ++r) own[r - first] -= value * column[r];
+        }
+        for (int k = first; k < end; ++k)
+            for (int c = 0; c < together; ++c) x[c * length + k] = own[k - first][c];
+    } else {
+        for (int c = 0; c < together; ++c) {
+            double* own = x + c * length;
+            for (int k = first; k < end; ++k) {
+                const double* column = l + k * height;
+                const double value = own[k] *= inverse[k];
+                for (int r = k + 1; r < end; ++r) own[r] -= value * column[r];
+            }
+        }
+    }
+}
+
 /// Solves by the factor's left half for several right-hand sides, `length` apart.
 template <class Vector, int together>
 [[gnu::always_inline]] inline void substitute_forward(const Factor& factor, double* values,
@@ -22,15 +52,9 @@ template <class Vector, int together>
         double* x = values + std::ptrdiff_t{i} * m;
         for (int first = 0, end = 0; first < m; first = end) {
             end = factor.end(first);
-            for (int c = 0; c < together; ++c) {
-                double* own = x + c * length;
-                for (int k = first; k < end; ++k) {
-                    const double* column = l + k * factor.height;
-                    const double value = own[k] *= inverse[k];
-                    for (int r = k + 1; r < end; ++r) own[r] -= value * column[r];
-                }
-            }
-            const int rows = factor.rows(i, end);
+            substitute_square<together>(l, factor.height, inverse, first, end, x, length);
+            // Whole registers: the panel has zeros below its rows.
+            const int rows = factor.rows(i, end, kLanes);
             int row = end;
             for (; row + kLanes <= rows; row += kLanes) {
                 Vector left[together];
@@ -107,7 +131,7 @@ template <class Vector>
                     ? factor.negative + (end - 1 - factor.negative) / kWidest * kWidest
                     : (end - 1) / kWidest * kWidest;
             const double* columns = l + first * factor.height;
-            const int rows = factor.rows(i, end);
+            const int rows = factor.rows(i, end, kEight);
             double sums[kWidest];
             if (end - first == kWidest)
                 dot_columns<Vector, kWidest>(columns, factor.height, x, end, rows, sums);
@@ -163,6 +187,56 @@ void BlockBanded::backward(Eigen::MatrixXd& values) const {
 #endif
         backward_256(factor, values.col(c).data());
     }
+}
+
+namespace {
+
+template <class Vector>
+[[gnu::always_inline]] inline void product_column(const double* a, std::ptrdiff_t length,
+                                                  int columns, const double* x, int rows,
+                                                  double* to) {
+    int c = 0;
+    for (; c + kTogether <= columns; c += kTogether)
+        dot_columns<Vector, kTogether>(a + c * length, length, x, 0, rows, to + c);
+    for (; c < columns; ++c) dot_columns<Vector, 1>(a + c * length, length, x, 0, rows, to + c);
+}
+
+#ifdef BELTGRINDING_CLONES
+__attribute__((target("avx512f"))) void product_column_512(const double* a, std::ptrdiff_t length,
+                                                           int columns, const double* x, int rows,
+                                                           double* to) {
+    product_column<Eight>(a, length, columns, x, rows, to);
+}
+
+__attribute__((target_clones("avx2", "default")))
+#endif
+void product_column_256(const double* a, std::ptrdiff_t length, int columns, const double* x,
+                        int rows, double* to) {
+    product_column<Four>(a, length, columns, x, rows, to);
+}
+
+}  // namespace
+
+Eigen::MatrixXd BlockBanded::products(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& b) const {
+    Eigen::MatrixXd result(a.cols(), b.cols());
+    std::vector<double> signed_rows(static_cast<std::size_t>(a.rows()));
+    const auto columns = static_cast<int>(a.cols()), rows = static_cast<int>(a.rows());
+    for (Eigen::Index c = 0; c < b.cols(); ++c) {
+        double* x = signed_rows.data();
+        std::copy_n(b.col(c).data(), rows, x);
+        for (int block = 0; block < rows; block += size_)
+            for (int r = block; r < block + negative_; ++r) x[r] = -x[r];
+        double* to = result.col(c).data();
+#ifdef BELTGRINDING_CLONES
+        if (__builtin_cpu_supports("avx512f")) {
+            product_column_512(a.data(), a.outerStride(), columns, x, rows, to);
+            continue;
+        }
+#endif
+        product_column_256(a.data(), a.outerStride(), columns, x, rows, to);
+    }
+    return result;
 }
 
 void BlockBanded::solve(Eigen::MatrixXd& values) const {

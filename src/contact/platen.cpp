@@ -1,6 +1,5 @@
 #include "contact/platen.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "belt_path.h"
 #include "belt_solver.h"
 #include "contact/peak_pressure.h"
+#include "layer_pressure.h"
 #include "surface_under_belt.h"
 
 namespace beltgrinding {
@@ -22,8 +22,6 @@ namespace {
 constexpr double kFlat = 1000.0;          // mm
 constexpr double kFlatThicknesses = 100;  // the same, in thicknesses
 constexpr int kPlatenIterations = 4;      // times those that a problem allows: the layers follow
-constexpr std::size_t kMixed = 3;         // of the last pressures, for the next one
-constexpr double kRegular = 1e-10;        // of their products' diagonal
 constexpr double kSeen = 1e-3;            // mm along a curved platen's path, that the work moves
 constexpr int kMostSeen = 8;              // times that it is seen from there anew
 constexpr double kSpring = 1.4;           // times the layers' stiffness under even pressure
@@ -106,7 +104,7 @@ class LayerBacking final : public BeltBacking {
             },
             nx);
         const double change = (now - pressure_).abs().sum() / std::max(now.sum(), 1e-300);
-        pressure_ = accelerated(now);
+        pressure_ = mixing_.next(pressure_, now);
         follow_pressure();
         return change;
     }
@@ -128,37 +126,6 @@ class LayerBacking final : public BeltBacking {
     }
     /// MPa that the layers bear under a column that touches nothing.
     double borne(std::size_t column) const { return bearing_.empty() ? 0.0 : bearing_[column]; }
-    /// The pressure that is followed next: by Anderson's mixing of the last ones (Journal of the
-    /// ACM 12, 1965), for the springs come to rest by a constant share each time.
-    Eigen::ArrayXd accelerated(const Eigen::ArrayXd& now) {
-        const Eigen::ArrayXd off = now - pressure_;
-        Eigen::ArrayXd next = now;
-        if (last_off_.size() == off.size()) {
-            changes_of_.emplace_back(off - last_off_);
-            changes_.emplace_back(now - last_now_);
-            if (changes_.size() > kMixed) {
-                changes_of_.erase(changes_of_.begin());
-                changes_.erase(changes_.begin());
-            }
-            const auto count = static_cast<Eigen::Index>(changes_.size());
-            Eigen::MatrixXd products(count, count);
-            Eigen::VectorXd right(count);
-            for (Eigen::Index a = 0; a < count; ++a) {
-                const Eigen::ArrayXd& of = changes_of_[static_cast<std::size_t>(a)];
-                right[a] = (of * off).sum();
-                for (Eigen::Index b = 0; b < count; ++b)
-                    products(a, b) = (of * changes_of_[static_cast<std::size_t>(b)]).sum();
-            }
-            products.diagonal() *= 1.0 + kRegular;
-            const Eigen::VectorXd shares = products.ldlt().solve(right);
-            if (shares.allFinite())
-                for (Eigen::Index a = 0; a < count; ++a)
-                    next -= shares[a] * changes_[static_cast<std::size_t>(a)];
-        }
-        last_off_ = off;
-        last_now_ = now;
-        return next.max(0.0);
-    }
     template <class Visit>
     void for_cells(Visit visit, int nx) const {
         for (std::size_t i = 0; i < cell_.size(); ++i) {
@@ -174,9 +141,8 @@ class LayerBacking final : public BeltBacking {
     std::vector<std::uint8_t> on_;  // by column: the platen is there
     std::vector<double> bearing_;   // as `OverPlate::bearing`
     Eigen::ArrayXd pressure_, sunk_, ones_, sunk_at_rest_;
-    // Of the last mixings: what was off, what it became, and how both have changed.
-    Eigen::ArrayXd last_off_, last_now_;
-    std::vector<Eigen::ArrayXd> changes_of_, changes_;
+    // The springs come to rest by a constant share each time.
+    PressureMixing mixing_;
 };
 
 class PreparedPlaten final : public PreparedContact {
@@ -227,7 +193,7 @@ class PreparedPlaten final : public PreparedContact {
         if (warm && problem.force_control) depth = last_.depth;
         BeltState before = warm ? std::move(last_.state) : BeltState{};
         backing.start(static_cast<Eigen::Index>(solver_.rows().size()),
-                      warm ? last_.layers : Eigen::ArrayXd{});
+                      warm ? last_.layers.next() : Eigen::ArrayXd{});
         ContactProblem longer = problem;
         longer.max_iterations = kPlatenIterations * problem.max_iterations;
         std::vector<std::uint8_t> touching;
@@ -274,7 +240,9 @@ class PreparedPlaten final : public PreparedContact {
         solution.peak_pressure = peak_pressure(grid(), solution.pressure, problem.coverage);
         solution.iterations = state.iterations;
         solution.converged = state.converged;
-        last_ = {solution.pressure, std::move(state), backing.pressure(), solution.approach};
+        LastLayers layers = warm ? std::move(last_.layers) : LastLayers{};
+        layers.add(backing.pressure());
+        last_ = {solution.pressure, std::move(state), std::move(layers), solution.approach};
         return solution;
     }
     /// Of a flat platen, whose columns are the grid's.
@@ -311,19 +279,19 @@ class PreparedPlaten final : public PreparedContact {
     OverPlate over_;
     BeltSolver solver_;
     std::unique_ptr<ComplianceOperator> layers_;
-    // Of the last solution: its stress and its layers' pressure, for one that starts from it.
+    // Of the last solution: its stress and its layers' pressure, and the one before's, for one that
+    // starts from it.
     struct Last {
         Eigen::ArrayXd pressure;
         BeltState state;
-        Eigen::ArrayXd layers;
+        LastLayers layers;
         double depth = 0.0;
     } last_;
     struct Memory final : ContactMemory {
         explicit Memory(const Last& given) : last(given) {}
         std::size_t bytes() const override {
-            return static_cast<std::size_t>(last.pressure.size() + last.layers.size()) *
-                       sizeof(double) +
-                   last.state.bytes();
+            return static_cast<std::size_t>(last.pressure.size()) * sizeof(double) +
+                   last.layers.bytes() + last.state.bytes();
         }
         Last last;
     };

@@ -195,6 +195,7 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
     gap.reach.setConstant(rows, n, kNothing);
     gap.cover.setZero(rows, n);
     Normals normals;
+    Eigen::ArrayXd across(rows), facing(rows), reach(rows);
     for (int i = 0; i < n; ++i) {
         const auto c = static_cast<std::size_t>(i);
         if (const double place = path.x[c] / grid_.ds + 0.5 * (grid_.nx - 1);
@@ -203,29 +204,31 @@ BeltGap SurfaceUnderBelt::seen_from(const BeltPath& path, double lift) const {
         const double sine = std::sin(path.angle[c]), cosine = std::cos(path.angle[c]);
         along_normals(path, i, lift, normals);
         for (Eigen::Index k = 0; k < rows; ++k) {
-            double u = 0.0;
-            Height h{};
+            const auto row = static_cast<std::size_t>(k);
             int cell = 0;
-            if (normals.found[static_cast<std::size_t>(k)] != 0) {
+            if (normals.found[row] != 0) {
                 cell = static_cast<int>(std::lround(normals.place[k]));
-                u = normals.u[k];
-                h.slope = normals.slope[k];
-                h.cover =
-                    problem_.coverage[rows_[static_cast<std::size_t>(k)].row * grid_.nx + cell];
+                gap.cover(k, i) = problem_.coverage[rows_[row].row * grid_.nx + cell];
             } else {
-                h = along_normal(static_cast<int>(k), path, i, lift, u);
-                cell = std::clamp(static_cast<int>(std::lround((path.x[c] - u * sine) / grid_.ds +
-                                                               0.5 * (grid_.nx - 1))),
-                                  0, grid_.nx - 1);
+                const Height h = along_normal(static_cast<int>(k), path, i, lift, normals.u[k]);
+                cell = std::clamp(
+                    static_cast<int>(std::lround((path.x[c] - normals.u[k] * sine) / grid_.ds +
+                                                 0.5 * (grid_.nx - 1))),
+                    0, grid_.nx - 1);
+                normals.slope[k] = h.slope;
+                gap.cover(k, i) = h.cover;
             }
-            if (!(h.cover > 0.0)) continue;
-            // The middle surface lies half a thickness off, along the surface's own normal.
-            const double across = slope_(cell, k);
-            const double facing =
-                (cosine + h.slope * sine) / std::sqrt(1.0 + h.slope * h.slope + across * across);
-            if (facing < kSteepest) continue;
-            gap.reach(k, i) = u + half_ / facing;
-            gap.cover(k, i) = h.cover;
+            across[k] = slope_(cell, k);
+        }
+        // The middle surface lies half a thickness off, along the surface's own normal.
+        facing = (cosine + normals.slope * sine) /
+                 (1.0 + normals.slope.square() + across.square()).sqrt();
+        reach = normals.u + half_ / facing;
+        for (Eigen::Index k = 0; k < rows; ++k) {
+            if (gap.cover(k, i) > 0.0 && !(facing[k] < kSteepest))
+                gap.reach(k, i) = reach[k];
+            else
+                gap.cover(k, i) = 0.0;
         }
     }
     return gap;

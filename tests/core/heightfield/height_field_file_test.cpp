@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -6,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <system_error>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/height_field.h"
@@ -97,6 +99,27 @@ TEST_F(HeightFieldFile, AFailedWriteNamesThePathAndLeavesTheOldFile) {
         EXPECT_NE(std::string(error.what()).find("x.h5"), std::string::npos);
     }
     EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(HeightFieldFile, HasTheSameBytesWhereverItIsWritten) {
+    const HeightField field = testing::plate(300.0, 300.0, 1.0, 0.2);  // arrays of several chunks
+    write_hdf5(field, path_, "{}");
+    const std::string whole = bytes();
+    EXPECT_TRUE(hdf5_image(field, "{}") == whole);
+    const int file = ::open(path_.c_str(), O_RDWR | O_TRUNC);
+    EXPECT_FALSE(write_hdf5(field, file, "{}"));
+    ::close(file);
+    EXPECT_TRUE(bytes() == whole);
+}
+
+TEST_F(HeightFieldFile, AFullDiskIsToldAndNoFileStaysOpen) {
+    const HeightField field = testing::plate(300.0, 300.0, 1.0, 0.2);
+    const int full = ::open("/dev/full", O_RDWR);
+    ASSERT_GE(full, 0);
+    EXPECT_EQ(write_hdf5(field, full, "{}"), std::errc::no_space_on_device);
+    ::close(full);
+    write_hdf5(field, path_, "{}");
+    EXPECT_EQ(read_hdf5(path_).height, field.height);
 }
 
 TEST_F(HeightFieldFile, RefusesAnythingElse) {

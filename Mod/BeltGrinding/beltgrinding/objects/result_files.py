@@ -7,7 +7,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from ..base.files import cannot_be_written, write_new
+from ..base.files import cannot_be_written, sum_of, write_new
 from ..base.regular_files import read_regular
 from ..engine import InputError
 from .properties import Output, add_outputs
@@ -38,20 +38,22 @@ def read(obj, name):
 
 
 class Written:
-    """Bytes, by name of property, written to files of a folder of their own, which goes when nobody holds it;
-    may be made in any thread. Raises InputError."""
+    """Contents (as ``files.write_to`` takes them), by name of property, written to files of a folder of their own, which
+    goes when nobody holds it; may be made in any thread. Raises InputError."""
 
     def __init__(self, contents):
         self.folder = tempfile.TemporaryDirectory(prefix="beltgrinding-")
         self.paths = {name: _path(self.folder.name, name) for name in contents}
+        self.sums = {}
         for name, data in contents.items():
             with _written(self.folder.name):
                 write_new(self.paths[name], data, onto_disk=False)  # FreeCAD copies it
-        self.sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+                with open(self.paths[name], "rb") as file:
+                    self.sums[name] = sum_of(file.fileno())["sha256"]
 
 
 def store(obj, contents):
-    """Puts bytes, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
+    """Puts contents, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
     nothing is then changed unless FreeCAD itself fails to copy a file.
     """
     add_outputs(obj, OUTPUTS)

@@ -123,10 +123,11 @@ def files_of(result):
     """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. Raises
     InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
-    files = {"HeightField": result.field.hdf5(json.dumps(job))}
+    files = {"HeightField": lambda file: result.field.hdf5_into(file, json.dumps(job))}
     if result.recording is not None:
         steps = {name: _packed(values) for name, values in result.steps.items()}
-        files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
+        about = json.dumps({"steps": steps})
+        files["Recording"] = lambda file: result.recording.hdf5_into(file, about)
     return result_files.Written(files)
 
 

@@ -5,14 +5,17 @@
 #include <hdf5.h>
 
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
-#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "base/whole_file.h"
 #include "beltgrinding/error.h"
+#include "heightfield/hdf5_storage.h"
 
 namespace beltgrinding::hdf5 {
 
@@ -52,6 +55,17 @@ inline std::unique_lock<std::mutex> hdf5_lock() {
     return lock;
 }
 
+/// What `work` returns, while HDF5 is locked; a FileFault becomes an InputError within `file`.
+template <class Work>
+auto locked(const Fact& file, Work&& work) {
+    const auto lock = hdf5_lock();
+    try {
+        return work();
+    } catch (const FileFault& fault) {
+        throw InputError(fault.fact, {file});
+    }
+}
+
 inline void write_scalar(hid_t file, const char* name, hid_t type, const void* value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -67,25 +81,23 @@ inline void read_scalar(hid_t file, const char* name, hid_t type, void* value) {
             "hdf5.attribute", "its attribute '{name}' is not a number", {{"name", name}});
 }
 
-/// A file's bytes, opened for reading. Nothing of them leads out of them: see `check_inside`.
+/// A file opened for reading. Nothing of it leads out of it: see `open_array`.
 class InputFile {
   public:
     /// Checks that the file has the format `known`, or one from `oldest` on if that is not 0, which
-    /// its attribute `format_name` tells. `image` is copied.
-    InputFile(std::string_view image, const char* format_name, int known, int oldest = 0);
+    /// its attribute `format_name` tells. What `storage` holds must stay.
+    InputFile(std::unique_ptr<Storage> storage, const char* format_name, int known, int oldest = 0);
     operator hid_t() const { return file_; }
-    hsize_t bytes() const { return bytes_; }
+    hsize_t bytes() const { return storage_->size(); }
 
   private:
-    hsize_t bytes_;
+    std::unique_ptr<Storage> storage_;
+    StorageAccess access_;
     Handle file_;
 };
 
-/// The bytes of the file at `path`. Throws FileFault.
-std::string bytes_of(const std::string& path);
-
-/// Writes the bytes to `path`, whole or not at all. Throws FileFault.
-void write_bytes(const std::string& path, const std::string& image);
+/// Opens the regular file at `path`, for a storage of its descriptor. Throws FileFault.
+void open_regular(RegularFile& file, const std::string& path);
 
 /// A data set opened for reading. An external link, a link to another name, data that lie in other
 /// files or behind a filter that HDF5 would load are refused: a file is what its bytes say. Throws
@@ -96,10 +108,19 @@ Handle open_array(const InputFile& file, const char* name);
 /// FileFault.
 Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsize_t row);
 
-/// The bytes of a file that `write(file)` fills, made in memory: a full disk meets us with all
-/// bytes in hand, never HDF5, which then keeps a file open that it cannot close. Without times: the
-/// same data make the same bytes. Throws FileFault.
-std::string image_of(const std::function<void(hid_t)>& write);
+/// What fills a new file.
+using Writer = std::function<void(hid_t)>;
+
+/// The bytes of a file that `write` fills; about `expected` of them. Without times: the same data
+/// make the same bytes. Throws FileFault.
+std::string image_of(const Writer& write, std::size_t expected);
+
+/// The same bytes into an open, empty file, as they are made. Returns why it did not take them.
+/// Throws FileFault for all else.
+std::error_code write_into(int file, const Writer& write);
+
+/// The same bytes to `path`, whole or not at all. Throws FileFault.
+void write_file(const std::string& path, const Writer& write);
 
 /// Writes arrays that follow one another as one data set, rows of `row` values. Throws FileFault.
 template <class T>

@@ -44,9 +44,7 @@ class Memory final : public Storage {
         expect_large_use(bytes_.data(), bytes_.capacity());
     }
     std::uint64_t size() const override { return bytes_.size(); }
-    bool read(std::uint64_t at, std::span<char> to) override {
-        return View(bytes_).read(at, to);
-    }
+    bool read(std::uint64_t at, std::span<char> to) override { return View(bytes_).read(at, to); }
     void write(std::uint64_t at, std::span<const char> from) override {
         if (failed()) return;
         if (at + from.size() > bytes_.size()) resize(at + from.size());

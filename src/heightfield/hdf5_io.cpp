@@ -88,6 +88,32 @@ Handle open_array(const InputFile& file, const char* name) {
     return set;
 }
 
+hsize_t rows_of_chunk(hid_t type, hsize_t row) {
+    return std::max<hsize_t>(1, kChunkBytes / (row * H5Tget_size(type)));
+}
+
+hsize_t rows_of(const InputFile& file, const char* name, hid_t set, hsize_t row) {
+    const Handle space(H5Dget_space(set), H5Sclose);
+    hsize_t dims[2] = {0, 1};
+    const int rank = H5Sget_simple_extent_ndims(space);
+    require(rank == (row == 1 ? 1 : 2), "hdf5.array_shape",
+            "its array '{name}' has the wrong shape", {{"name", name}});
+    H5Sget_simple_extent_dims(space, dims, nullptr);
+    require(dims[1] == row, "hdf5.array_shape", "its array '{name}' has the wrong shape",
+            {{"name", name}});
+    // A broken header must not make us ask for memory that no such file can fill.
+    require(dims[0] <= file.bytes(), "hdf5.array_too_long",
+            "its array '{name}' is longer than the file", {{"name", name}});
+    return dims[0];
+}
+
+hsize_t rows_stored_together(hid_t set) {
+    const Handle creation(H5Dget_create_plist(set), H5Pclose);
+    hsize_t chunk[2] = {0, 0};
+    if (!creation.ok() || H5Pget_layout(creation) != H5D_CHUNKED) return 0;
+    return H5Pget_chunk(creation, 2, chunk) > 0 ? chunk[0] : 0;
+}
+
 Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsize_t row) {
     const int rank = row == 1 ? 1 : 2;
     const hsize_t dims[2] = {rows, row};
@@ -95,8 +121,7 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     bool ok = creation.ok() && H5Pset_obj_track_times(creation, false) >= 0;
     if (rows > 0) {
-        const hsize_t fit = std::max<hsize_t>(1, kChunkBytes / (row * H5Tget_size(type)));
-        const hsize_t chunk[2] = {std::min(rows, fit), row};
+        const hsize_t chunk[2] = {std::min(rows, rows_of_chunk(type, row)), row};
         ok = ok && H5Pset_chunk(creation, rank, chunk) >= 0 && H5Pset_fletcher32(creation) >= 0;
     }
     Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);

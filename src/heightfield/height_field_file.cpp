@@ -24,7 +24,6 @@ void each_array(Field& f, Visit&& visit) {
     visit("height", f.height, H5T_NATIVE_DOUBLE, hsize_t{1});
     visit("face", f.face, H5T_NATIVE_UINT32, hsize_t{1});
     visit("flags", f.flags, H5T_NATIVE_UINT8, hsize_t{1});
-    visit("triangles", f.triangles, H5T_NATIVE_UINT32, hsize_t{3});
 }
 
 /// As `each_array`, of the removal trace.
@@ -49,6 +48,8 @@ void each_finish_array(Finish& f, Visit&& visit) {
     visit("finish_outside", f.outside, H5T_NATIVE_UINT8, hsize_t{1});
 }
 
+constexpr const char* kTriangles = "triangles";
+
 constexpr const char* kFinish = "finish_settled_um";  // where the finish was computed
 constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
 constexpr const char* kHeatMotion = "heat_motion";    // with it
@@ -68,6 +69,10 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
     each_array(field, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
         write_array(file, name, data, type, row);
     });
+    write_rows<Triangle>(file, kTriangles, field.triangles.size(), H5T_NATIVE_UINT32, 3,
+                         [&](std::size_t first, std::span<Triangle> some) {
+                             for (Triangle& triangle : some) triangle = field.triangles[first++];
+                         });
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
     }
@@ -184,6 +189,12 @@ HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
     each_array(field, [&](const char* array, auto& data, hid_t type, hsize_t row) {
         read_array(file, array, data, type, row);
     });
+    read_rows<Triangle>(file, kTriangles, H5T_NATIVE_UINT32, 3,
+                        [&](std::span<const Triangle> some) {
+                            for (const Triangle& triangle : some)
+                                field.triangles.push_back(triangle);
+                        });
+    field.triangles.shrink_to_fit();
     if (H5Lexists(file, kRays, H5P_DEFAULT) > 0) {
         read_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
     }

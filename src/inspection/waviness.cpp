@@ -135,7 +135,6 @@ class Faces {
         take(field_.flags, one.flags);
         take(field_.trace.last, one.trace.last);
         take(field_.trace.dominant, one.trace.dominant);
-        reserve_large(one.triangles, part.triangles);
         for (const std::uint32_t t : std::span(triangle_).subspan(part.triangle, part.triangles)) {
             const Triangle& corners = field_.triangles[t];
             one.triangles.push_back({place_[corners[0]], place_[corners[1]], place_[corners[2]]});

@@ -49,10 +49,9 @@ void in_pieces(std::size_t count, std::size_t size, std::size_t whole, const Fil
 }
 
 /// A binary PLY of `vertex(i)`; `coloured`: also of `colour(i)` and `deviation(i)`.
-template <class Vertex, class Colour, class Deviation>
-void ply(const char* title, std::size_t vertices, Vertex vertex,
-         const std::vector<Triangle>& triangles, bool coloured, Colour colour, Deviation deviation,
-         const FileMemory& memory) {
+template <class Vertex, class Triangles, class Colour, class Deviation>
+void ply(const char* title, std::size_t vertices, Vertex vertex, const Triangles& triangles,
+         bool coloured, Colour colour, Deviation deviation, const FileMemory& memory) {
     const std::string head =
         std::string("ply\nformat binary_little_endian 1.0\ncomment ") + title +
         ", millimetres\nelement vertex " + std::to_string(vertices) +

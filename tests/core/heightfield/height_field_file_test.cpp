@@ -127,7 +127,7 @@ TEST_F(HeightFieldFile, RefusesAnythingElse) {
     overwrite("no HDF5 at all");
     EXPECT_THROW(read_hdf5(path_), InputError);
     HeightField field = testing::plate(2.0, 2.0, 1.0);
-    field.triangles[0][0] = 1000;
+    field.triangles.push_back({0, 1, 1000});
     write_hdf5(field, path_, "");
     EXPECT_THROW(read_hdf5(path_), InputError);
     field = testing::plate(2.0, 2.0, 1.0);

@@ -188,9 +188,11 @@ def apply_stock(field, stock, warnings, context):
     offset = stock["offset_mm"]
     if stock["kind"] == "allowance":
         report = core.apply_allowance(field, stock["allowance_mm"] + offset)
-        # A layer that is moved as a whole: at first order its thickness changes by the shift along the normal.
-        shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
-        added = np.einsum("ij,ij->i", field.normals, shift) if moved else None
+        added = None
+        if moved:
+            # As a whole: at first order its thickness changes by the shift along the normal.
+            shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
+            added = np.einsum("ij,ij->i", field.normals, shift)
     else:
         if stock["kind"] == "mesh":
             mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement, context)

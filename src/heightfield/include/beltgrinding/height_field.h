@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "beltgrinding/geometry.h"
+#include "beltgrinding/packed_triangles.h"
 
 namespace beltgrinding {
 
@@ -118,7 +119,7 @@ struct HeightField {
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
     HeatTrace heat;                   ///< how hot it became where; empty: not computed
     FinishTrace finish;               ///< what finish the passes left; empty: not computed
-    std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
+    PackedTriangles triangles;        ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm
 

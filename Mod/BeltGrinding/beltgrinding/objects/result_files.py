@@ -1,14 +1,13 @@
 """HDF5 files of a result, kept inside the document's file, known by their SHA-256."""
 
 import contextlib
-import hashlib
 import json
 import os
 import tempfile
 from pathlib import Path
 
-from ..base.files import cannot_be_written, sum_of, write_new
-from ..base.regular_files import read_regular
+from ..base.files import cannot_be_read, cannot_be_written, sum_of, write_new
+from ..base.regular_files import open_regular, read_regular
 from ..engine import InputError
 from .properties import Output, add_outputs
 
@@ -18,15 +17,24 @@ OUTPUTS = (Output(SUMS, "String", "Result", "SHA-256 of the files of the result,
 
 
 def read(obj, name):
-    """The bytes of the property ``name`` (App::PropertyFileIncluded); None where it holds no file. Raises
-    InputError where they are not those that were stored with the result.
+    """The bytes of the property ``name``; as ``sound`` else."""
+    path = sound(obj, name)
+    return None if path is None else read_regular(path, LARGEST)
+
+
+def sound(obj, name):
+    """The path of the file of the property ``name`` (App::PropertyFileIncluded); None where it holds none, or one
+    without bytes. Raises InputError where its bytes are not those that were stored with the result.
     """
     path = getattr(obj, name, "")
     if not path or not os.path.exists(path):
         return None
-    data = read_regular(path, LARGEST)
-    kept = _sums(obj).get(name)
-    if kept is not None and kept != hashlib.sha256(data).hexdigest():
+    with open_regular(path, LARGEST) as file:
+        try:
+            found = sum_of(file.fileno())
+        except OSError as error:
+            raise cannot_be_read(path, error) from None
+    if _sums(obj).get(name) not in (None, found["sha256"]):
         raise InputError(
             "objects.not_as_stored",
             "{object}: the file of {property} is not the one of this result: the document is damaged; "
@@ -34,7 +42,7 @@ def read(obj, name):
             object=obj.Label,
             property=name,
         )
-    return data
+    return path if found["bytes"] else None
 
 
 class Written:

@@ -77,8 +77,8 @@ class Simulation(Proxy):
 
     def field(self, obj):
         """core.HeightField of the result; None if there is none."""
-        data = result_files.read(obj, "HeightField")
-        return core.HeightField.from_hdf5_bytes(data, obj.HeightField)[0] if data else None
+        path = result_files.sound(obj, "HeightField")
+        return core.HeightField.from_hdf5(path)[0] if path else None
 
     def recording(self, obj):
         """(core.Recording, steps as in ``Result.steps``) of the result; None if there is none."""

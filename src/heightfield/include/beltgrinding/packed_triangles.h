@@ -27,6 +27,7 @@ class PackedTriangles {
         using pointer = void;                               ///< none
         using reference = Triangle;                         ///< a value
 
+        /// Of no list.
         Iterator() = default;
         /// At the triangle number `at` of `list`, which must outlive it.
         Iterator(const PackedTriangles& list, std::size_t at) : list_(&list), at_(at) {}
@@ -53,6 +54,7 @@ class PackedTriangles {
     using const_iterator = Iterator;  ///< as containers name it
     using value_type = Triangle;      ///< as containers name it
 
+    /// None.
     PackedTriangles() = default;
     /// Of all of `triangles`, in their order.
     explicit PackedTriangles(std::span<const Triangle> triangles);

@@ -71,11 +71,9 @@ struct Job {
 };
 
 void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& context) {
-    std::vector<std::size_t> first(jobs.size() + 1, 0), first_triangle(jobs.size() + 1, 0);
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
+    std::vector<std::size_t> first(jobs.size() + 1, 0);
+    for (std::size_t i = 0; i < jobs.size(); ++i)
         first[i + 1] = first[i] + jobs[i].samples.point.size();
-        first_triangle[i + 1] = first_triangle[i] + jobs[i].samples.triangles.size();
-    }
     const std::size_t n = first.back();
     if (jobs.size() == 1) {
         FaceSamples& s = jobs[0].samples;
@@ -83,7 +81,8 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
         field.normal = std::move(s.normal);
         field.area = std::move(s.area);
         field.flags = std::move(s.flags);
-        field.triangles = std::move(s.triangles);
+        field.triangles = PackedTriangles(s.triangles);
+        s.triangles = {};
         reserve_large(field.face, n);
         field.face.assign(n, static_cast<std::uint32_t>(jobs[0].face));
     } else {
@@ -92,7 +91,6 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
         resize_large(field.area, n);
         resize_large(field.face, n);
         field.flags.resize(n);
-        resize_large(field.triangles, first_triangle.back());
         parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 FaceSamples& s = jobs[i].samples;
@@ -104,12 +102,18 @@ void append_all(std::vector<Job>& jobs, HeightField& field, const RunContext& co
                 std::fill_n(field.face.begin() + at, s.point.size(),
                             static_cast<std::uint32_t>(jobs[i].face));
                 const auto base = static_cast<std::uint32_t>(first[i]);
-                Triangle* out = field.triangles.data() + first_triangle[i];
-                for (const Triangle& t : s.triangles)
-                    *out++ = {t[0] + base, t[1] + base, t[2] + base};
-                s = {};
+                for (Triangle& t : s.triangles) t = {t[0] + base, t[1] + base, t[2] + base};
+                s.point = {};
+                s.normal = {};
+                s.area = {};
+                s.flags = {};
             }
         });
+        for (Job& job : jobs) {  // one list, whose end moves on
+            for (const Triangle& t : job.samples.triangles) field.triangles.push_back(t);
+            job.samples.triangles = {};
+        }
+        field.triangles.shrink_to_fit();
     }
     resize_large(field.stock_height, n);
     resize_large(field.height, n);

@@ -194,7 +194,7 @@ double GapMap::lower_regular(SampleBlocks& blocks, double factor) {
     double removed = 0.0;
     for (std::size_t k = 0; k < placed_count_; ++k) {
         if (free_[k] == 0) continue;
-        SampleBlocks::Block& block = blocks.block(placed_[k].block);
+        SampleBlocks::Block& block = blocks.block_to_lower(placed_[k].block);
         const Lowered lowered = lower_block(block.height.data(), &lowering_[k * kBlockLanes],
                                             block.area.data(), factor, free_[k]);
         blocks.lowered(placed_[k].block, free_[k], lowered.lowest, lowered.highest);

@@ -1,50 +1,52 @@
 #include "heightfield/hdf5_io.h"
 
-#include <malloc.h>
-
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <new>
 #include <system_error>
-
-#include "base/large_memory.h"
-#include "base/whole_file.h"
+#include <utility>
 
 namespace beltgrinding::hdf5 {
 namespace {
 
-constexpr hsize_t kChunkBytes = 1 << 20;     // of an array: a checksum each
-constexpr std::size_t kIncrement = 1 << 20;  // bytes by which a file in memory grows
+constexpr hsize_t kChunkBytes = 1 << 20;  // of an array: a checksum each
 
-/// What cannot be opened: the system's words.
-void require_read(const std::error_code& error) {
-    require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
-            {{"reason", error == std::errc::invalid_argument ? "it is a pipe or a device"
-                                                             : error.message()}});
+/// A storage that did not take what HDF5 wrote.
+void require_written(const std::error_code& error) {
+    require(error != std::errc::not_enough_memory, "hdf5.memory", "does not fit into memory");
+    require(error != std::errc::no_space_on_device, "hdf5.disk_full",
+            "cannot be written; is the disk full?");
+    require(!error, "hdf5.not_written", "cannot be written: {reason}",
+            {{"reason", error.message()}});
 }
 
-Handle in_memory() {
-    Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    require(access.ok() && H5Pset_fapl_core(access, kIncrement, false) >= 0, "hdf5.memory",
-            "does not fit into memory");
-    return access;
-}
-
-Handle open_image(std::string_view image) {
-    const Handle access = in_memory();
-    // HDF5 copies the bytes and does not change them.
-    auto* bytes = const_cast<char*>(image.data());
-    require(H5Pset_file_image(access, bytes, image.size()) >= 0, "hdf5.memory",
-            "does not fit into memory");
-    return {H5Fopen("image", H5F_ACC_RDONLY, access), H5Fclose};
+/// Returns why the storage did not take all.
+std::error_code fill(Storage& storage, const Writer& write) {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    const StorageAccess access(storage);
+    // In the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
+    // damaged ones lead it beyond its memory.
+    require(creation.ok() && access >= 0 && H5Pset_obj_track_times(creation, false) >= 0 &&
+                H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0,
+            "hdf5.memory", "does not fit into memory");
+    try {
+        const Handle file(H5Fcreate("storage", H5F_ACC_TRUNC, creation, access), H5Fclose);
+        require(file.ok(), "hdf5.memory", "does not fit into memory");
+        write(file);
+        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.memory", "does not fit into memory");
+    } catch (const FileFault&) {
+        if (!storage.error()) throw;  // else HDF5 read what it could not write
+    }
+    return storage.error();
 }
 
 }  // namespace
 
-InputFile::InputFile(std::string_view image, const char* format_name, int known, int oldest)
-    : bytes_(image.size()), file_(open_image(image)) {
+InputFile::InputFile(std::unique_ptr<Storage> storage, const char* format_name, int known,
+                     int oldest)
+    : storage_(std::move(storage)),
+      access_(*storage_),
+      file_(access_ >= 0 ? H5Fopen("storage", H5F_ACC_RDONLY, access_) : H5I_INVALID_HID,
+            H5Fclose) {
     require(file_.ok(), "hdf5.no_file", "is no HDF5 file");
     int format = 0;
     read_scalar(file_, format_name, H5T_NATIVE_INT, &format);
@@ -53,18 +55,11 @@ InputFile::InputFile(std::string_view image, const char* format_name, int known,
             {{"format", format}, {"known", known}});
 }
 
-std::string bytes_of(const std::string& path) {
-    std::string bytes;
-    require_read(read_whole(path, bytes));
-    return bytes;
-}
-
-void write_bytes(const std::string& path, const std::string& image) {
-    const std::error_code error = beltgrinding::write_whole(path, image);
-    require(error != std::errc::no_space_on_device, "hdf5.disk_full",
-            "cannot be written; is the disk full?");
-    require(!error, "hdf5.not_written", "cannot be written: {reason}",
-            {{"reason", error.message()}});
+void open_regular(RegularFile& file, const std::string& path) {
+    const std::error_code error = file.open(path);
+    require(!error, "hdf5.not_opened", "cannot be opened: {reason}",
+            {{"reason", error == std::errc::invalid_argument ? "it is a pipe or a device"
+                                                             : error.message()}});
 }
 
 Handle open_array(const InputFile& file, const char* name) {
@@ -93,6 +88,32 @@ Handle open_array(const InputFile& file, const char* name) {
     return set;
 }
 
+hsize_t rows_of_chunk(hid_t type, hsize_t row) {
+    return std::max<hsize_t>(1, kChunkBytes / (row * H5Tget_size(type)));
+}
+
+hsize_t rows_of(const InputFile& file, const char* name, hid_t set, hsize_t row) {
+    const Handle space(H5Dget_space(set), H5Sclose);
+    hsize_t dims[2] = {0, 1};
+    const int rank = H5Sget_simple_extent_ndims(space);
+    require(rank == (row == 1 ? 1 : 2), "hdf5.array_shape",
+            "its array '{name}' has the wrong shape", {{"name", name}});
+    H5Sget_simple_extent_dims(space, dims, nullptr);
+    require(dims[1] == row, "hdf5.array_shape", "its array '{name}' has the wrong shape",
+            {{"name", name}});
+    // A broken header must not make us ask for memory that no such file can fill.
+    require(dims[0] <= file.bytes(), "hdf5.array_too_long",
+            "its array '{name}' is longer than the file", {{"name", name}});
+    return dims[0];
+}
+
+hsize_t rows_stored_together(hid_t set) {
+    const Handle creation(H5Dget_create_plist(set), H5Pclose);
+    hsize_t chunk[2] = {0, 0};
+    if (!creation.ok() || H5Pget_layout(creation) != H5D_CHUNKED) return 0;
+    return H5Pget_chunk(creation, 2, chunk) > 0 ? chunk[0] : 0;
+}
+
 Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsize_t row) {
     const int rank = row == 1 ? 1 : 2;
     const hsize_t dims[2] = {rows, row};
@@ -100,8 +121,7 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     bool ok = creation.ok() && H5Pset_obj_track_times(creation, false) >= 0;
     if (rows > 0) {
-        const hsize_t fit = std::max<hsize_t>(1, kChunkBytes / (row * H5Tget_size(type)));
-        const hsize_t chunk[2] = {std::min(rows, fit), row};
+        const hsize_t chunk[2] = {std::min(rows, rows_of_chunk(type, row)), row};
         ok = ok && H5Pset_chunk(creation, rank, chunk) >= 0 && H5Pset_fletcher32(creation) >= 0;
     }
     Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
@@ -109,82 +129,24 @@ Handle create_array(hid_t file, const char* name, hid_t type, hsize_t rows, hsiz
     return set;
 }
 
-namespace {
-
-/// A file in memory while HDF5 fills it, and what came of it.
-struct Image {
+std::string image_of(const Writer& write, std::size_t expected) {
     std::string bytes;
-    std::size_t room = 0;  // of HDF5's memory
-};
-
-/// HDF5 asks for 1 MiB more each time, which would copy all that is there; it gets twice the room
-/// where that can be had.
-void* grown(void* memory, std::size_t size, H5FD_file_image_op_t /*operation*/, void* image) {
-    std::size_t& room = static_cast<Image*>(image)->room;
-    if (size <= room) return memory;
-    for (const std::size_t wanted : {std::max(size, 2 * room), size}) {
-        void* larger = std::realloc(memory, wanted);
-        if (larger == nullptr) continue;
-        room = wanted;
-        expect_large_use(larger, wanted);
-        return larger;
+    std::unique_ptr<Storage> storage;
+    try {
+        storage = stored_in(bytes, expected);
+    } catch (const std::bad_alloc&) {
+        require(false, "hdf5.memory", "does not fit into memory");
     }
-    return nullptr;
+    require_written(fill(*storage, write));
+    return bytes;
 }
 
-/// What HDF5 hands over when it closes a file in memory. (H5Fget_file_image of 1.10 changes a flag
-/// below the superblock's checksum: such a file cannot be opened.)
-herr_t keep_image(void* memory, H5FD_file_image_op_t operation, void* image) {
-    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE && memory) {
-        constexpr std::size_t kEndOfFile = 28, kSuperblock = 48;  // of version 3, in bytes
-        std::uint64_t size = 0;
-        const auto* begin = static_cast<const char*>(memory);
-        const std::size_t held = malloc_usable_size(memory);
-        if (held >= kSuperblock) std::memcpy(&size, begin + kEndOfFile, sizeof size);
-        if (size <= held) {
-            try {
-                std::string& bytes = static_cast<Image*>(image)->bytes;
-                bytes.reserve(size);
-                expect_large_use(bytes.data(), size);
-                bytes.assign(begin, size);
-            } catch (const std::bad_alloc&) {  // through C; an empty image says it
-            }
-        }
-    }
-    std::free(memory);
-    return 0;
+std::error_code write_into(int file, const Writer& write) {
+    return fill(*stored_in(file), write);
 }
 
-void* same(void* image) {
-    return image;
-}
-
-herr_t nothing_to_free(void* /*image*/) {
-    return 0;
-}
-
-}  // namespace
-
-std::string image_of(const std::function<void(hid_t)>& write) {
-    Image image;
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    const Handle access = in_memory();
-    H5FD_file_image_callbacks_t calls{nullptr, nullptr,         grown, keep_image,
-                                      same,    nothing_to_free, &image};
-    // In the format of 1.10, whose headers have checksums: HDF5 trusts those of older formats, and
-    // damaged ones lead it beyond its memory.
-    require(creation.ok() && H5Pset_obj_track_times(creation, false) >= 0 &&
-                H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0 &&
-                H5Pset_file_image_callbacks(access, &calls) >= 0,
-            "hdf5.memory", "does not fit into memory");
-    {
-        const Handle file(H5Fcreate("image", H5F_ACC_TRUNC, creation, access), H5Fclose);
-        require(file.ok(), "hdf5.memory", "does not fit into memory");
-        write(file);
-        require(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "hdf5.memory", "does not fit into memory");
-    }
-    require(!image.bytes.empty(), "hdf5.memory", "does not fit into memory");
-    return std::move(image.bytes);
+void write_file(const std::string& path, const Writer& write) {
+    require_written(write_whole(path, [&](int file) { return write_into(file, write); }));
 }
 
 }  // namespace beltgrinding::hdf5

@@ -46,7 +46,7 @@ std::size_t HeightField::bytes() const {
            face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
            (height_sd.capacity() + measured.capacity() + heat.rise.capacity()) * sizeof(float) +
            heat.motion.capacity() * sizeof(std::uint32_t) + trace.bytes() + finish.bytes() +
-           triangles.capacity() * sizeof(Triangle);
+           triangles.bytes();
 }
 
 }  // namespace beltgrinding

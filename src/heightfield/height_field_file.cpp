@@ -11,7 +11,8 @@ namespace {
 
 using namespace hdf5;
 
-constexpr int kFormat = 1;  // of the file; a reader refuses newer ones
+constexpr int kFormat = 1;                    // of the file; a reader refuses newer ones
+constexpr std::size_t kOtherBytes = 1 << 16;  // of a file, beside its arrays, about
 
 /// The arrays of a field with their names, types and row lengths, for reading and writing alike.
 template <class Field, class Visit>
@@ -23,7 +24,6 @@ void each_array(Field& f, Visit&& visit) {
     visit("height", f.height, H5T_NATIVE_DOUBLE, hsize_t{1});
     visit("face", f.face, H5T_NATIVE_UINT32, hsize_t{1});
     visit("flags", f.flags, H5T_NATIVE_UINT8, hsize_t{1});
-    visit("triangles", f.triangles, H5T_NATIVE_UINT32, hsize_t{3});
 }
 
 /// As `each_array`, of the removal trace.
@@ -48,6 +48,8 @@ void each_finish_array(Finish& f, Visit&& visit) {
     visit("finish_outside", f.outside, H5T_NATIVE_UINT8, hsize_t{1});
 }
 
+constexpr const char* kTriangles = "triangles";
+
 constexpr const char* kFinish = "finish_settled_um";  // where the finish was computed
 constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
 constexpr const char* kHeatMotion = "heat_motion";    // with it
@@ -67,6 +69,10 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
     each_array(field, [&](const char* name, const auto& data, hid_t type, hsize_t row) {
         write_array(file, name, data, type, row);
     });
+    write_rows<Triangle>(file, kTriangles, field.triangles.size(), H5T_NATIVE_UINT32, 3,
+                         [&](std::size_t first, std::span<Triangle> some) {
+                             for (Triangle& triangle : some) triangle = field.triangles[first++];
+                         });
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
     }
@@ -174,78 +180,88 @@ void check(const HeightField& f) {
     }
 }
 
+/// A field of a file, checked. Throws FileFault.
+HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
+    const InputFile file(std::move(storage), "format", kFormat);
+    HeightField field;
+    read_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
+    read_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
+    each_array(field, [&](const char* array, auto& data, hid_t type, hsize_t row) {
+        read_array(file, array, data, type, row);
+    });
+    read_rows<Triangle>(file, kTriangles, H5T_NATIVE_UINT32, 3,
+                        [&](std::span<const Triangle> some) {
+                            for (const Triangle& triangle : some)
+                                field.triangles.push_back(triangle);
+                        });
+    field.triangles.shrink_to_fit();
+    if (H5Lexists(file, kRays, H5P_DEFAULT) > 0) {
+        read_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
+    }
+    if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
+        read_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
+    }
+    if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
+        read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+    }
+    if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
+        each_trace_array(field.trace, [&](const char* array, auto& data, hid_t type) {
+            read_array(file, array, data, type, 1);
+        });
+    }
+    if (H5Lexists(file, kHeat, H5P_DEFAULT) > 0) {
+        read_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
+        read_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
+    }
+    if (H5Lexists(file, kFinish, H5P_DEFAULT) > 0) {
+        each_finish_array(field.finish,
+                          [&](const char* array, auto& data, hid_t type, hsize_t row) {
+                              read_array(file, array, data, type, row);
+                          });
+    }
+    check(field);
+    check(field.trace, field.size());
+    check(field.finish, field.size());
+    check(field.heat, field.size());
+    if (attributes != nullptr) *attributes = read_text(file, "attributes");
+    return field;
+}
+
+/// About how many bytes a file has.
+std::size_t expected(const HeightField& field) {
+    return field.bytes() + field.bytes() / 64 + kOtherBytes;
+}
+
+Writer writer(const HeightField& field, const std::string& attributes) {
+    return [&](hid_t file) { write_all(field, file, attributes); };
+}
+
 }  // namespace
 
 std::string hdf5_image(const HeightField& field, const std::string& attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        return image_of([&](hid_t file) { write_all(field, file, attributes); });
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within("HDF5")});
-    }
+    return locked(within("HDF5"),
+                  [&] { return image_of(writer(field, attributes), expected(field)); });
 }
 
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        write_bytes(path, image_of([&](hid_t file) { write_all(field, file, attributes); }));
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(path)});
-    }
+    locked(within(path), [&] { write_file(path, writer(field, attributes)); });
+}
+
+std::error_code write_hdf5(const HeightField& field, int file, const std::string& attributes) {
+    return locked(within("HDF5"), [&] { return write_into(file, writer(field, attributes)); });
 }
 
 HeightField read_hdf5(const std::string& path, std::string* attributes) {
-    try {
-        return read_hdf5_image(bytes_of(path), path, attributes);
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(path)});
-    }
+    return locked(within(path), [&] {
+        RegularFile file;
+        open_regular(file, path);
+        return read(stored_in(file.number()), attributes);
+    });
 }
 
 HeightField read_hdf5_image(std::string_view image, const std::string& name,
                             std::string* attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        const InputFile file(image, "format", kFormat);
-        HeightField field;
-        read_scalar(file, "spacing_mm", H5T_NATIVE_DOUBLE, &field.spacing);
-        read_scalar(file, "depth_mm", H5T_NATIVE_DOUBLE, &field.depth);
-        each_array(field, [&](const char* array, auto& data, hid_t type, hsize_t row) {
-            read_array(file, array, data, type, row);
-        });
-        if (H5Lexists(file, kRays, H5P_DEFAULT) > 0) {
-            read_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
-        }
-        if (H5Lexists(file, kMeasured, H5P_DEFAULT) > 0) {
-            read_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
-        }
-        if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
-            read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
-        }
-        if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
-            each_trace_array(field.trace, [&](const char* array, auto& data, hid_t type) {
-                read_array(file, array, data, type, 1);
-            });
-        }
-        if (H5Lexists(file, kHeat, H5P_DEFAULT) > 0) {
-            read_array(file, kHeat, field.heat.rise, H5T_NATIVE_FLOAT, 1);
-            read_array(file, kHeatMotion, field.heat.motion, H5T_NATIVE_UINT32, 1);
-        }
-        if (H5Lexists(file, kFinish, H5P_DEFAULT) > 0) {
-            each_finish_array(field.finish,
-                              [&](const char* array, auto& data, hid_t type, hsize_t row) {
-                                  read_array(file, array, data, type, row);
-                              });
-        }
-        check(field);
-        check(field.trace, field.size());
-        check(field.finish, field.size());
-        check(field.heat, field.size());
-        if (attributes != nullptr) *attributes = read_text(file, "attributes");
-        return field;
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(name)});
-    }
+    return locked(within(name), [&] { return read(stored_in(image), attributes); });
 }
 
 }  // namespace beltgrinding

@@ -105,6 +105,15 @@ bool SampleBlocks::may_meet(std::uint32_t number, const WheelReach& reach) const
     return distance - extent(across.dot(b.normal) / distance) <= reach.radius;
 }
 
+SampleBlocks::Block& SampleBlocks::block_to_lower(std::uint32_t number) {
+    Block& block = blocks_[number];
+    if (changed_[number] == 0) {  // to be noted as the next change
+        if (before_.size() == changes_.size()) before_.emplace_back();
+        before_[changes_.size()] = block.height;
+    }
+    return block;
+}
+
 void SampleBlocks::lowered(std::uint32_t number, std::uint64_t lanes, double lowest,
                            double highest) {
     bounds_[number].lowest = static_cast<float>(lowest) - kRounding;
@@ -115,7 +124,7 @@ void SampleBlocks::lowered(std::uint32_t number, std::uint64_t lanes, double low
 void SampleBlocks::lower(std::size_t position, double depth) {
     const auto number = static_cast<std::uint32_t>(position / kLanes);
     const std::size_t lane = position % kLanes;
-    double& height = blocks_[number].height[lane];
+    double& height = block_to_lower(number).height[lane];
     height -= depth;
     Bound& bound = bounds_[number];
     bound.lowest = std::min(bound.lowest, static_cast<float>(height) - kRounding);
@@ -123,7 +132,8 @@ void SampleBlocks::lower(std::size_t position, double depth) {
 }
 
 void SampleBlocks::note(std::uint32_t number, std::uint64_t lanes) {
-    if (changed_[number] == 0 && lanes != 0) changes_.push_back({number, 0});
+    if (changed_[number] == 0 && lanes != 0)
+        changes_.push_back({number, static_cast<std::uint32_t>(changes_.size()), 0});
     changed_[number] |= lanes;
     const Bound& bound = bounds_[number];
     if (!(bound.lowest < bound.bottom)) return;

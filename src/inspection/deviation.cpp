@@ -67,7 +67,7 @@ double stepped(double t, int bands) {
     return std::min(step, bands - 1.0) / (bands - 1.0);
 }
 
-void validate(const Tolerance& tolerance) {
+void refuse_no_band(const Tolerance& tolerance) {
     if (!std::isfinite(tolerance.lower) || !std::isfinite(tolerance.upper) ||
         tolerance.lower > tolerance.upper) {
         throw InputError("inspection.tolerance",
@@ -105,7 +105,7 @@ void add_uncertainty(const HeightField& field, const Tolerance& tolerance,
 }  // namespace
 
 DeviationStatistics deviation_statistics(const HeightField& field, const Tolerance& tolerance) {
-    validate(tolerance);
+    refuse_no_band(tolerance);
     DeviationStatistics s;
     s.samples = field.size();
     std::vector<std::uint32_t> inspected;
@@ -172,6 +172,10 @@ std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double 
     return colours;
 }
 
+void ColourScale::validate() const {
+    refuse_no_band(tolerance);
+}
+
 std::uint32_t ColourScale::colour(double deviation) const {
     if (!std::isfinite(deviation)) return missed_colour();
     const auto step = [this](double t) { return bands > 0 ? stepped(t, bands) : t; };
@@ -191,7 +195,7 @@ std::uint32_t ColourScale::missed_colour() const {
 }
 
 std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale) {
-    validate(scale.tolerance);
+    scale.validate();
     std::vector<std::uint32_t> colours(field.size());
     parallel_blocks(field.size(), kSamplesOfTask, {}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -72,59 +72,81 @@ class Feed {
     std::vector<Vec3> direction_;
 };
 
-/// One face of a field on its own.
-struct Face {
-    HeightField field;
-    RemovalTrace trace;
-};
-
-std::vector<Face> split(const HeightField& field) {
-    const std::uint32_t last =
-        field.face.empty() ? 0 : *std::max_element(field.face.begin(), field.face.end());
-    std::vector<std::size_t> samples(std::size_t{last} + 1, 0), triangles(samples.size(), 0);
-    for (const std::uint32_t face : field.face) ++samples[face];
-    for (const Triangle& t : field.triangles) ++triangles[field.face[t[0]]];
-    std::vector<std::uint32_t> slot(samples.size(), 0), index(field.size());
-    std::vector<Face> faces;
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        const std::uint32_t number = field.face[i];
-        std::uint32_t& at = slot[number];
-        if (at == 0) {
-            faces.emplace_back();
-            HeightField& f = faces.back().field;
-            f.spacing = field.spacing;
-            reserve_large(f.point, samples[number]);
-            reserve_large(f.normal, samples[number]);
-            reserve_large(f.stock_height, samples[number]);
-            reserve_large(f.height, samples[number]);
-            reserve_large(f.face, samples[number]);
-            f.flags.reserve(samples[number]);
-            reserve_large(f.triangles, triangles[number]);
-            reserve_large(faces.back().trace.last, samples[number]);
-            reserve_large(faces.back().trace.dominant, samples[number]);
-            at = static_cast<std::uint32_t>(faces.size());
+/// The faces of a field, each of which is made a field of its own when it is asked for.
+class Faces {
+  public:
+    explicit Faces(const HeightField& field) : field_(field) {
+        const std::uint32_t last = *std::max_element(field.face.begin(), field.face.end());
+        std::vector<std::size_t> samples(std::size_t{last} + 1, 0), triangles(samples.size(), 0);
+        for (const std::uint32_t face : field.face) ++samples[face];
+        for (const Triangle& t : field.triangles) ++triangles[field.face[t[0]]];
+        std::vector<std::size_t> next(samples.size()), next_triangle(samples.size());
+        Part at{};
+        for (std::size_t face = 0; face < samples.size(); ++face) {
+            if (samples[face] == 0) continue;
+            next[face] = at.sample;
+            next_triangle[face] = at.triangle;
+            at.samples = samples[face];
+            at.triangles = triangles[face];
+            parts_.push_back(at);
+            at.sample += at.samples;
+            at.triangle += at.triangles;
         }
-        Face& face = faces[at - 1];
-        HeightField& f = face.field;
-        index[i] = static_cast<std::uint32_t>(f.size());
-        f.point.push_back(field.point[i]);
-        f.normal.push_back(field.normal[i]);
-        f.stock_height.push_back(field.stock_height[i]);
-        f.height.push_back(field.height[i]);
-        f.face.push_back(field.face[i]);
-        f.flags.push_back(field.flags[i]);
-        face.trace.last.push_back(field.trace.last[i]);
-        face.trace.dominant.push_back(field.trace.dominant[i]);
+        if (size() == 1) return;
+        resize_large(sample_, field.size());
+        resize_large(place_, field.size());
+        resize_large(triangle_, field.triangles.size());
+        std::vector<std::size_t> first(next);
+        for (std::uint32_t i = 0; i < field.size(); ++i) {
+            const std::uint32_t face = field.face[i];
+            place_[i] = static_cast<std::uint32_t>(next[face] - first[face]);
+            sample_[next[face]++] = i;
+        }
+        for (std::uint32_t t = 0; t < field.triangles.size(); ++t)
+            triangle_[next_triangle[field.face[field.triangles[t][0]]]++] = t;
     }
-    for (const Triangle& t : field.triangles) {
-        faces[slot[field.face[t[0]]] - 1].field.triangles.push_back(
-            {index[t[0]], index[t[1]], index[t[2]]});
+    std::size_t size() const { return parts_.size(); }
+
+    /// What `work(field)` returns of the `number`th face, by ascending numbers of faces: a field of
+    /// nothing else, with what profiles ask for.
+    template <class Work>
+    auto with(std::size_t number, Work&& work) const {
+        return size() == 1 ? work(field_) : work(only(parts_[number]));
     }
-    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-        return a.field.face.front() < b.field.face.front();
-    });
-    return faces;
-}
+
+  private:
+    struct Part {
+        std::size_t sample, samples, triangle, triangles;  // in the lists below
+    };
+
+    HeightField only(const Part& part) const {
+        HeightField one;
+        one.spacing = field_.spacing;
+        const auto samples = std::span(sample_).subspan(part.sample, part.samples);
+        const auto take = [&samples](const auto& from, auto& to) {
+            reserve_large(to, samples.size());
+            for (const std::uint32_t i : samples) to.push_back(from[i]);
+        };
+        take(field_.point, one.point);
+        take(field_.normal, one.normal);
+        take(field_.stock_height, one.stock_height);
+        take(field_.height, one.height);
+        take(field_.face, one.face);
+        take(field_.flags, one.flags);
+        take(field_.trace.last, one.trace.last);
+        take(field_.trace.dominant, one.trace.dominant);
+        for (const std::uint32_t t : std::span(triangle_).subspan(part.triangle, part.triangles)) {
+            const Triangle& corners = field_.triangles[t];
+            one.triangles.push_back({place_[corners[0]], place_[corners[1]], place_[corners[2]]});
+        }
+        return one;
+    }
+
+    const HeightField& field_;
+    std::vector<Part> parts_;
+    std::vector<std::uint32_t> sample_, triangle_;  // face by face, each ascending
+    std::vector<std::uint32_t> place_;              // of each sample in its face
+};
 
 /// A profile of one face, in one direction.
 struct Profile {
@@ -134,9 +156,9 @@ struct Profile {
 
 class FaceProfiles {
   public:
-    FaceProfiles(const Face& face, const Feed& feed)
-        : face_(face), feed_(feed), index_(face.field) {
-        for (std::uint32_t i = 0; i < face.field.size(); ++i) {
+    FaceProfiles(const HeightField& face, const Feed& feed)
+        : face_(face), feed_(feed), index_(face) {
+        for (std::uint32_t i = 0; i < face.size(); ++i) {
             if (feed_at(i)) ground_.push_back(i);
         }
     }
@@ -153,16 +175,16 @@ class FaceProfiles {
     }
 
   private:
-    double reach() const { return kNearest * face_.field.spacing; }
+    double reach() const { return kNearest * face_.spacing; }
     std::optional<Vec3> feed_at(std::uint32_t i) const {
-        if ((face_.field.flags[i] & kMissed) != 0) return {};
-        return feed_.direction(face_.trace.dominant[i], face_.field.normal[i].cast<double>());
+        if ((face_.flags[i] & kMissed) != 0) return {};
+        return feed_.direction(face_.trace.dominant[i], face_.normal[i].cast<double>());
     }
     std::optional<std::uint32_t> nearest(const PointGrid& grid, const Vec3& p) const {
         std::optional<std::uint32_t> best;
         grid.near(p, [&](std::uint32_t i) {
             const auto distance = [&](std::uint32_t j) {
-                return (face_.field.point[j] - p).squaredNorm();
+                return (face_.point[j] - p).squaredNorm();
             };
             if (!best || distance(i) < distance(*best)) best = i;
         });
@@ -170,14 +192,14 @@ class FaceProfiles {
     }
     Profile through(std::uint32_t seed, bool along) const;
 
-    const Face& face_;
+    const HeightField& face_;
     const Feed& feed_;
     SectionIndex index_;
     std::vector<std::uint32_t> ground_;  // samples whose feed is known
 };
 
 Profile FaceProfiles::through(std::uint32_t seed, bool along) const {
-    const Vec3 p = face_.field.point[seed], n = face_.field.normal[seed].cast<double>();
+    const Vec3 p = face_.point[seed], n = face_.normal[seed].cast<double>();
     const Vec3 feed = *feed_at(seed);
     Section section;
     try {
@@ -198,7 +220,7 @@ Profile FaceProfiles::through(std::uint32_t seed, bool along) const {
     const SectionPiece& piece = pieces[best];
     const std::size_t count = piece.point.size();
     // The profile lies in the plane: only samples near that can be near the profile.
-    const PointGrid grid(face_.field.point,
+    const PointGrid grid(face_.point,
                          index_.near_plane(section.origin, section.normal, kOffPlane * reach()),
                          reach());
     // The motion that was last on point i, if the profile may go there.
@@ -316,10 +338,10 @@ std::optional<WavinessFigures> figures(const std::vector<Profile>& profiles,
     return result;
 }
 
-FaceWaviness of_face(const Face& face, const Feed& feed, const RunContext& context) {
+FaceWaviness of_face(const HeightField& face, const Feed& feed, const RunContext& context) {
     FaceWaviness result;
-    result.face = face.field.face.front();
-    const double spacing = face.field.spacing;
+    result.face = face.face.front();
+    const double spacing = face.spacing;
     const FaceProfiles all(face, feed);
     const std::vector<Profile> across = all.profiles(false, context);
     std::vector<double> widths;
@@ -388,10 +410,12 @@ std::vector<FaceWaviness> waviness(const HeightField& field, const std::vector<M
         return result;
     }
     const Feed feed(ends);
-    const std::vector<Face> faces = split(field);
+    const Faces faces(field);
     result.resize(faces.size());
     parallel_blocks(faces.size(), 1, context, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) result[k] = of_face(faces[k], feed, context);
+        for (std::size_t k = begin; k < end; ++k)
+            result[k] = faces.with(
+                k, [&](const HeightField& face) { return of_face(face, feed, context); });
     });
     return result;
 }

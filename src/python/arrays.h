@@ -6,12 +6,16 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cerrno>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/large_memory.h"
+#include "base/whole_file.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/geometry.h"
 
@@ -44,24 +48,63 @@ py::array_t<Scalar> own(std::vector<Scalar>&& data) {
     return py::array_t<Scalar>(static_cast<py::ssize_t>(moved->size()), moved->data(), owner);
 }
 
-/// Python bytes that `write` fills where they lie: it is given a function that takes how many they
-/// are and gives their memory. It runs without Python's lock.
+/// Python bytes that `write` fills where they lie: it is given a function that gives the memory of
+/// the next so many, of how many in all. It runs without Python's lock.
 template <class Write>
 py::bytes bytes_from(Write&& write) {
     py::object made;
     {
         const py::gil_scoped_release release;
-        write([&made](std::size_t size) {
-            const py::gil_scoped_acquire lock;
-            made = py::reinterpret_steal<py::object>(
-                PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(size)));
-            if (!made) throw py::error_already_set();
-            char* const memory = PyBytes_AS_STRING(made.ptr());
-            expect_large_use(memory, size);
-            return memory;
+        write([&made, next = static_cast<char*>(nullptr)](std::size_t size,
+                                                          std::size_t whole) mutable {
+            if (next == nullptr) {
+                const py::gil_scoped_acquire lock;
+                made = py::reinterpret_steal<py::object>(
+                    PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(whole)));
+                if (!made) throw py::error_already_set();
+                next = PyBytes_AS_STRING(made.ptr());
+                expect_large_use(next, whole);
+            }
+            return std::exchange(next, next + size);
         });
     }
     return py::reinterpret_borrow<py::bytes>(made);
+}
+
+/// Calls `write`, which returns why a file did not take what it was given, without Python's lock;
+/// raises OSError of that.
+template <class Write>
+void raise_unless_written(Write&& write) {
+    std::error_code error;
+    {
+        const py::gil_scoped_release release;
+        error = write();
+    }
+    if (!error) return;
+    errno = error.value();
+    PyErr_SetFromErrno(PyExc_OSError);
+    throw py::error_already_set();
+}
+
+/// As `bytes_from`, but to an open file, by its descriptor, a piece at a time. Raises OSError.
+template <class Write>
+void bytes_into(int file, Write&& write) {
+    raise_unless_written([&] {
+        std::vector<char> piece;
+        std::size_t filled = 0;
+        std::error_code error;
+        const auto end_piece = [&] {
+            if (!error) error = write_all(file, {piece.data(), filled});
+        };
+        write([&](std::size_t size, std::size_t /*whole*/) {
+            end_piece();
+            if (size > piece.size()) piece.resize(size);
+            filled = size;
+            return piece.data();
+        });
+        end_piece();
+        return error;
+    });
 }
 
 /// A rigid transform from a 4 x 4 matrix; `name` stands for it in messages, after `context`.

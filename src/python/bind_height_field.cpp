@@ -54,7 +54,18 @@ void bind_height_field(py::module_& m) {
         .BELTGRINDING_VIEW("measured", measured, float, 1)
         .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
         .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
-        .BELTGRINDING_VIEW("triangles", triangles, std::uint32_t, 3)
+        .def_property_readonly(
+            "triangles",
+            [](const HeightField& field) {
+                py::array_t<std::uint32_t> all(
+                    {static_cast<py::ssize_t>(field.triangles.size()), py::ssize_t{3}});
+                std::uint32_t* out = all.mutable_data();
+                for (const Triangle& triangle : field.triangles)
+                    out = std::copy(triangle.begin(), triangle.end(), out);
+                all.attr("flags").attr("writeable") = false;
+                return all;
+            },
+            "(m, 3) uint32 between samples; unpacked at each look, unlike the other arrays.")
         .def_property_readonly(
             "trace",
             [](const py::object& self) -> py::object {

@@ -134,6 +134,19 @@ void bind_inspection(py::module_& m) {
         py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
         py::arg("ground") = true, py::arg("run") = "");
     m.def(
+        "deviation_ply_into",
+        [](int file, const HeightField& field, double lower, double upper, double limit,
+           bool ground, const std::string& run) {
+            const ColourScale scale = scale_of(lower, upper, limit);
+            bytes_into(file, [&](const FileMemory& memory) {
+                deviation_ply(field, scale, ground, run, memory);
+            });
+        },
+        py::arg("file"), py::arg("field"), py::arg("lower"), py::arg("upper"), py::arg("limit"),
+        py::arg("ground") = true, py::arg("run") = "",
+        "The bytes of deviation_ply to an open file, by its descriptor, a piece at a time. Raises "
+        "OSError.");
+    m.def(
         "mesh_ply",
         [](const HeightField& field, bool ground) {
             return bytes_from([&](const FileMemory& memory) { mesh_ply(field, ground, memory); });

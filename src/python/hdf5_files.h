@@ -20,9 +20,9 @@ inline py::bytes large_bytes(const std::string& image) {
     return py::reinterpret_steal<py::bytes>(made);
 }
 
-/// Binds the four ways between an object and an HDF5 file: `write_hdf5`, `hdf5`, `from_hdf5`,
-/// `from_hdf5_bytes`. `read(path, attributes*)`, `read_image(bytes, name, attributes*)`. Python's
-/// lock is free while they work.
+/// Binds the ways between an object and an HDF5 file: `write_hdf5`, `hdf5_into`, `hdf5`,
+/// `from_hdf5`, `from_hdf5_bytes`. `read(path, attributes*)`, `read_image(bytes, name,
+/// attributes*)`. Python's lock is free while they work.
 template <class T, class Class, class Read, class ReadImage>
 void bind_hdf5(Class& bound, const char* returns, Read read, ReadImage read_image) {
     bound
@@ -33,6 +33,14 @@ void bind_hdf5(Class& bound, const char* returns, Read read, ReadImage read_imag
                 write_hdf5(object, path, attributes);
             },
             py::arg("path"), py::arg("attributes") = "")
+        .def(
+            "hdf5_into",
+            [](const T& object, int file, const std::string& attributes) {
+                raise_unless_written([&] { return write_hdf5(object, file, attributes); });
+            },
+            py::arg("file"), py::arg("attributes") = "",
+            "The bytes that write_hdf5 writes, to an open, empty file, by its descriptor, as they "
+            "are made. Raises OSError.")
         .def(
             "hdf5",
             [](const T& object, const std::string& attributes) {

@@ -50,14 +50,17 @@ Influence Influence::grouped(std::span<const std::uint32_t> group, std::size_t c
 void InfluenceKeeper::remove(const SampleBlocks& blocks,
                              std::span<const SampleBlocks::Change> changes, std::uint32_t motion) {
     begin(motion);
-    for_changed(changes, [&](std::size_t position) {
-        const std::uint32_t s = blocks.sample(position);
-        const double height = blocks.height(position), removed = height_[s] - height;
-        if (!(removed > 0.0)) return;  // lost in rounding
-        height_[s] = height;
-        if (removed_[s] == 0.0) touched_.push_back(s);
-        removed_[s] += removed;
-    });
+    for (const SampleBlocks::Change& change : changes) {
+        const auto& before = blocks.before(change);
+        for_changed({&change, 1}, [&](std::size_t position) {
+            const std::uint32_t s = blocks.sample(position);
+            const double removed =
+                before[position % SampleBlocks::kLanes] - blocks.height(position);
+            if (!(removed > 0.0)) return;  // lost in rounding
+            if (removed_[s] == 0.0) touched_.push_back(s);
+            removed_[s] += removed;
+        });
+    }
 }
 
 void InfluenceKeeper::add(std::uint32_t sample, double amount, std::uint32_t motion) {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "beltgrinding/simulation.h"
@@ -13,13 +12,10 @@ namespace beltgrinding {
 /// Collects an influence during a simulation, whose motions come one after the other.
 class InfluenceKeeper {
   public:
-    /// `heights`: mm (samples), before the next motion.
-    explicit InfluenceKeeper(std::vector<double> heights)
-        : height_(std::move(heights)), removed_(height_.size(), 0.0) {}
-    /// For `add` alone, on a field of so many samples.
+    /// On a field of so many samples.
     explicit InfluenceKeeper(std::size_t samples) : removed_(samples, 0.0) {}
 
-    /// The motion number `motion` has lowered samples to the heights that they have now.
+    /// The motion number `motion` has lowered samples by what the blocks have changed.
     void remove(const SampleBlocks& blocks, std::span<const SampleBlocks::Change> changes,
                 std::uint32_t motion);
     /// The motion number `motion` has `amount` mm at a sample.
@@ -49,7 +45,6 @@ class InfluenceKeeper {
     void close(std::size_t motion);
 
     Influence influence_;
-    std::vector<double> height_;          // mm, as of the last `remove`
     std::vector<double> removed_;         // mm, by the running motion
     std::vector<std::uint32_t> touched_;  // by the running motion
     std::uint32_t motion_ = 0;

@@ -13,6 +13,12 @@ constexpr std::size_t kPause = 4;    // steps: noise at a threshold makes one ev
 constexpr double kMetre = 1e-3;      // of a mm
 constexpr double kStill = 1e-9;      // mm, no way
 constexpr double kLostShare = 0.01;  // of what the law takes: less is not told
+constexpr std::size_t kLanes = SampleBlocks::kLanes;
+
+/// The bit of a position in its block.
+std::uint64_t lane_of(std::size_t position) {
+    return std::uint64_t{1} << position % kLanes;
+}
 
 }  // namespace
 
@@ -27,9 +33,9 @@ ProcessMonitor::ProcessMonitor(const SampleBlocks& blocks, const ToolPath& path,
       law_(law),
       events_(path, kPause) {
     if (limits.lower.empty()) return;
-    below_.resize(field_.size());
-    for (std::size_t k = 0; k < below_.size(); ++k) {
-        below_[k] = blocks_.height(k) < lower_limit(k);
+    below_.assign(blocks.count(), 0);
+    for (std::size_t k = 0; k < field_.size(); ++k) {
+        if (blocks_.height(k) < lower_limit(k)) below_[k / kLanes] |= lane_of(k);
         highest_limit_ = std::max(highest_limit_, lower_limit(k));
     }
 }
@@ -223,10 +229,9 @@ void ProcessMonitor::ground(std::span<const SampleBlocks::Change> changes) {
         const double height = blocks_.height(k);
         if (height < deepest) deepest = height, deepest_at = k;
         if (below_.empty() || height >= lower_limit(k)) return;
-        if (below_[k] == 0) {
-            below_[k] = 1;
-            fresh = true;
-        }
+        std::uint64_t& below = below_[k / kLanes];
+        fresh = fresh || (below & lane_of(k)) == 0;
+        below |= lane_of(k);
         if (height - lower_limit(k) < worst) worst = height - lower_limit(k), worst_at = k;
     };
     for (const SampleBlocks::Change& change : changes)

@@ -95,7 +95,7 @@ class ProcessMonitor {
     LostVolume lost_;
     std::size_t pass_ = 0;               // of the step, by number
     std::vector<std::uint8_t> touched_;  // by step
-    std::vector<std::uint8_t> below_;    // by position: under its lower limit
+    std::vector<std::uint64_t> below_;   // lanes by block: under their lower limits
     double highest_limit_ = -std::numeric_limits<double>::infinity();  // mm, of all lower ones
 };
 

@@ -69,8 +69,8 @@ struct RecordingFile {
         write_text(file, "attributes", attributes);
     }
 
-    static Recording read(std::string_view image, std::string* attributes) {
-        const InputFile file(image, "recording_format", kFormat, kOldest);
+    static Recording read(std::unique_ptr<Storage> storage, std::string* attributes) {
+        const InputFile file(std::move(storage), "recording_format", kFormat, kOldest);
         Recording r;
         std::uint64_t stride = 1;
         read_scalar(file, "duration_s", H5T_NATIVE_DOUBLE, &r.duration_);
@@ -131,46 +131,36 @@ struct RecordingFile {
 };
 
 namespace {
-std::string image(const Recording& recording, const std::string& attributes) {
-    return image_of([&](hid_t file) { RecordingFile::write(recording, file, attributes); });
+Writer writer(const Recording& recording, const std::string& attributes) {
+    return [&](hid_t file) { RecordingFile::write(recording, file, attributes); };
 }
 }  // namespace
 
 std::string hdf5_image(const Recording& recording, const std::string& attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        return image(recording, attributes);
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within("HDF5")});
-    }
+    return locked(within("HDF5"),
+                  [&] { return image_of(writer(recording, attributes), recording.bytes()); });
 }
 
 void write_hdf5(const Recording& recording, const std::string& path,
                 const std::string& attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        write_bytes(path, image(recording, attributes));
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(path)});
-    }
+    locked(within(path), [&] { write_file(path, writer(recording, attributes)); });
+}
+
+std::error_code write_hdf5(const Recording& recording, int file, const std::string& attributes) {
+    return locked(within("HDF5"), [&] { return write_into(file, writer(recording, attributes)); });
 }
 
 Recording read_recording(const std::string& path, std::string* attributes) {
-    try {
-        return read_recording_image(bytes_of(path), path, attributes);
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(path)});
-    }
+    return locked(within(path), [&] {
+        RegularFile file;
+        open_regular(file, path);
+        return RecordingFile::read(stored_in(file.number()), attributes);
+    });
 }
 
 Recording read_recording_image(std::string_view image, const std::string& name,
                                std::string* attributes) {
-    const auto lock = hdf5_lock();
-    try {
-        return RecordingFile::read(image, attributes);
-    } catch (const FileFault& fault) {
-        throw InputError(fault.fact, {within(name)});
-    }
+    return locked(within(name), [&] { return RecordingFile::read(stored_in(image), attributes); });
 }
 
 }  // namespace beltgrinding

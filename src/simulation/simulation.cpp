@@ -131,7 +131,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     std::optional<TraceKeeper> trace;
     if (options.outputs.trace) trace.emplace(blocks);
     std::optional<InfluenceKeeper> influence;
-    if (options.outputs.influence) influence.emplace(blocks.heights());
+    if (options.outputs.influence) influence.emplace(field.size());
     const double cell = contact_cell(field, tool_envelope(process).wheel, resolution);
     refuse_force_of_rigid(model, process);
     Pressing pressing(process, cell, resolution.contact_tolerance, model);
@@ -265,6 +265,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
             "cell (tool in hand or part in hand), the unit and the travel of the force "
             "control");
     }
+    if (trace) trace->end();
     std::vector<double> heights = blocks.heights();
     for (std::size_t s = 0; s < field.size(); ++s)
         result.removed_volume += field.area[s] * (field.height[s] - heights[s]);

@@ -1,6 +1,7 @@
 #include "trace_keeper.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/lanes.h"
 #include "beltgrinding/error.h"
@@ -14,30 +15,28 @@ using namespace lanes;
 struct Traced {
     std::uint32_t *first, *last, *dominant;
     float *dominant_depth, *removed;
-    double* before;
 };
 
 BELTGRINDING_CLONES
-void trace_block(const Traced& traced, const double* height, std::uint32_t motion) {
+void trace_block(const Traced& traced, const double* before, const double* height,
+                 std::uint32_t motion) {
     const Ints now = Ints{} + static_cast<std::int32_t>(motion);
     const Ints never = Ints{} + static_cast<std::int32_t>(RemovalTrace::kNever);
     for (int k = 0; k < static_cast<int>(SampleBlocks::kLanes); k += kWide) {
-        const Doubles after = load_doubles(height + k);
         const Floats less =
-            __builtin_convertvector(load_doubles(traced.before + k) - after, Floats);
+            __builtin_convertvector(load_doubles(before + k) - load_doubles(height + k), Floats);
         const Ints some = less > 0.0f;  // else it is lost in rounding
         const Ints first = load(traced.first + k), last = load(traced.last + k);
         const Ints begins = some & (first == never);
         store(traced.first + k, begins ? now : first);
         store(traced.last + k, some ? now : last);
-        const Floats before = load(traced.removed + k);
-        const Floats removed = some ? kept(before, last == now) + less : before;
+        const Floats so_far = load(traced.removed + k);
+        const Floats removed = some ? so_far + less : so_far;
         store(traced.removed + k, removed);
         const Floats most = load(traced.dominant_depth + k);
         const Ints leads = some & (removed > most);
         store(traced.dominant + k, leads ? now : load(traced.dominant + k));
         store(traced.dominant_depth + k, leads ? removed : most);
-        __builtin_memcpy(traced.before + k, &after, sizeof after);
     }
 }
 
@@ -49,11 +48,12 @@ std::vector<T> by_position(const SampleBlocks& blocks, const std::vector<T>& by_
     return values;
 }
 
+/// Has `values`, by position, by sample; `room` is room for as many, whose values do not matter.
 template <class T>
-std::vector<T> by_sample(const SampleBlocks& blocks, const std::vector<T>& by_position) {
-    std::vector<T> values(blocks.samples().size());
-    for (std::size_t k = 0; k < values.size(); ++k) values[blocks.sample(k)] = by_position[k];
-    return values;
+void sort_by_sample(const SampleBlocks& blocks, std::vector<T>& values, std::vector<T>& room) {
+    room.resize(blocks.samples().size());
+    for (std::size_t k = 0; k < room.size(); ++k) room[blocks.sample(k)] = values[k];
+    values.swap(room);
 }
 
 }  // namespace
@@ -69,20 +69,32 @@ TraceKeeper::TraceKeeper(const SampleBlocks& blocks) : blocks_(blocks) {
     trace_.dominant = by_position(blocks, before.dominant, RemovalTrace::kNever);
     trace_.dominant_depth = by_position(blocks, before.dominant_depth, 0.0F);
     trace_.peak_pressure = by_position(blocks, before.peak_pressure, 0.0F);
-    removed_.assign(trace_.first.size(), 0.0F);
-    height_.reserve(trace_.first.size());
-    for (std::uint32_t k = 0; k < blocks.count(); ++k) {
-        const auto& heights = blocks.block(k).height;
-        height_.insert(height_.end(), heights.begin(), heights.end());
+    its_place_.assign(blocks.count(), kNone);
+}
+
+TraceKeeper::Depths& TraceKeeper::removed_of(std::uint32_t block) {
+    std::uint32_t& place = its_place_[block];
+    if (place == kNone) {
+        place = static_cast<std::uint32_t>(changed_.size());
+        changed_.push_back(block);
+        if (removed_.size() == place) removed_.emplace_back();
+        removed_[place].fill(0.0F);
     }
+    return removed_[place];
 }
 
 void TraceKeeper::remove(std::span<const SampleBlocks::Change> changes, std::uint32_t motion) {
+    if (motion != motion_) {
+        for (const std::uint32_t block : changed_) its_place_[block] = kNone;
+        changed_.clear();
+        motion_ = motion;
+    }
     for (const SampleBlocks::Change& change : changes) {
         const std::size_t at = std::size_t{change.block} * SampleBlocks::kLanes;
         trace_block({&trace_.first[at], &trace_.last[at], &trace_.dominant[at],
-                     &trace_.dominant_depth[at], &removed_[at], &height_[at]},
-                    blocks_.block(change.block).height.data(), motion);
+                     &trace_.dominant_depth[at], removed_of(change.block).data()},
+                    blocks_.before(change).data(), blocks_.block(change.block).height.data(),
+                    motion);
     }
 }
 
@@ -112,10 +124,20 @@ void TraceKeeper::restore(std::uint32_t number, const Block& block) {
     copy(block.peak_pressure, trace_.peak_pressure);
 }
 
-void TraceKeeper::keep(HeightField& field) const {
-    field.trace = {by_sample(blocks_, trace_.first), by_sample(blocks_, trace_.last),
-                   by_sample(blocks_, trace_.dominant), by_sample(blocks_, trace_.dominant_depth),
-                   by_sample(blocks_, trace_.peak_pressure)};
+void TraceKeeper::end() {
+    removed_ = {};
+    // One array at a time, so that the trace is never there twice.
+    std::vector<std::uint32_t> numbers(trace_.first.size());
+    for (auto* values : {&trace_.first, &trace_.last, &trace_.dominant})
+        sort_by_sample(blocks_, *values, numbers);
+    numbers = {};
+    std::vector<float> lengths(trace_.peak_pressure.size());
+    for (auto* values : {&trace_.dominant_depth, &trace_.peak_pressure})
+        sort_by_sample(blocks_, *values, lengths);
+}
+
+void TraceKeeper::keep(HeightField& field) noexcept {
+    field.trace = std::move(trace_);
 }
 
 }  // namespace beltgrinding

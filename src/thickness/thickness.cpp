@@ -34,8 +34,8 @@ TriangleMesh whole_surface(const HeightField& field, const TriangleMesh& others,
                              "thickness: a vertex of the mesh is not finite");
         mesh.vertices.push_back((v.cast<double>() - origin).cast<float>());
     }
-    mesh.triangles = field.triangles;
     mesh.triangles.reserve(field.triangles.size() + others.triangles.size());
+    for (const Triangle& t : field.triangles) mesh.triangles.push_back(t);
     const auto base = static_cast<std::uint32_t>(field.size());
     for (const Triangle& t : others.triangles) {
         if (std::max({t[0], t[1], t[2]}) >= others.vertices.size()) {

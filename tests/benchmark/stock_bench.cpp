@@ -17,7 +17,7 @@ TriangleMesh scan() {
         mesh.vertices.push_back(
             (field.point[i] + 0.3 * field.normal[i].cast<double>()).cast<float>());
     }
-    mesh.triangles = field.triangles;
+    mesh.triangles = field.triangles.unpacked();
     return mesh;
 }
 

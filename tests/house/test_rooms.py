@@ -20,7 +20,7 @@ PACKAGES = [
     (r"(Eigen|unsupported/Eigen)/\w+", None),
     (r"(dlfcn|unistd|fcntl|malloc|poll|signal|setjmp|spawn|sys/\w+)\.h", None),
     (r"tbb/\w+\.h", "oneTBB"),
-    (r"hdf5\.h", "HDF5"),
+    (r"(hdf5|H5FDdevelop)\.h", "HDF5"),
     (r"embree[34]/.*", "Embree"),
     (r"assimp/.*", "assimp"),
     (r"lib3mf/.*|lib3mf_\w+\.hpp", "lib3mf"),

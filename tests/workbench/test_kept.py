@@ -743,6 +743,18 @@ def test_what_changes_while_it_is_made_and_what_fails_is_not_kept(tmp_path):
             stages.get("none", lambda: 1, lambda: 1 / 0, lambda _: 1)
 
 
+def test_what_is_kept_is_copied_for_who_changes_it_and_what_is_not_kept_is_not():
+    for most, copies in ((100, 2), (10, 0)):
+        stages, copied = kept.Kept(most), []
+        for _ in range(2):
+            found = stages.get(
+                "one", lambda: 1, lambda: [7], lambda _: 5, lambda one: copied.append(1) or [*one]
+            )
+            assert found == [7]
+            found.append(8)
+        assert len(copied) == copies
+
+
 def test_the_environment_limits_what_is_kept(monkeypatch):
     monkeypatch.setenv(kept.LIMIT, "3")
     assert kept.Kept().most == 3e6

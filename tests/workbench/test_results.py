@@ -1,5 +1,7 @@
 """Results on disk: replaced as a whole, known by their sums, never written over what is not ours."""
 
+import errno
+import hashlib
 import json
 import os
 import shutil
@@ -149,6 +151,30 @@ def test_what_a_killed_writer_of_a_file_left_is_removed_when_it_is_old(tmp_path)
         os.utime(part, (part.stat().st_mtime - age,) * 2)
     files.write_whole(tmp_path / "a.json", b"{}")
     assert sorted(told(tmp_path)) == [files.PART + "new", "a.json"]
+
+
+def test_files_that_are_written_as_they_are_made_have_the_same_bytes(tmp_path, results):
+    field, scale = results[0].field, (-0.1, 0.1, 0.5)
+    for name, into, whole in (
+        ("a.h5", lambda file: field.hdf5_into(file, "{}"), field.hdf5("{}")),
+        (
+            "a.ply",
+            lambda file: core.deviation_ply_into(file, field, *scale, True, "run"),
+            core.deviation_ply(field, *scale, True, "run"),
+        ),
+    ):
+        files.write_new(tmp_path / name, into)
+        assert (tmp_path / name).read_bytes() == whole
+        with open(tmp_path / name, "rb") as file:
+            told = files.sum_of(file.fileno())
+        assert told == {"bytes": len(whole), "sha256": hashlib.sha256(whole).hexdigest()}
+        full = os.open("/dev/full", os.O_RDWR)
+        try:
+            with pytest.raises(OSError) as failed:
+                into(full)
+        finally:
+            os.close(full)
+        assert failed.value.errno == errno.ENOSPC
 
 
 def test_a_table_of_steps_of_0_1_0_is_read(tmp_path, results):

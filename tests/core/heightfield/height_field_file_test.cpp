@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -6,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <system_error>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/height_field.h"
@@ -99,12 +101,33 @@ TEST_F(HeightFieldFile, AFailedWriteNamesThePathAndLeavesTheOldFile) {
     EXPECT_EQ(bytes(), before);
 }
 
+TEST_F(HeightFieldFile, HasTheSameBytesWhereverItIsWritten) {
+    const HeightField field = testing::plate(300.0, 300.0, 1.0, 0.2);  // arrays of several chunks
+    write_hdf5(field, path_, "{}");
+    const std::string whole = bytes();
+    EXPECT_TRUE(hdf5_image(field, "{}") == whole);
+    const int file = ::open(path_.c_str(), O_RDWR | O_TRUNC);
+    EXPECT_FALSE(write_hdf5(field, file, "{}"));
+    ::close(file);
+    EXPECT_TRUE(bytes() == whole);
+}
+
+TEST_F(HeightFieldFile, AFullDiskIsToldAndNoFileStaysOpen) {
+    const HeightField field = testing::plate(300.0, 300.0, 1.0, 0.2);
+    const int full = ::open("/dev/full", O_RDWR);
+    ASSERT_GE(full, 0);
+    EXPECT_EQ(write_hdf5(field, full, "{}"), std::errc::no_space_on_device);
+    ::close(full);
+    write_hdf5(field, path_, "{}");
+    EXPECT_EQ(read_hdf5(path_).height, field.height);
+}
+
 TEST_F(HeightFieldFile, RefusesAnythingElse) {
     EXPECT_THROW(read_hdf5((folder_ / "absent.h5").string()), InputError);
     overwrite("no HDF5 at all");
     EXPECT_THROW(read_hdf5(path_), InputError);
     HeightField field = testing::plate(2.0, 2.0, 1.0);
-    field.triangles[0][0] = 1000;
+    field.triangles.push_back({0, 1, 1000});
     write_hdf5(field, path_, "");
     EXPECT_THROW(read_hdf5(path_), InputError);
     field = testing::plate(2.0, 2.0, 1.0);

@@ -178,8 +178,14 @@ TEST(SampleBlocks, TellsWhatWasLoweredOnceByBlocks) {
         const std::uint32_t s = blocks.sample(k);
         EXPECT_DOUBLE_EQ(heights[s], field.height[s] - less);
     }
+    for (const SampleBlocks::Change& change : blocks.changes())
+        for (std::size_t lane = 0; lane < SampleBlocks::kLanes; ++lane)
+            EXPECT_EQ(blocks.before(change)[lane],
+                      field.height[blocks.sample(change.block * SampleBlocks::kLanes + lane)]);
     blocks.clear_changes();
     EXPECT_TRUE(blocks.changes().empty());
+    blocks.lower(3, 0.125);  // from where it is now
+    EXPECT_EQ(blocks.before(blocks.changes()[0])[3], field.height[blocks.sample(3)] - 0.25);
 }
 
 }  // namespace

@@ -51,10 +51,12 @@ HeightField hills(const Vec3& away, std::mt19937& random) {
         field.point[place[i]] = points[i];
         field.height[i] = 0.01 * i;
     }
-    for (Triangle& t : field.triangles) {
+    std::vector<Triangle> triangles = field.triangles.unpacked();
+    for (Triangle& t : triangles) {
         for (std::uint32_t& corner : t) corner = place[corner];
     }
-    std::shuffle(field.triangles.begin(), field.triangles.end(), random);
+    std::shuffle(triangles.begin(), triangles.end(), random);
+    field.triangles = PackedTriangles(triangles);
     return field;
 }
 
@@ -133,7 +135,7 @@ TEST(SectionIndex, OfNothingFindsNothing) {
     EXPECT_TRUE(index.near_plane({0, 0, 0}, {0, 0, 1}, 10.0).empty());
     EXPECT_THROW(index.section_by_plane({0, 0, 0}, {0, 0, 1}), InputError);
     HeightField points = testing::plate(2.0, 2.0, 1.0);  // samples that no triangle joins
-    points.triangles.clear();
+    points.triangles = {};
     const SectionIndex loose(points);
     EXPECT_EQ(loose.near_plane({0, 0, 0}, {0, 0, 1}, 0.1).size(), points.size());
     EXPECT_THROW(loose.section_by_plane({0, 0, 0}, {1, 0, 0}), InputError);

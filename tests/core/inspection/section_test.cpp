@@ -138,10 +138,12 @@ TEST(Section, PiecesAreKeptApartInTheirOrderWithTheGapBetween) {
 
 TEST(Section, AHolePartsTheLine) {
     HeightField field = testing::plate(20.0, 20.0, 1.0, 0.1);
-    std::erase_if(field.triangles, [&](const Triangle& t) {
+    std::vector<Triangle> triangles = field.triangles.unpacked();
+    std::erase_if(triangles, [&](const Triangle& t) {
         const Vec3 middle = (field.point[t[0]] + field.point[t[1]] + field.point[t[2]]) / 3.0;
         return (middle - Vec3(10, 10, 0)).norm() < 4.0;
     });
+    field.triangles = PackedTriangles(triangles);
     const Section section = section_by_plane(field, {0, 10.2, 0}, {0, 1, 0});
     ASSERT_EQ(section.pieces.size(), 2u);
     EXPECT_NEAR(section.pieces[1].arc_length.back(), 20.0, 1e-9);
@@ -172,7 +174,7 @@ TEST(Section, ThatCannotBeIsRefused) {
         EXPECT_NE(text.find("from -15 to -5 mm"), std::string::npos) << text;
     }
     HeightField bare = field;
-    bare.triangles.clear();
+    bare.triangles = {};
     EXPECT_THROW(section_by_plane(bare, {0, 5, 0}, {0, 1, 0}), InputError);
     EXPECT_THROW(section_between(field, {1, 1, 0}, {1, 1, 0}), InputError);
     EXPECT_THROW(section_between(field, {1, 1, 0}, {1, 1, 3}), InputError);

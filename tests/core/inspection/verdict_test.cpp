@@ -188,7 +188,9 @@ TEST(Zones, TheCurvatureOfACylinderASphereAndASaddle) {
         for (const float k : convex_curvature(field)) EXPECT_NEAR(k, 1.0 / radius, 0.02 / radius);
         HeightField concave = field;
         for (Vec3f& n : concave.normal) n = -n;
-        for (Triangle& t : concave.triangles) std::swap(t[1], t[2]);
+        std::vector<Triangle> turned = concave.triangles.unpacked();
+        for (Triangle& t : turned) std::swap(t[1], t[2]);
+        concave.triangles = PackedTriangles(turned);
         for (const float k : convex_curvature(concave)) EXPECT_NEAR(k, 0.0, 0.02 / radius);
     }
     // A torus: outside convex in both directions, inside the larger radius is concave.

@@ -81,6 +81,51 @@ TEST(Waviness, AKnownWaveAcrossTheFeedComesBack) {
     }
 }
 
+TEST(Waviness, OfEachFaceIsWhatItIsAlone) {
+    const Raster fine(120.0, 60.0, 1.0, 6.0, 0.01), coarse(120.0, 60.0, 1.0, 10.0, 0.02);
+    HeightField both;  // samples of the two faces in turns, the larger number first
+    both.spacing = 1.0;
+    const std::size_t n = fine.field.size();
+    ASSERT_EQ(n, coarse.field.size());
+    both.resize(2 * n);
+    both.trace.reset(2 * n);
+    const auto put = [&](const HeightField& from, std::size_t offset, std::uint32_t face,
+                         std::uint32_t motions) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t to = 2 * i + offset;
+            both.point[to] = from.point[i];
+            both.normal[to] = from.normal[i];
+            both.height[to] = from.height[i];
+            both.face[to] = face;
+            both.trace.last[to] = both.trace.dominant[to] = from.trace.last[i] + motions;
+        }
+    };
+    put(coarse.field, 0, 9, 0);
+    put(fine.field, 1, 4, static_cast<std::uint32_t>(coarse.ends.size()));
+    for (std::size_t t = 0; t < fine.field.triangles.size(); ++t) {
+        for (const std::uint32_t offset : {0U, 1U}) {
+            const Triangle corners = (offset == 0 ? coarse : fine).field.triangles[t];
+            both.triangles.push_back(
+                {2 * corners[0] + offset, 2 * corners[1] + offset, 2 * corners[2] + offset});
+        }
+    }
+    std::vector<MotionEnd> ends = coarse.ends;
+    ends.insert(ends.end(), fine.ends.begin(), fine.ends.end());
+    const auto found = waviness(both, ends);
+    ASSERT_EQ(found.size(), 2U);
+    const FaceWaviness of_fine = waviness(fine.field, fine.ends).front();
+    const FaceWaviness of_coarse = waviness(coarse.field, coarse.ends).front();
+    for (const auto& [one, alone] : {std::pair(found[0], of_fine), {found[1], of_coarse}}) {
+        ASSERT_TRUE(one.across && alone.across);
+        EXPECT_EQ(one.pass_distance, alone.pass_distance);
+        EXPECT_EQ(one.across->mean, alone.across->mean);
+        EXPECT_EQ(one.across->total, alone.across->total);
+    }
+    EXPECT_EQ(found[0].face, 4U);
+    EXPECT_EQ(found[1].face, 9U);
+    EXPECT_NE(of_fine.pass_distance, of_coarse.pass_distance);
+}
+
 TEST(Waviness, SaysWhyItCannotTell) {
     const auto reason = [](const Raster& raster) {
         const FaceWaviness face = waviness(raster.field, raster.ends).front();

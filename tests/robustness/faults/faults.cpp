@@ -83,6 +83,16 @@ extern "C" ssize_t write(int f, const void* data, std::size_t size) {
     return file_fails() ? -1 : real(f, data, size);
 }
 
+#define PWRITE(name)                                                               \
+    extern "C" ssize_t name(int f, const void* data, std::size_t size, off_t at) { \
+        REAL(name);                                                                \
+        return file_fails() ? -1 : real(f, data, size, at);                        \
+    }
+PWRITE(pwrite)
+PWRITE(pwrite64)
+FILE_CALL(ftruncate, (int f, off_t size) noexcept, (f, size))
+FILE_CALL(ftruncate64, (int f, off_t size) noexcept, (f, size))
+
 extern "C" int close(int f) {
     REAL(close);
     const int done = real(f);  // it is closed, as the system does it, too

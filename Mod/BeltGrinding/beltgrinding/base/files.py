@@ -3,6 +3,7 @@
 import collections
 import contextlib
 import errno
+import hashlib
 import json
 import os
 import shutil
@@ -16,6 +17,7 @@ from .. import engine
 
 PART = ".beltgrind-part-"  # what is not whole yet; not NAME and more, which may be too long a name
 LEFT_OVER = 3600.0  # s; a part of that age is a killed writer's
+CHUNK = 1 << 20  # bytes, read at a time
 _written = collections.deque(maxlen=1)
 _begun = set()  # files and folders that are not to outlast this process
 
@@ -56,15 +58,33 @@ def _remove_parts(folder):
 
 
 def write_new(path, data, onto_disk=True):
-    """Writes bytes to a file that is not there yet; ``onto_disk``: so that they outlast a power failure. Raises
-    OSError."""
-    number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
-    with open(number, "wb", buffering=0) as file:  # a file system may fail as late as on closing
-        left = memoryview(data)
-        while left:
-            left = left[file.write(left) :]
+    """Writes ``data`` (see ``write_to``) to a file that is not there yet; ``onto_disk``: so that they outlast a power
+    failure. Raises OSError, and what ``data`` raises."""
+    number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+    with open(number, "wb", buffering=0):  # a file system may fail as late as on closing
+        write_to(number, data)
         if onto_disk:
             os.fsync(number)
+
+
+def write_to(number, data):
+    """Writes bytes, or what ``data(number)`` writes, to an open, empty file by its descriptor. Raises OSError, and
+    what ``data`` raises."""
+    if callable(data):
+        data(number)
+        return
+    left = memoryview(data)
+    while left:
+        left = left[os.write(number, left) :]
+
+
+def sum_of(number):
+    """{"bytes", "sha256"} of all of an open file, by its descriptor. Raises OSError."""
+    found, size = hashlib.sha256(), 0
+    while data := os.pread(number, CHUNK, size):
+        found.update(data)
+        size += len(data)
+    return {"bytes": size, "sha256": found.hexdigest()}
 
 
 @contextlib.contextmanager

@@ -35,8 +35,8 @@ RENAME_EXCHANGE, AT_FDCWD = 2, -100
 
 
 def replace(folder, contents, look=None):
-    """Writes ``contents`` (bytes by file name) into ``folder``, all of it or nothing. The folder is made
-    where it is not; its other files stay. ``look(folder)`` is called under the lock, after what another
+    """Writes ``contents`` (by file name, as ``files.write_to`` takes them; perhaps twice, one after the other) into
+    ``folder``, all of it or nothing. The folder is made where it is not; its other files stay. ``look(folder)`` is called under the lock, after what another
     had begun is ended; it may raise, or return the names of files to be removed. Ctrl-C comes before the
     change or after it. Raises OSError, InputError.
     """

@@ -44,7 +44,7 @@ def _special(value):
 
 class Kept:
     """Values by stage and digest, the least recently used of which go when all hold more than ``most`` bytes. May
-    be used by several threads. What is kept is handed out to all who ask, and must not be changed.
+    be used by several threads. What is kept is handed out to all who ask, and must not be changed, unless as a copy.
     """
 
     def __init__(self, most=None):
@@ -54,10 +54,11 @@ class Kept:
         self._values = OrderedDict()  # by (stage, digest): (value, bytes)
         self._lock = threading.Lock()
 
-    def get(self, stage, parts, make, size):
+    def get(self, stage, parts, make, size, copy=lambda value: value):
         """The value of ``stage`` for ``parts()``, all that it is made from as ``digest`` takes it; by ``make()`` where
-        it is not kept. ``size(value)``: bytes. What ``make`` raises is not kept, nor what was made while
-        ``parts()`` changed, as when a file is written to, nor what would take more than ``LARGEST`` of all.
+        it is not kept. ``size(value)``: bytes; ``copy(value)``: of one that is kept, for who changes what is handed
+        out. What ``make`` raises is not kept, nor what was made while ``parts()`` changed, as when a file is written
+        to, nor what would take more than ``LARGEST`` of all.
         """
         key = stage, digest(parts())
         with self._lock:
@@ -65,13 +66,15 @@ class Kept:
             if found is not None:
                 self._values.move_to_end(key)
                 self.hits[stage] = self.hits.get(stage, 0) + 1
-                return found[0]
+        if found is not None:
+            return copy(found[0])
         value = make()
         taken = int(size(value))
         with self._lock:
             self.made[stage] = self.made.get(stage, 0) + 1
         if taken <= LARGEST * self.most and key == (stage, digest(parts())):
             self._put(key, value, taken)
+            return copy(value)
         return value
 
     def find(self, stage, digest):
@@ -127,9 +130,9 @@ _stages = Kept()  # of this process
 _names = weakref.WeakKeyDictionary()  # digests of what objects were made from
 
 
-def get(stage, parts, make, size):
+def get(stage, parts, make, size, copy=lambda value: value):
     """As ``Kept.get``, of this process."""
-    return _stages.get(stage, parts, make, size)
+    return _stages.get(stage, parts, make, size, copy)
 
 
 def find(stage, digest):

@@ -115,11 +115,11 @@ def make_field(job, shape, warnings, context):
         job, _ = spacing.settled(job, shape, warnings, context)
     field, told = _sampled(job, shape, faces, context)
     warnings += told
-    return field.copy()
+    return field
 
 
 def _sampled(job, shape, faces, context):
-    """(core.HeightField that must not be changed, its warnings)."""
+    """(core.HeightField, the caller's own; its warnings)."""
     sampling = job["sampling"]
     name = kept.name(shape)
 
@@ -138,7 +138,8 @@ def _sampled(job, shape, faces, context):
 
     if name is None:
         return sample()
-    return kept.get("field", lambda: _field_parts(job, name, faces), sample, _field_bytes)
+    parts = lambda: _field_parts(job, name, faces)
+    return kept.get("field", parts, sample, _field_bytes, _field_copy)
 
 
 def _field_parts(job, name, faces):
@@ -169,10 +170,15 @@ def make_stocked_field(job, shape, warnings, context, sampled=lambda: None):
     def parts():
         return _field_parts(job, name, check_faces(job, shape)), stock, made_from(stock)
 
-    field, told = kept.get("stock", parts, make, _field_bytes)
+    field, told = kept.get("stock", parts, make, _field_bytes, _field_copy)
     sampled()
     warnings += told
-    return field.copy()
+    return field
+
+
+def _field_copy(found):
+    """Of (core.HeightField, warnings), whose field is then the caller's own."""
+    return found[0].copy(), found[1]
 
 
 def apply_stock(field, stock, warnings, context):
@@ -182,9 +188,11 @@ def apply_stock(field, stock, warnings, context):
     offset = stock["offset_mm"]
     if stock["kind"] == "allowance":
         report = core.apply_allowance(field, stock["allowance_mm"] + offset)
-        # A layer that is moved as a whole: at first order its thickness changes by the shift along the normal.
-        shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
-        added = np.einsum("ij,ij->i", field.normals, shift) if moved else None
+        added = None
+        if moved:
+            # As a whole: at first order its thickness changes by the shift along the normal.
+            shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
+            added = np.einsum("ij,ij->i", field.normals, shift)
     else:
         if stock["kind"] == "mesh":
             mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement, context)

@@ -39,9 +39,11 @@ def prepare(simulation, job):
 
 def store(simulation, result, figures):
     """Keeps what ``scan.compare`` gave in the Simulation object."""
-    kept = result_files.read(simulation, "HeightField")
-    attributes = core.HeightField.from_hdf5_bytes(kept, simulation.HeightField)[1]
-    result_files.store(simulation, {"HeightField": result.field.hdf5(attributes)})
+    kept = result_files.sound(simulation, "HeightField")
+    attributes = core.HeightField.from_hdf5(kept)[1]
+    result_files.store(
+        simulation, {"HeightField": lambda file: result.field.hdf5_into(file, attributes)}
+    )
     add_outputs(simulation, OUTPUTS)
     simulation.ScanFile = figures["file"]
     simulation.ScanShare = 100.0 * figures["measured_area_share"]

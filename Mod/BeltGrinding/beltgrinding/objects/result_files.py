@@ -1,7 +1,6 @@
 """HDF5 files of a result, kept inside the document's file, known by their SHA-256."""
 
 import contextlib
-import hashlib
 import json
 import os
 import secrets
@@ -9,8 +8,8 @@ import tempfile
 import weakref
 from pathlib import Path
 
-from ..base.files import cannot_be_written, write_new
-from ..base.regular_files import read_regular
+from ..base.files import cannot_be_read, cannot_be_written, sum_of, write_new
+from ..base.regular_files import open_regular, read_regular
 from ..engine import InputError
 from .properties import Output, add_outputs
 
@@ -20,15 +19,24 @@ OUTPUTS = (Output(SUMS, "String", "Result", "SHA-256 of the files of the result,
 
 
 def read(obj, name):
-    """The bytes of the property ``name`` (App::PropertyFileIncluded); None where it holds no file. Raises
-    InputError where they are not those that were stored with the result.
+    """The bytes of the property ``name``; as ``sound`` else."""
+    path = sound(obj, name)
+    return None if path is None else read_regular(path, LARGEST)
+
+
+def sound(obj, name):
+    """The path of the file of the property ``name`` (App::PropertyFileIncluded); None where it holds none, or one
+    without bytes. Raises InputError where its bytes are not those that were stored with the result.
     """
     path = getattr(obj, name, "")
     if not path or not os.path.exists(path):
         return None
-    data = read_regular(path, LARGEST)
-    kept = _sums(obj).get(name)
-    if kept is not None and kept != hashlib.sha256(data).hexdigest():
+    with open_regular(path, LARGEST) as file:
+        try:
+            found = sum_of(file.fileno())
+        except OSError as error:
+            raise cannot_be_read(path, error) from None
+    if _sums(obj).get(name) not in (None, found["sha256"]):
         raise InputError(
             "objects.not_as_stored",
             "{object}: the file of {property} is not the one of this result: the document is damaged; "
@@ -36,13 +44,13 @@ def read(obj, name):
             object=obj.Label,
             property=name,
         )
-    return data
+    return path if found["bytes"] else None
 
 
 class Written:
-    """Bytes, by name of property, written to files that go when nobody holds it; may be made in any thread. ``folder``: a
-    document's ``TransientDir``, from which FreeCAD takes them as they are; from elsewhere it copies them. Raises
-    InputError."""
+    """Contents (as ``files.write_to`` takes them), by name of property, written to files that go when nobody holds it; may
+    be made in any thread. ``folder``: a document's ``TransientDir``, from which FreeCAD takes them as they are; from
+    elsewhere it copies them. Raises InputError."""
 
     def __init__(self, contents, folder=None):
         self._own = None
@@ -54,10 +62,12 @@ class Written:
         self.paths = {name: Path(folder, f"{name.lower()}-{mark}.h5") for name in contents}
         self._mine = set(self.paths.values())
         self._gone = weakref.finalize(self, _remove, self._mine)
+        self.sums = {}
         for name, data in contents.items():
             with _written(folder):
                 write_new(self.paths[name], data, onto_disk=False)  # FreeCAD moves or copies it
-        self.sums = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+                with open(self.paths[name], "rb") as file:
+                    self.sums[name] = sum_of(file.fileno())["sha256"]
 
     def taken(self, obj, name):
         """The object's property has got the file: the one that was written, maybe."""
@@ -72,7 +82,7 @@ class Written:
 
 
 def store(obj, contents):
-    """Puts bytes, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
+    """Puts contents, by name of property, or what is ``Written`` of them, into the document. Raises InputError;
     nothing is then changed unless FreeCAD itself fails to take a file.
     """
     add_outputs(obj, OUTPUTS)

@@ -77,8 +77,8 @@ class Simulation(Proxy):
 
     def field(self, obj):
         """core.HeightField of the result; None if there is none."""
-        data = result_files.read(obj, "HeightField")
-        return core.HeightField.from_hdf5_bytes(data, obj.HeightField)[0] if data else None
+        path = result_files.sound(obj, "HeightField")
+        return core.HeightField.from_hdf5(path)[0] if path else None
 
     def recording(self, obj):
         """(core.Recording, steps as in ``Result.steps``) of the result; None if there is none."""
@@ -123,10 +123,11 @@ def files_of(result, folder=None):
     """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. ``folder``: the
     document's ``TransientDir``. Raises InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
-    files = {"HeightField": result.field.hdf5(json.dumps(job))}
+    files = {"HeightField": lambda file: result.field.hdf5_into(file, json.dumps(job))}
     if result.recording is not None:
         steps = {name: _packed(values) for name, values in result.steps.items()}
-        files["Recording"] = result.recording.hdf5(json.dumps({"steps": steps}))
+        about = json.dumps({"steps": steps})
+        files["Recording"] = lambda file: result.recording.hdf5_into(file, about)
     return result_files.Written(files, folder)
 
 

@@ -58,19 +58,20 @@ class Result:
         or none. A file that the run has read, or one of ``used``, is never written over; another's file
         only by ``force``. Raises InputError; the folder is then as it was.
         """
-        start = time.perf_counter()
+        begun = time.perf_counter()
         self.summary["run_id"] = result_folder.run_id(self.summary)
-        contents = self._contents()
-        self.summary["wall_time_s"]["write"] = time.perf_counter() - start
-        result_folder.write(folder, contents, self.summary, force, used)
+        result_folder.write(folder, self._contents(), self.summary, force, used, begun)
 
     def _contents(self):
-        """Bytes by file name, of all but summary.json."""
+        """By file name, of all but summary.json; what is large is written as it is made."""
         run = self.summary["run_id"]
         lower, upper, limit = colour_scale(self.job)
+        scale = (lower, upper, limit)
         contents = {
-            "deviation.ply": core.deviation_ply(self.field, lower, upper, limit, True, run),
-            "heightfield.h5": self._height_field(),
+            "deviation.ply": lambda file: core.deviation_ply_into(
+                file, self.field, *scale, True, run
+            ),
+            "heightfield.h5": self._height_field,
             "events.json": json_bytes(self.events),
         }
         if self.steps is not None:
@@ -83,8 +84,8 @@ class Result:
             contents[self.VERDICT] = self.verdict_bytes()
         return contents
 
-    def _height_field(self):
-        return self.field.hdf5(json.dumps({**self.job, **self._run_id()}))
+    def _height_field(self, file):
+        self.field.hdf5_into(file, json.dumps({**self.job, **self._run_id()}))
 
     def _run_id(self):
         """None of an older version's result."""
@@ -118,7 +119,7 @@ class Result:
             contents[self.VERDICT] = self.verdict_bytes()
             contents["events.json"] = json_bytes(self.events)
         if measured:
-            contents["heightfield.h5"] = self._height_field()
+            contents["heightfield.h5"] = self._height_field
         result_folder.update(self.folder, self.summary, contents)
 
     @classmethod

@@ -8,10 +8,11 @@ import hashlib
 import json
 import os
 import sys
+import time
 from pathlib import Path
 
 from ..base import folders, schemas
-from ..base.files import cannot_be_read, cannot_be_written, json_bytes
+from ..base.files import cannot_be_read, cannot_be_written, json_bytes, sum_of, write_to
 from ..base.regular_files import open_regular
 from ..engine import InputError
 from ..job import inputs
@@ -31,7 +32,6 @@ SCAN = "scan.json"
 REPORT = "report.html"
 VIEW = "view.html"
 MADE_LATER = (SCAN, REPORT, VIEW)  # of a result; a new one removes them
-CHUNK = 1 << 20  # bytes
 
 
 def run_id(summary):
@@ -70,24 +70,29 @@ def check(folder, summary=None, used=(), force=False):
             )
 
 
-def write(folder, contents, summary, force=False, used=()):
-    """Writes a result's files (bytes by name) and its summary in place of what an older one has there.
-    ``summary`` gets ``files``. Raises InputError; the folder is then as it was.
+def write(folder, contents, summary, force=False, used=(), begun=None):
+    """Writes a result's files (by name, as ``files.write_to`` takes them) and its summary in place of what an older one
+    has there. ``summary`` gets ``files``, and under wall_time_s the seconds of its writing since ``begun``
+    (time.perf_counter). Raises InputError; the folder is then as it was.
     """
 
     def of_the_old(folder):
         check(folder, summary, used, force)
         listed = _listed(folder).items()
         own = {name for name, kept in listed if name not in FILES and _same(folder / name, kept)}
-        return sorted({*FILES, *MADE_LATER, *own} - set(contents))
+        return sorted({*FILES, *MADE_LATER, *own} - {*contents, SUMMARY})
 
-    summary["files"] = {name: _sum(data) for name, data in contents.items()}
-    contents = {**contents, SUMMARY: _summary_bytes(summary)}
-    _replace(folder, contents, of_the_old)
+    def end(files):
+        summary["files"] = files
+        if begun is not None:
+            summary["wall_time_s"]["write"] = time.perf_counter() - begun
+        return _summary_bytes(summary)
+
+    _replace(folder, _with_summary(contents, end), of_the_old)
 
 
 def update(folder, summary, contents):
-    """Writes files that were made of a result beside it, such as its verdict or a report, and their
+    """Writes files (as ``write`` takes them) that were made of a result beside it, such as its verdict or a report, and their
     sums into its summary. Of an older version's result, which has none, the files alone. Raises InputError,
     also where another result has taken its place meanwhile.
     """
@@ -108,8 +113,13 @@ def update(folder, summary, contents):
     if before is None:
         _replace(folder, contents)
         return
-    changed = {**summary, "files": {**before, **{n: _sum(data) for n, data in contents.items()}}}
-    _replace(folder, {**contents, SUMMARY: _summary_bytes(changed)}, unchanged)
+    changed = dict(summary)
+
+    def end(files):
+        changed["files"] = {**before, **files}
+        return _summary_bytes(changed)
+
+    _replace(folder, _with_summary(contents, end), unchanged)
     summary["files"] = changed["files"]
 
 
@@ -186,19 +196,27 @@ def _sums_of(summary):
     return {name: kept for name, kept in files.items() if name == Path(name).name}
 
 
-def _sum(data):
-    return {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+def _with_summary(contents, end):
+    """``contents`` and, behind them, the summary: the bytes that ``end`` makes of their sizes and SHA-256."""
+    files = {}
+
+    def noting(name, data):
+        def write(number):
+            write_to(number, data)
+            files[name] = sum_of(number)
+
+        return write
+
+    made = {name: noting(name, data) for name, data in contents.items()}
+    return {**made, SUMMARY: lambda number: write_to(number, end(files))}
 
 
 def _same(path, kept):
-    """Whether a file is what ``_sum`` told. Raises OSError where it cannot be read."""
+    """Whether a file is what ``sum_of`` told. Raises OSError where it cannot be read."""
     if not isinstance(kept, dict) or path.stat().st_size != kept.get("bytes"):
         return False
-    found = hashlib.sha256()
     with open_regular(path, sys.maxsize) as file:
-        while data := file.read(CHUNK):
-            found.update(data)
-    return found.hexdigest() == kept.get("sha256")
+        return sum_of(file.fileno())["sha256"] == kept.get("sha256")
 
 
 def _own_sum(summary):

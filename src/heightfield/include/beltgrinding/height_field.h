@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "beltgrinding/geometry.h"
+#include "beltgrinding/packed_triangles.h"
 
 namespace beltgrinding {
 
@@ -117,7 +119,7 @@ struct HeightField {
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
     HeatTrace heat;                   ///< how hot it became where; empty: not computed
     FinishTrace finish;               ///< what finish the passes left; empty: not computed
-    std::vector<Triangle> triangles;  ///< between samples, for display; never across faces
+    PackedTriangles triangles;        ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm
 
@@ -141,7 +143,12 @@ struct HeightField {
 /// failed write leaves an older file of that name as it was. Throws InputError naming the path.
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes);
 
-/// The bytes that `write_hdf5` writes. Throws InputError when memory does not suffice.
+/// The same bytes to an open, empty file, by its descriptor: as they are made, so that they take no
+/// memory to speak of. Returns why the file did not take them all; what is there then is no field.
+/// Throws InputError when memory does not suffice.
+std::error_code write_hdf5(const HeightField& field, int file, const std::string& attributes);
+
+/// The same bytes. Throws InputError when memory does not suffice.
 std::string hdf5_image(const HeightField& field, const std::string& attributes);
 
 /// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for

@@ -36,6 +36,7 @@ class SampleBlocks {
     /// What is lowered in a block, one bit a lane.
     struct Change {
         std::uint32_t block;
+        std::uint32_t kept;  // place of the heights before, see `before`
         std::uint64_t lanes;
     };
 
@@ -45,8 +46,8 @@ class SampleBlocks {
     const HeightField& field() const { return field_; }
     std::uint32_t count() const { return static_cast<std::uint32_t>(blocks_.size()); }
     const Block& block(std::uint32_t number) const { return blocks_[number]; }
-    /// Its heights may be lowered; `lowered` must be told.
-    Block& block(std::uint32_t number) { return blocks_[number]; }
+    /// The same, whose heights may be lowered; then `lowered` must be told, of this block first.
+    Block& block_to_lower(std::uint32_t number);
     /// Samples of all positions.
     std::span<const std::uint32_t> samples() const { return tree_.order(); }
     std::uint32_t sample(std::size_t position) const { return samples()[position]; }
@@ -86,6 +87,10 @@ class SampleBlocks {
     /// What was lowered since the last `clear_changes`, by ascending blocks.
     std::span<const Change> changes();
     void clear_changes();
+    /// Heights of the block before its first change since the last `clear_changes`, mm.
+    const std::array<double, kLanes>& before(const Change& change) const {
+        return before_[change.kept];
+    }
 
     /// What grinding has made of a block.
     struct Ground {
@@ -132,6 +137,7 @@ class SampleBlocks {
     std::vector<Bound> bounds_;
     std::vector<std::uint64_t> changed_;  // by block
     std::vector<Change> changes_;
+    std::vector<std::array<double, kLanes>> before_;  // mm, by change, in the order they came
     std::vector<Deepened> deepened_;
 };
 

@@ -60,6 +60,8 @@ struct ColourScale {
     int bands = 0;                      ///< equal steps of each ramp; 0: without steps
     std::optional<Choice> choice = {};  ///< none: the colours described above
 
+    /// Throws InputError unless the tolerance is a band.
+    void validate() const;
     /// 0xRRGGBBAA (alpha 255: opaque).
     std::uint32_t colour(double deviation) const;
     /// Of samples whose rays met no stock.

@@ -9,8 +9,9 @@
 
 namespace beltgrinding {
 
-/// Where a file goes: gives memory for so many bytes, all of which are then written.
-using FileMemory = std::function<char*(std::size_t)>;
+/// Where a file of `whole` bytes goes, piece after piece: gives memory for the next `bytes`, all of
+/// which are written before it is asked for more.
+using FileMemory = std::function<char*(std::size_t bytes, std::size_t whole)>;
 
 /// Binary STL.
 void mesh_stl(const GroundMesh& mesh, const FileMemory& memory);

@@ -126,7 +126,12 @@ class Recording {
 /// Throws InputError naming the path.
 void write_hdf5(const Recording& recording, const std::string& path, const std::string& attributes);
 
-/// The bytes that `write_hdf5` writes. Throws InputError when memory does not suffice.
+/// The same bytes to an open, empty file, by its descriptor, as they are made. Returns why the file
+/// did not take them all; what is there then is no recording. Throws InputError when memory does
+/// not suffice.
+std::error_code write_hdf5(const Recording& recording, int file, const std::string& attributes);
+
+/// The same bytes. Throws InputError when memory does not suffice.
 std::string hdf5_image(const Recording& recording, const std::string& attributes);
 
 /// Reads what `write_hdf5` wrote; `attributes` may be null. Throws InputError naming the path, for

@@ -1,21 +1,20 @@
 #include "heat/conduction.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "heat/heat_rows.h"
-#include "marked.h"
 
 namespace beltgrinding {
 namespace {
 
 constexpr std::size_t kModes = DepthModes::kModes;
-constexpr int kInnerRings = 3;          // that the heat may come to before a new zone is made
-constexpr std::uint8_t kFarRing = 100;  // and all behind
-// alpha t over spacing^2: the shortest interval of sweeps; the longest part of a step, of which
-// there are no more than so many; and where what comes in may all be taken at both ends.
+constexpr int kInnerRings = 3;  // that the heat may come to before a new zone is made
+constexpr int kAside = 3;       // rings round the zone that know how near heat came
+// alpha t over spacing^2: between sweeps; the longest part of a step, of which there are no more
+// than so many; and where what comes in may all be taken at both ends.
 constexpr double kUnit = 0.25;
 constexpr double kPart = 1.0;
 constexpr int kMostParts = 4;
@@ -23,6 +22,12 @@ constexpr double kBrief = 0.15;
 constexpr std::array kSimpson = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 constexpr double kRounding = 1e-9;   // s: less is no time
 constexpr float kLeastRise = 1e-3f;  // K: less is none
+
+std::vector<float> depths(const ThermalNodes& nodes) {
+    std::vector<float> found(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) found[k] = 1.0f / nodes.own[k].modes[0];
+    return found;
+}
 
 }  // namespace
 
@@ -33,32 +38,22 @@ Conduction::Conduction(const PartHeat& part, int rings)
       diffusivity_(material_.diffusivity()),
       unit_(kUnit * nodes_.spacing * nodes_.spacing / diffusivity_),
       state_(part.state()),
+      depth_(depths(nodes_)),
+      layer_({nodes_.first, nodes_.neighbour, nodes_.conductance, nodes_.area, depth_,
+              nodes_.dispersion},
+             diffusivity_, state_.modes),
+      coarse_(part),
       power_(nodes_.size(), 0.0),
       ring_(nodes_.size(), kOutside),
       next_ring_(nodes_.size(), kOutside),
       place_(nodes_.size(), 0),
       direct_(nodes_.size(), 0.0f),
       zone_time_(state_.time),
-      level_(nodes_.size(), kUnmarked),
-      due_(nodes_.size(), kUnmarked),
-      fast_(nodes_.size(), 0),
-      spans_(nodes_.size(), 0),
-      there_(nodes_.size(), 0),
       last_sweep_(state_.time),
-      noted_(state_.time) {
-    rate_.resize(nodes_.neighbour.size());
-    mean_rate_.resize(nodes_.neighbour.size());
-    for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
-        const double depth = 1.0 / nodes_.own[k].modes[0];
-        for (std::uint32_t e = nodes_.first[k]; e < nodes_.first[k + 1]; ++e) {
-            const double rate = diffusivity_ * nodes_.conductance[e] / nodes_.area[k];
-            // Two halves of the way in a row, each with its section.
-            const double others = 1.0 / nodes_.own[nodes_.neighbour[e]].modes[0];
-            rate_[e] = static_cast<float>(rate);
-            mean_rate_[e] = static_cast<float>(rate * 2.0 * others / (depth + others));
-        }
-        if (state_.warm[k] != 0) level_[k] = level_of(k, state_.time);
-    }
+      changed_(nodes_.size(), 0),
+      factors_(material_) {
+    for (std::uint32_t k = 0; k < nodes_.size(); ++k)
+        if (state_.warm[k] != 0) layer_.put(k, state_.time);
 }
 
 void Conduction::add(std::uint32_t node, double power) {
@@ -87,10 +82,7 @@ void Conduction::advance(double duration, std::uint32_t motion) {
         if (!zone_holds()) make_zone();
         heat(duration / parts);
         // What is outside the zone follows it.
-        if (zone_time_ - last_sweep_ >= unit_) {
-            sweep(zone_time_, {}, false);
-            take_beyond();
-        }
+        if (zone_time_ - last_sweep_ >= unit_) sweep();
     }
     for (const std::uint32_t k : powered_) power_[k] = 0.0;
     powered_.clear();
@@ -108,16 +100,15 @@ bool Conduction::zone_holds() const {
 }
 
 // Breadth first from the heat, through the ways and through thin sections.
-void Conduction::find_zone(std::vector<std::uint32_t>& beside) {
+void Conduction::find_zone(std::vector<std::uint32_t>& nodes, std::vector<std::uint32_t>& beside) {
     std::vector<std::uint32_t> found = powered_;
     for (const std::uint32_t k : powered_) next_ring_[k] = 0;
     std::size_t begin = 0;
-    for (int r = 0; r <= rings_; ++r) {
-        auto& list = r < rings_ ? found : beside;
+    for (int r = 0; r < rings_ + 1 + kAside; ++r) {
         const auto reach = [&](std::uint32_t k) {
             if (k == ThermalNodes::kNone || next_ring_[k] != kOutside) return;
-            next_ring_[k] = static_cast<std::uint8_t>(std::min(r + 1, int{kFarRing}));
-            list.push_back(k);
+            next_ring_[k] = static_cast<std::uint8_t>(r + 1);
+            found.push_back(k);
         };
         const std::size_t end = found.size();
         for (std::size_t k = begin; k < end; ++k) {
@@ -128,39 +119,75 @@ void Conduction::find_zone(std::vector<std::uint32_t>& beside) {
         }
         begin = end;
     }
-    for (const std::uint32_t k : beside) next_ring_[k] = kOutside;
+    for (const std::uint32_t k : found) {
+        const int ring = next_ring_[k];
+        if (ring <= rings_) {
+            nodes.push_back(k);
+            continue;
+        }
+        if (ring == rings_ + 1) beside.push_back(k);
+        // So that ages rise evenly across the zone's border.
+        state_.last[k] = std::max(state_.last[k], zone_time_ - zone_age(next_ring_[k]));
+        changed_[k] = 1;
+        next_ring_[k] = kOutside;
+    }
+    std::sort(nodes.begin(), nodes.end());
+}
+
+// The middle of what is heated, and the axes in which it lies.
+void Conduction::place_heat() {
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t k : powered_) middle += nodes_.point[k];
+    middle /= static_cast<double>(powered_.size());
+    Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+    for (const std::uint32_t k : powered_) {
+        const Vec3 way = nodes_.point[k] - middle;
+        square += way * way.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(square);
+    state_.place = Frame::Identity();
+    state_.place.linear() = axes.eigenvectors();
+    state_.place.translation() = middle;
+    state_.half.setZero();
+    for (const std::uint32_t k : powered_) {
+        const Vec3 way = axes.eigenvectors().transpose() * (nodes_.point[k] - middle);
+        state_.half = state_.half.cwiseMax(way.cwiseAbs());
+    }
+}
+
+double Conduction::way(const Vec3& point) const {
+    const Vec3 there = state_.place.linear().transpose() * (point - state_.place.translation());
+    const double away = (there.cwiseAbs() - state_.half).cwiseMax(0.0).squaredNorm();
+    return away / (4.0 * diffusivity_);
+}
+
+// Heat may have come nearer by the inner rings since.
+double Conduction::zone_age(std::uint32_t ring) const {
+    const double away = std::max(static_cast<double>(ring) - kInnerRings, 0.0) * nodes_.spacing;
+    return away * away / (4.0 * diffusivity_);
 }
 
 void Conduction::make_zone() {
     std::vector<std::uint32_t> beside, nodes;
-    find_zone(beside);
-    for_marked(next_ring_, kFarRing, [&](std::uint32_t k) { nodes.push_back(k); });
-    sweep(state_.time, nodes, false);
+    find_zone(nodes, beside);
+    put_beyond_back();
     leave_zone();
     ring_.swap(next_ring_);
     zone_.nodes.swap(nodes);
     beyond_.swap(beside);
-    state_.centre.setZero();
-    for (const std::uint32_t k : powered_) state_.centre += nodes_.point[k];
-    state_.centre /= static_cast<double>(powered_.size());
-    state_.radius = 0.0;
-    for (const std::uint32_t k : powered_)
-        state_.radius = std::max(state_.radius, (nodes_.point[k] - state_.centre).norm());
-    for (const auto* list : {&zone_.nodes, &beyond_}) {
-        for (const std::uint32_t k : *list) {
-            if (state_.warm[k] == 0) state_.current[k] = state_.conducted[k] = state_.time;
-            state_.warm[k] = 1;
-            state_.last[k] = state_.time;
-        }
-    }
+    place_heat();
     place_zone();
     for (std::size_t i = 0; i < zone_.nodes.size(); ++i) {
         const std::uint32_t k = zone_.nodes[i];
-        std::copy_n(&state_.modes[k * kModes], kModes, &zone_rows_[i * kModes]);
-        level_[k] = kUnmarked;  // is in no sweep
+        float* row = &zone_rows_[i * kModes];
+        std::copy_n(layer_.row(k), kModes, row);
+        const double since = zone_time_ - layer_.current(k);
+        if (layer_.has(k) && since > 0.0) decay_row(row, factors_(since).decay.data());
+        layer_.lend(k);
     }
-    zone_time_ = state_.time;
     take_beyond();
+    coarse_.move(zone_time_, [this](const Vec3& point) { return way(point); });
+    find_base();
 }
 
 void Conduction::place_zone() {
@@ -179,9 +206,10 @@ void Conduction::place_zone() {
 // into them.
 void Conduction::join_zone() {
     const auto add = [this](std::uint32_t other, double sign, std::uint32_t edge) {
-        zone_.ways.push_back({other, static_cast<float>(sign * rate_[edge]),
-                              static_cast<float>(sign * mean_rate_[edge])});
-        return static_cast<double>(std::max(rate_[edge], mean_rate_[edge]));
+        const HeatWay& way = layer_.ways()[edge];
+        zone_.ways.push_back(
+            {other, static_cast<float>(sign * way.rate), static_cast<float>(sign * way.mean_rate)});
+        return static_cast<double>(std::max(way.rate, way.mean_rate));
     };
     const auto end = [this] {
         zone_.first.push_back(static_cast<std::uint32_t>(zone_.ways.size()));
@@ -208,22 +236,26 @@ void Conduction::join_zone() {
 void Conduction::put_beyond_back() {
     const std::size_t inside = zone_.nodes.size(), count = beyond_.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t k = beyond_[i];
         const float* row = &zone_rows_[(inside + i) * kModes];
         const float* in = &zone_rows_[(inside + count + i) * kModes];
-        for (std::size_t j = 0; j < kModes; ++j) state_.modes[k * kModes + j] = row[j] + in[j];
-        state_.current[k] = zone_time_;
+        float* back = layer_.row(beyond_[i]);
+        for (std::size_t j = 0; j < kModes; ++j) back[j] = row[j] + in[j];
+        layer_.current(beyond_[i]) = zone_time_;
     }
 }
 
 void Conduction::take_beyond() {
     const std::size_t inside = zone_.nodes.size(), count = beyond_.size();
+    const double near = zone_time_ - zone_age(static_cast<std::uint32_t>(rings_) + 1);
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t k = beyond_[i];
-        float* row = &state_.modes[k * kModes];
-        const double since = zone_time_ - state_.current[k];
-        if (since > 0.0) decay_row(row, factors(since).decay.data());
-        state_.current[k] = state_.last[k] = zone_time_;
+        layer_.put(k, zone_time_);
+        float* row = layer_.row(k);
+        const double since = zone_time_ - layer_.current(k);
+        if (since > 0.0) decay_row(row, factors_(since).decay.data());
+        layer_.current(k) = zone_time_;
+        state_.last[k] = std::max(state_.last[k], near);
+        changed_[k] = 1;
         std::copy_n(row, kModes, &zone_rows_[(inside + i) * kModes]);
         std::fill_n(&zone_rows_[(inside + count + i) * kModes], kModes, 0.0f);
     }
@@ -232,29 +264,17 @@ void Conduction::take_beyond() {
 void Conduction::leave_zone() {
     for (std::size_t i = 0; i < zone_.nodes.size(); ++i) {
         const std::uint32_t k = zone_.nodes[i];
-        std::copy_n(&zone_rows_[i * kModes], kModes, &state_.modes[k * kModes]);
-        state_.current[k] = state_.conducted[k] = state_.last[k] = zone_time_;
+        std::copy_n(&zone_rows_[i * kModes], kModes, layer_.row(k));
+        layer_.put(k, zone_time_);
+        state_.last[k] = std::max(state_.last[k], zone_time_ - zone_age(ring_[k]));
         ring_[k] = kOutside;
-        level_[k] = 0;
+        changed_[k] = 1;
     }
     zone_.clear();
     beyond_.clear();
     thin_.clear();
-}
-
-const Conduction::Factors& Conduction::factors(double duration) {
-    const auto hash = std::bit_cast<std::uint64_t>(duration) * 0x9E3779B97F4A7C15ULL;
-    Factors& known = known_[hash >> 58U];
-    if (duration == known.duration) return known;
-    known.duration = duration;
-    const auto& rates = DepthModes::rates();
-    for (std::size_t j = 0; j < kModes; ++j) {
-        const double lost = -std::expm1(-rates[j] * diffusivity_ * duration);
-        known.decay[j] = static_cast<float>(1.0 - lost);
-        known.gain[j] = static_cast<float>(j == 0 ? duration / material_.capacity()
-                                                  : lost / (material_.conductivity * rates[j]));
-    }
-    return known;
+    base_.clear();
+    slope_.clear();
 }
 
 void Conduction::forget_direct() {
@@ -284,13 +304,13 @@ void Conduction::heat(double duration) {
     const bool brief = diffusivity_ * duration <= kBrief * nodes_.spacing * nodes_.spacing;
     const std::size_t times = brief ? 2 : 3;
     const std::array<double, 3> shares = brief ? std::array{0.5, 0.5, 0.0} : kSimpson;
-    decay_rows(zone_rows_.data(), zone_.slow.size(), factors(duration).decay.data());
+    decay_rows(zone_rows_.data(), zone_.slow.size(), factors_(duration).decay.data());
     double left = 1.0;
     const double between = duration / static_cast<double>(times - 1);
     for (std::size_t i = 0; i < times; ++i) {
         left -= shares[i];
-        Row gain = factors(shares[i] * duration).gain;
-        const Row& decay = factors(std::max(left, 0.0) * duration).decay;
+        Row gain = factors_(shares[i] * duration).gain;
+        const Row& decay = factors_(std::max(left, 0.0) * duration).decay;
         for (std::size_t j = 0; j < kModes; ++j) gain[j] *= decay[j];
         inject(gain);
         if (i + 1 < times)
@@ -303,10 +323,12 @@ void Conduction::heat(double duration) {
         direct_[k] =
             (nodes_.own[k].direct * flux(k) + nodes_.other[k].direct * flux(nodes_.opposite[k])) /
             static_cast<float>(material_.conductivity);
-        zone_sums_[place_[k]] = sum_of_row(&zone_rows_[place_[k] * kModes]) + direct_[k];
+        zone_sums_[place_[k]] += direct_[k];
     }
     state_.time += duration;
     state_.heated = zone_time_ = state_.time;
+    const auto since = static_cast<float>(zone_time_ - base_time_);
+    for (std::size_t i = 0; i < base_.size(); ++i) zone_sums_[i] += base_[i] + since * slope_[i];
     for (std::size_t i = 0; i < zone_.nodes.size(); ++i) {
         note_peak(zone_.nodes[i], zone_sums_[i]);
         if (zone_sums_[i] > hottest_) {
@@ -317,15 +339,15 @@ void Conduction::heat(double duration) {
 }
 
 double Conduction::rise(std::uint32_t node) const {
-    const float* row = in_zone(node) ? &zone_rows_[place_[node] * kModes]
-                                     : &state_.modes[std::size_t{node} * kModes];
-    return sum_of_row(row) + direct_[node];
+    const float* row = in_zone(node) ? &zone_rows_[place_[node] * kModes] : layer_.row(node);
+    return double{sum_of_row(row)} + direct_[node] + coarse_.rise(node, zone_time_).rise;
 }
 
 void Conduction::note_peak(std::uint32_t node, float rise) {
     if (rise > std::max(state_.peak[node], kLeastRise)) {
         state_.peak[node] = rise;
         state_.source[node] = state_.motion;
+        changed_[node] = 1;
     }
 }
 

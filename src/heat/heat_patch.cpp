@@ -58,7 +58,7 @@ void HeatPatch::clear() {
     first.clear();
     ways.clear();
     slow.clear();
-    most = longest = 0.0;
+    most = 0.0;
 }
 
 const std::vector<double>& RowConductor::terms(double& stiff, double error) {

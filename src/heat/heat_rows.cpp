@@ -96,8 +96,18 @@ void decay_rows(float* rows, std::size_t count, const float* decay) {
 }
 
 BELTGRINDING_CLONES
+float greatest_of_row(const float* row) {
+    return greatest(larger(magnitude(load(row)), magnitude(load(row + kWide))));
+}
+
+BELTGRINDING_CLONES
 float sum_of_row(const float* row) {
     return total(load(row) + load(row + kWide));
+}
+
+BELTGRINDING_CLONES
+float sum_of_row(const float* row, const float* decay) {
+    return total(load(row) * load(decay) + load(row + kWide) * load(decay + kWide));
 }
 
 }  // namespace beltgrinding

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/heat.h"
+#include "heat/thermal_levels.h"
 #include "heat/thermal_nodes.h"
 
 namespace beltgrinding {
@@ -75,6 +77,11 @@ float between(const ThermalNodes& nodes, const std::vector<float>& values,
 
 }  // namespace
 
+struct PartHeat::Levels {
+    std::once_flag once;
+    std::vector<ThermalLevel> all;
+};
+
 void HeatMaterial::validate() const {
     check(conductivity, "conductivity");
     check(heat_capacity, "heat capacity");
@@ -90,10 +97,9 @@ PartHeat::PartHeat(const HeightField& field, double spacing, const HeatMaterial&
     }
     nodes_ = std::make_shared<ThermalNodes>(
         make_thermal_nodes(field, std::max(spacing, kSamplesPerNode * field.spacing)));
+    levels_ = std::make_shared<Levels>();
     const std::size_t n = nodes_->size();
     state_.modes.assign(n * DepthModes::kModes, 0.0f);
-    state_.current.assign(n, 0.0);
-    state_.conducted.assign(n, 0.0);
     state_.last.assign(n, -1e30);
     state_.warm.assign(n, 0);
     state_.peak.assign(n, 0.0f);
@@ -117,9 +123,15 @@ const std::vector<std::uint32_t>& PartHeat::node_of() const {
 }
 
 void PartHeat::set_thickness(const std::vector<float>& thickness) {
-    auto nodes = std::make_shared<ThermalNodes>(*nodes_);
-    beltgrinding::set_thickness(*nodes, thickness);
-    nodes_ = std::move(nodes);
+    // Copies of the part share its nodes.
+    if (nodes_.use_count() > 1) nodes_ = std::make_shared<ThermalNodes>(*nodes_);
+    beltgrinding::set_thickness(*nodes_, thickness);
+    levels_ = std::make_shared<Levels>();
+}
+
+const std::vector<ThermalLevel>& PartHeat::levels() const {
+    std::call_once(levels_->once, [this] { levels_->all = make_thermal_levels(*nodes_); });
+    return levels_->all;
 }
 
 const std::vector<float>& PartHeat::thickness() const {
@@ -128,9 +140,8 @@ const std::vector<float>& PartHeat::thickness() const {
 
 void PartHeat::set_state(HeatState state) {
     const std::size_t n = nodes_->size();
-    if (state.modes.size() != n * DepthModes::kModes || state.current.size() != n ||
-        state.conducted.size() != n || state.last.size() != n || state.warm.size() != n ||
-        state.peak.size() != n || state.source.size() != n) {
+    if (state.modes.size() != n * DepthModes::kModes || state.last.size() != n ||
+        state.warm.size() != n || state.peak.size() != n || state.source.size() != n) {
         throw InputError("heat.other_state", "the heat's state is of another part");
     }
     state_ = std::move(state);
@@ -138,7 +149,7 @@ void PartHeat::set_state(HeatState state) {
 
 std::size_t PartHeat::bytes() const {
     return nodes_->bytes() +
-           nodes_->size() * (DepthModes::kModes * sizeof(float) + 3 * sizeof(double) +
+           nodes_->size() * (DepthModes::kModes * sizeof(float) + sizeof(double) +
                              sizeof(std::uint8_t) + sizeof(float) + sizeof(std::uint32_t));
 }
 

@@ -52,6 +52,18 @@ class PointHash {
                         found.push_back(links_[link].number);
                 }
     }
+    /// The least of the eight cubes that hold all up to half a side from a point.
+    Cube corner(const Vec3& point) const { return cube(point - Vec3::Constant(0.5 * side_)); }
+    /// Replaces `found` by all in those.
+    void near_corner(const Cube& corner, std::vector<std::uint32_t>& found) const {
+        found.clear();
+        for (int i = 0; i < 8; ++i) {
+            const Cube one{corner.x + (i >> 2), corner.y + (i >> 1 & 1), corner.z + (i & 1)};
+            for (std::uint32_t link = slots_[place(one)].first; link != kNone;
+                 link = links_[link].next)
+                found.push_back(links_[link].number);
+        }
+    }
 
   private:
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;

@@ -121,20 +121,8 @@ VoronoiCell cell_of(const ThermalNodes& nodes, std::uint32_t node,
     return ended(low);
 }
 
-/// The nearest of `near` on the same side; kNone if all are `most` mm away or more.
-std::uint32_t nearest(const ThermalNodes& nodes, const std::vector<std::uint32_t>& near,
-                      const Vec3& point, const Vec3f& normal, double most) {
-    std::uint32_t found = ThermalNodes::kNone;
-    double least = most * most;
-    for (const std::uint32_t k : near) {
-        const double away = (nodes.point[k] - point).squaredNorm();
-        if (away < least && nodes.normal[k].dot(normal) >= kSameSide) least = away, found = k;
-    }
-    return found;
-}
-
 void choose(ThermalNodes& nodes, const HeightField& field) {
-    PointHash hash(nodes.spacing);
+    PointHash hash(2.0 * nodes.spacing);
     std::vector<std::uint32_t> near;
     PointHash::Cube looked{};
     bool any = false;
@@ -146,10 +134,13 @@ void choose(ThermalNodes& nodes, const HeightField& field) {
     std::vector<std::uint32_t> covering(field.size());
     for (std::uint32_t s = 0; s < field.size(); ++s) {
         if (last == ThermalNodes::kNone || !covers(last, s)) {
-            const PointHash::Cube cube = hash.cube(field.point[s]);
-            if (!any || cube != looked) hash.near(looked = cube, 1, near);
+            const PointHash::Cube corner = hash.corner(field.point[s]);
+            if (!any || corner != looked) hash.near_corner(looked = corner, near);
             any = true;
-            last = nearest(nodes, near, field.point[s], field.normal[s], nodes.spacing);
+            // Any will do: `move_to_nearest` finds the nearest.
+            const auto found = std::find_if(near.begin(), near.end(),
+                                            [&](std::uint32_t k) { return covers(k, s); });
+            last = found != near.end() ? *found : ThermalNodes::kNone;
         }
         if (last == ThermalNodes::kNone) {
             last = static_cast<std::uint32_t>(nodes.size());

@@ -16,16 +16,28 @@ HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, d
       work_(request.part->size(), 0.0) {
     const auto& node_of = request.part->node_of();
     const auto samples = blocks.samples();
-    // Of whole blocks: the last one may have lanes without a sample.
     constexpr std::size_t kLanes = SampleBlocks::kLanes;
-    node_.assign((samples.size() + kLanes - 1) / kLanes * kLanes, ThermalNodes::kNone);
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const std::uint32_t node = node_of[samples[k]];
-        node_[k] = node;
-        area_[node] += blocks.field().area[samples[k]];
-        if (request.part->samples()[node] == samples[k])
-            position_[node] = static_cast<std::uint32_t>(k);
+    static_assert(kLanes == 64, "a bit each in NodeShare");
+    for (std::size_t begin = 0; begin < samples.size(); begin += kLanes) {
+        const std::size_t here = shares_.size();
+        first_.push_back(static_cast<std::uint32_t>(here));
+        std::size_t at = here;
+        for (std::size_t k = begin; k < std::min(begin + kLanes, samples.size()); ++k) {
+            const std::uint32_t node = node_of[samples[k]];
+            // Neighbours often have the same.
+            if (at == shares_.size() || shares_[at].node != node) {
+                at = here;
+                while (at < shares_.size() && shares_[at].node != node) ++at;
+                if (at == shares_.size()) shares_.push_back({0, node});
+            }
+            shares_[at].samples |= std::uint64_t{1} << (k - begin);
+            area_[node] += blocks.field().area[samples[k]];
+            if (request.part->samples()[node] == samples[k])
+                position_[node] = static_cast<std::uint32_t>(k);
+        }
+        most_ = std::max(most_, shares_.size() - here);
     }
+    first_.push_back(static_cast<std::uint32_t>(shares_.size()));
 }
 
 void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, double force,
@@ -36,26 +48,21 @@ void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, dou
         if (force_[node] == 0.0) pressed_.push_back(node);
         force_[node] += force_there;
     };
-    // Samples of one node often follow each other.
+    std::vector<float> forces(most_);
     const auto press_block = [&](std::size_t first, const float* values) {
-        const auto& area = blocks_.block(static_cast<std::uint32_t>(first / kLanes)).area;
-        std::uint32_t node = ThermalNodes::kNone;
-        double sum = 0.0;
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const std::uint32_t next = node_[first + lane];
-            if (next != node) {
-                press(node, sum);
-                node = next;
-                sum = 0.0;
-            }
-            sum += double{values[lane]} * double{std::max(area[lane], 0.0f)};
-        }
-        press(node, sum);
+        const std::size_t block = first / kLanes;
+        const NodeShare* shares = &shares_[first_[block]];
+        const std::size_t count = first_[block + 1] - first_[block];
+        add_up_forces(values, blocks_.block(static_cast<std::uint32_t>(block)).area.data(), shares,
+                      count, forces.data());
+        for (std::size_t k = 0; k < count; ++k) press(shares[k].node, forces[k]);
     };
     map.for_pressed_blocks(pressure, press_block, [&](std::size_t position, double value) {
-        const float area =
-            blocks_.block(static_cast<std::uint32_t>(position / kLanes)).area[position % kLanes];
-        press(node_[position], value * std::max(area, 0.0f));
+        const std::size_t block = position / kLanes, lane = position % kLanes;
+        const float area = blocks_.block(static_cast<std::uint32_t>(block)).area[lane];
+        const NodeShare* share = &shares_[first_[block]];
+        while ((share->samples >> lane & 1U) == 0) ++share;
+        press(share->node, value * std::max(area, 0.0f));
     });
     // Their samples' mean pressure is the nodes'. The force is the contact's, to the last bit.
     const ThermalNodes& nodes = request_.part->nodes();

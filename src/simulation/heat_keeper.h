@@ -8,6 +8,7 @@
 #include "contact/gap_map.h"
 #include "heat/conduction.h"
 #include "heightfield/sample_blocks.h"
+#include "node_forces.h"
 
 namespace beltgrinding {
 
@@ -38,7 +39,9 @@ class HeatKeeper {
     double belt_speed_;
     double start_;  // s, of the program
     Conduction conduction_;
-    std::vector<std::uint32_t> node_;      // by position
+    std::vector<NodeShare> shares_;        // of nodes in blocks
+    std::vector<std::uint32_t> first_;     // (blocks + 1), of `shares_`
+    std::size_t most_ = 0;                 // of a block
     std::vector<std::uint32_t> position_;  // by node, of its sample
     std::vector<double> area_;             // mm2 by node, of its samples
     std::vector<double> force_, work_;     // N, of one contact; N s, of the running step: by node

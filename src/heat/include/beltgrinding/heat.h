@@ -10,6 +10,7 @@
 
 namespace beltgrinding {
 
+struct ThermalLevel;
 struct ThermalNodes;
 
 /// How a part's material conducts and stores heat, whatever its temperature.
@@ -34,11 +35,9 @@ struct HeatState {
     double time = 0.0;                  ///< s of process, through all programs
     double heated = 0.0;                ///< s, when heat came last
     std::uint32_t motion = kNever;      ///< that brought it
-    Vec3 centre = Vec3::Zero();         ///< mm, where
-    double radius = 0.0;                ///< mm, how far about
+    Frame place = Frame::Identity();    ///< where, mm: the middle and axes of a box
+    Vec3 half = Vec3::Zero();           ///< mm, half the box's sides
     std::vector<float> modes;           ///< K, (nodes, modes): its sum is the surface's temperature
-    std::vector<double> current;        ///< s, (nodes): when `modes` are of
-    std::vector<double> conducted;      ///< s, (nodes): when heat went to all neighbours last
     std::vector<double> last;           ///< s, (nodes): when heat came near last; long ago: never
     std::vector<std::uint8_t> warm;     ///< (nodes): may be other than 0
     std::vector<float> peak;            ///< K, (nodes): greatest rise so far
@@ -87,9 +86,14 @@ class PartHeat {
 
     /// For the room's own use.
     const ThermalNodes& nodes() const { return *nodes_; }
+    /// The same: levels of fewer nodes, made when they are first asked for.
+    const std::vector<ThermalLevel>& levels() const;
 
   private:
-    std::shared_ptr<const ThermalNodes> nodes_;
+    struct Levels;
+
+    std::shared_ptr<ThermalNodes> nodes_;
+    std::shared_ptr<Levels> levels_;
     HeatMaterial material_;
     HeatState state_;
 };

@@ -19,7 +19,6 @@ struct HeatPatch {
     std::vector<HeatWay> ways;         ///< to numbers of nodes; there may be more behind the last
     std::vector<std::uint8_t> slow;    ///< by node: nothing is left of its faster modes
     double most = 0.0;                 ///< greatest sum of a node's rates
-    double longest = 0.0;              ///< s, of intervals of the ways' own
 
     void clear();
 };

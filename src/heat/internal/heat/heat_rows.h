@@ -10,8 +10,7 @@ namespace beltgrinding {
 /// From a node to another.
 struct HeatWay {
     std::uint32_t other;
-    /// What a K of difference does: 1/s, or 1 if for an interval of the way's own; to the first
-    /// mode, by the sections' thickness.
+    /// What a K of difference does, 1/s; to the first mode, by the sections' thickness.
     float rate, mean_rate;
 };
 /// What lies between nodes, as of `HeatPatch`.
@@ -39,6 +38,10 @@ void heat_row(float* row, const float* gain, const float* own, float flux, const
 float decay_row(float* row, const float* decay);
 /// All of `count` rows.
 void decay_rows(float* rows, std::size_t count, const float* decay);
+/// The greatest magnitude.
+float greatest_of_row(const float* row);
 float sum_of_row(const float* row);
+/// The same of row decay.
+float sum_of_row(const float* row, const float* decay);
 
 }  // namespace beltgrinding

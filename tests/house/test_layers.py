@@ -242,3 +242,23 @@ def test_what_is_taken_from_a_module_of_ours_is_there():
                     if not inside and node.attr not in _names(modules()[whole]):
                         missing.append(f"{module}:{node.lineno}: {whole} has no {node.attr}")
     assert missing == []
+
+
+def test_every_package_has_what_it_promises():
+    """``__all__`` of each module names what the module defines or imports."""
+    lacking = []
+    for module, path in modules().items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        promised, there = [], set()
+        for node in tree.body:
+            if isinstance(node, (ast.Import, ast.ImportFrom)):
+                there |= {(name.asname or name.name).split(".")[0] for name in node.names}
+            elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                there.add(node.name)
+            elif isinstance(node, ast.Assign):
+                there |= {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+                if any(isinstance(t, ast.Name) and t.id == "__all__" for t in node.targets):
+                    promised = ast.literal_eval(node.value)
+        lazy = any(isinstance(n, ast.FunctionDef) and n.name == "__getattr__" for n in tree.body)
+        lacking += [f"{module}.{name}" for name in promised if name not in there and not lazy]
+    assert not lacking

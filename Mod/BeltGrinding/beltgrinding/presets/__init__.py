@@ -12,6 +12,7 @@ from .library import (
     problems,
     robots,
     settings,
+    thermals,
     wheels,
 )
 from .rubber import shore_to_modulus

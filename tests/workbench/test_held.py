@@ -135,6 +135,7 @@ def test_where_it_is_in_the_way_everywhere_that_is_told(wall, tmp_path):
     assert laid["no_room"] and laid["passes"]
     (fact,) = told(laid, "raster.no_room_for_held")
     assert "drip tray" in str(fact) and not told(laid, "raster.no_room")
+    assert laid["warnings"][0] is fact
 
 
 def test_the_stock_is_part_of_the_part(wall):

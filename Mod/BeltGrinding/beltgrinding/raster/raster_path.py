@@ -443,11 +443,13 @@ def _tell_ways(clearing, result, warnings):
 
 
 def _tell_no_room(result, clearing, warnings):
+    """Before all other warnings."""
     if not result["passes"]:
         return
     contacts = result["contacts"][result["contact"]]
     if (clearing.tool_depth(contacts) <= clearing.fit).any():
-        warnings.append(
+        warnings.insert(
+            0,
             core.Fact(
                 "raster.no_room_for_held",
                 "what goes with {tool} would meet the part, or what is fixed to it, wherever {tool} itself has room on these "
@@ -455,17 +457,18 @@ def _tell_no_room(result, clearing, warnings):
                 "make room",
                 tool=clearing.tool.name,
                 bodies=", ".join(clearing.in_the_way(contacts)),
-            )
+            ),
         )
         return
-    warnings.append(
+    warnings.insert(
+        0,
         core.Fact(
             "raster.no_room",
             "{tool} fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
             "with it; take {smaller}, or another direction",
             tool=clearing.tool.name,
             smaller=clearing.tool.smaller,
-        )
+        ),
     )
 
 

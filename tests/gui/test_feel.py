@@ -290,6 +290,7 @@ import time
 from beltgrinding.gui.common import runner, status_progress
 from beltgrinding.gui.panels import simulation_panel
 job.Spacing = 0.05
+job.MaxTravel = 0.01  # mm: so many steps that it is still grinding when it is cancelled
 doc.recompute()
 told, painted = [], []
 progress = simulation_panel.SimulationPanel.progress

@@ -138,6 +138,19 @@ def test_where_it_is_in_the_way_everywhere_that_is_told(wall, tmp_path):
     assert laid["warnings"][0] is fact
 
 
+def test_of_an_invalid_part_it_is_told_that_nothing_is_known(wall):
+    class Invalid:
+        valid = False
+
+    warnings = []
+    held = Held(with_fork(wall), Invalid(), warnings, None)
+    held.mount(with_fork(wall)["belt_machine"])
+    assert [fact.code for fact in warnings] == ["raster.held_not_looked_at"] and not held.names
+    for quiet in (wall, with_fork(wall, cell={"check_collisions": False})):
+        Held(quiet, Invalid(), warnings, None)
+    assert len(warnings) == 1
+
+
 def test_the_stock_is_part_of_the_part(wall):
     from beltgrinding.job import workpiece
 

@@ -32,11 +32,20 @@ class Held:
         self._own, self._machine, self._advance = [], [], 0.0  # (name, core.CollisionMesh)
         self._fixed = None
         with_wheel, _ = sides(job)
-        for body in job["cell"]["bodies"] if self._looks else ():
-            if body["frame"] in with_wheel:
-                mesh = collision.read_body(body, body["name"], warnings, context)
-                mesh = _moved(mesh, np.linalg.inv(with_wheel[body["frame"]]))
-                self._own.append((body["name"], core.CollisionMesh(mesh, context)))
+        mine = [body for body in job["cell"]["bodies"] if body["frame"] in with_wheel]
+        if not self._looks:
+            if job["cell"]["check_collisions"] and (mine or _of_machine(job["belt_machine"])):
+                warnings.append(
+                    core.Fact(
+                        "raster.held_not_looked_at",
+                        "whether what goes with the wheel has room is not known: the part is not a valid shape; repair it",
+                    )
+                )
+            return
+        for body in mine:
+            mesh = collision.read_body(body, body["name"], warnings, context)
+            mesh = _moved(mesh, np.linalg.inv(with_wheel[body["frame"]]))
+            self._own.append((body["name"], core.CollisionMesh(mesh, context)))
 
     def mount(self, machine, advance=0.0):
         """Takes a job's belt_machine; ``advance``: mm that a belt gives way, by which all comes nearer to the part."""

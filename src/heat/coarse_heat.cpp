@@ -22,6 +22,13 @@ double left(double age) {
     return std::clamp((kRipe + kRipening - age * kRipe) / kRipening, 0.0, 1.0);
 }
 
+/// Adds what of a finer row comes to `to`: `part` of it by area, of the first mode by the sections'
+/// `depths`, one over the other, as well.
+void add_part(float* to, float part, float depths, const float* row) {
+    to[0] += part * depths * row[0];
+    for (std::size_t j = 1; j < kModes; ++j) to[j] += part * row[j];
+}
+
 }  // namespace
 
 bool CoarseHeat::little(const float* row) {
@@ -154,8 +161,7 @@ void CoarseHeat::give(std::size_t level, std::uint32_t finer, float area, float 
         if (!to.layer.has(k) || there == Row{}) to.from.push_back(k);
         to.layer.put(k, to.time);
         to.last[k] = std::max(to.last[k], last);
-        there[0] += part * depth / to.place.depth[k] * row[0];
-        for (std::size_t j = 1; j < kModes; ++j) there[j] += part * row[j];
+        add_part(there.data(), part, depth / to.place.depth[k], row.data());
     }
 }
 
@@ -204,9 +210,7 @@ void CoarseHeat::give_rest(std::size_t level, std::uint32_t finer, float area, f
         const std::uint32_t k = shares.node[i];
         const float part = shares.share[i] * area / to.place.area[k];
         to.layer.put(k, to.time);
-        float* there = to.layer.row(k);
-        there[0] += part * depth / to.place.depth[k] * row[0];
-        for (std::size_t j = 1; j < kModes; ++j) there[j] += part * row[j];
+        add_part(to.layer.row(k), part, depth / to.place.depth[k], row);
     }
 }
 

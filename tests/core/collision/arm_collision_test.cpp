@@ -9,6 +9,7 @@
 #include "beltgrinding/error.h"
 #include "collision/collision_check.h"
 #include "collision/collision_mesh.h"
+#include "support/box.h"
 
 namespace beltgrinding {
 namespace {
@@ -28,14 +29,7 @@ RobotArm arm() {
 }
 
 TriangleMesh box(const Vec3& middle, const Vec3& half) {
-    TriangleMesh mesh;
-    for (int k = 0; k < 8; ++k) {
-        const Vec3 sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-        mesh.vertices.push_back((middle + half.cwiseProduct(sign)).cast<float>());
-    }
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
+    return testing::box(middle - half, middle + half);
 }
 
 /// A box about the way from each axis to the next, in the robot's base at joint angles 0.

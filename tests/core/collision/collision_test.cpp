@@ -12,25 +12,15 @@
 #include "base/threads.h"
 #include "beltgrinding/error.h"
 #include "collision/collision_mesh.h"
+#include "support/box.h"
 
 namespace beltgrinding {
 namespace {
 
+using testing::box;
+
 constexpr double kFeed = 50.0;  // mm/s
 constexpr double kResolution = CollisionOptions().resolution;
-
-/// A box between two corners.
-TriangleMesh box(const Vec3& low, const Vec3& high) {
-    TriangleMesh mesh;
-    for (int k = 0; k < 8; ++k) {
-        mesh.vertices.push_back(
-            Vec3((k & 1 ? high : low).x(), (k & 2 ? high : low).y(), (k & 4 ? high : low).z())
-                .cast<float>());
-    }
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
-}
 
 /// A sphere of `rings` rings, its vertices on the radius.
 TriangleMesh sphere(const Vec3& centre, double radius, int rings) {

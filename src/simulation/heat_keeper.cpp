@@ -35,7 +35,7 @@ HeatKeeper::HeatKeeper(const SampleBlocks& blocks, const HeatRequest& request, d
             if (request.part->samples()[node] == samples[k])
                 position_[node] = static_cast<std::uint32_t>(k);
         }
-        most_ = std::max(most_, shares_.size() - here);
+        if (shares_.size() - here > forces_.size()) forces_.resize(shares_.size() - here);
     }
     first_.push_back(static_cast<std::uint32_t>(shares_.size()));
 }
@@ -48,14 +48,13 @@ void HeatKeeper::press(const GapMap& map, const DisplacedPressure& pressure, dou
         if (force_[node] == 0.0) pressed_.push_back(node);
         force_[node] += force_there;
     };
-    std::vector<float> forces(most_);
     const auto press_block = [&](std::size_t first, const float* values) {
         const std::size_t block = first / kLanes;
         const NodeShare* shares = &shares_[first_[block]];
         const std::size_t count = first_[block + 1] - first_[block];
         add_up_forces(values, blocks_.block(static_cast<std::uint32_t>(block)).area.data(), shares,
-                      count, forces.data());
-        for (std::size_t k = 0; k < count; ++k) press(shares[k].node, forces[k]);
+                      count, forces_.data());
+        for (std::size_t k = 0; k < count; ++k) press(shares[k].node, forces_[k]);
     };
     map.for_pressed_blocks(pressure, press_block, [&](std::size_t position, double value) {
         const std::size_t block = position / kLanes, lane = position % kLanes;

@@ -41,7 +41,7 @@ class HeatKeeper {
     Conduction conduction_;
     std::vector<NodeShare> shares_;        // of nodes in blocks
     std::vector<std::uint32_t> first_;     // (blocks + 1), of `shares_`
-    std::size_t most_ = 0;                 // of a block
+    std::vector<float> forces_;            // N, of a block's shares: as many as any has
     std::vector<std::uint32_t> position_;  // by node, of its sample
     std::vector<double> area_;             // mm2 by node, of its samples
     std::vector<double> force_, work_;     // N, of one contact; N s, of the running step: by node

@@ -4,7 +4,7 @@
 #include "delaunay.h"
 
 #include <algorithm>
-#include <deque>
+#include <utility>
 
 namespace beltgrinding {
 namespace {
@@ -237,98 +237,108 @@ bool Delaunay::find_edge(Index a, Index b, Index& face, int& corner) const {
     return false;
 }
 
+bool Delaunay::fix_edge(Index a, Index b) {
+    Index face = 0;
+    int corner = 0;
+    if (!find_edge(a, b, face, corner)) return false;
+    Face& f = faces_[face];
+    f.fixed = static_cast<std::uint8_t>(f.fixed | 1u << corner);
+    const Index other = f.n[static_cast<std::size_t>(corner)];
+    if (other == kNone) return true;
+    Face& g = faces_[other];
+    g.fixed = static_cast<std::uint8_t>(g.fixed | 1u << corner_towards(other, face));
+    return true;
+}
+
+std::optional<Delaunay::Exit> Delaunay::leave(Index a, Index end) const {
+    const GridPoint &pa = points_[a], &pe = points_[end];
+    const auto ahead = [&](Index v) {
+        return (std::int64_t(points_[v].x) - pa.x) * (std::int64_t(pe.x) - pa.x) +
+                   (std::int64_t(points_[v].y) - pa.y) * (std::int64_t(pe.y) - pa.y) >
+               0;
+    };
+    const Index first = face_at_[a];
+    Index f = first;
+    do {
+        const int at = corner_of(f, a);
+        const Index r = faces_[f].v[static_cast<std::size_t>(next(at))];
+        const Index l = faces_[f].v[static_cast<std::size_t>(prev(at))];
+        const std::int64_t side_r = orient(pa, pe, points_[r]);
+        const std::int64_t side_l = orient(pa, pe, points_[l]);
+        if (side_r == 0 && ahead(r)) return Exit{r, f, at};
+        if (side_r < 0 && side_l > 0) return Exit{kNone, f, at};
+        f = faces_[f].n[static_cast<std::size_t>(next(at))];
+    } while (f != first && f != kNone);
+    return std::nullopt;
+}
+
+std::optional<Delaunay::Crossed> Delaunay::march(Index a, Index end, const Exit& exit) const {
+    const GridPoint &pa = points_[a], &pe = points_[end];
+    Crossed crossed;
+    Index from = exit.face;
+    int edge = exit.corner;
+    Index right = faces_[from].v[static_cast<std::size_t>(next(edge))];
+    Index left = faces_[from].v[static_cast<std::size_t>(prev(edge))];
+    for (;;) {
+        if (faces_[from].fixed >> edge & 1) return std::nullopt;
+        crossed.edges.push_back({right, left});
+        const Index to = faces_[from].n[static_cast<std::size_t>(edge)];
+        const int c = corner_towards(to, from);
+        const Index v = faces_[to].v[static_cast<std::size_t>(c)];
+        const std::int64_t side = orient(pa, pe, points_[v]);
+        if (side == 0) {
+            crossed.vertex = v;
+            return crossed;
+        }
+        edge = corner_of(to, side > 0 ? left : right);
+        (side > 0 ? left : right) = v;
+        from = to;
+    }
+}
+
+bool Delaunay::clear(Index a, Crossed crossed) {
+    const Index b = crossed.vertex;
+    const GridPoint &pa = points_[a], &pb = points_[b];
+    std::deque<std::pair<Index, Index>>& crossing = crossed.edges;
+    while (!crossing.empty()) {
+        const auto [v, w] = crossing.front();
+        crossing.pop_front();
+        Index face = 0;
+        int corner = 0;
+        if (!find_edge(v, w, face, corner)) return false;
+        const Index other = faces_[face].n[static_cast<std::size_t>(corner)];
+        const Index p = faces_[face].v[static_cast<std::size_t>(corner)];
+        const Index q = faces_[other].v[static_cast<std::size_t>(corner_towards(other, face))];
+        // Convex: the other diagonal p-q lies strictly between v and w.
+        if (orient(points_[p], points_[q], points_[v]) >= 0 ||
+            orient(points_[p], points_[q], points_[w]) <= 0) {
+            // q is seen from p with v on the right, w on the left, or the quad is not convex.
+            crossing.push_back({v, w});
+            continue;
+        }
+        flip(face, corner);
+        const std::int64_t sp = orient(pa, pb, points_[p]), sq = orient(pa, pb, points_[q]);
+        if (p != a && q != a && p != b && q != b && ((sp < 0 && sq > 0) || (sp > 0 && sq < 0)))
+            crossing.push_back({p, q});
+    }
+    return true;
+}
+
 bool Delaunay::constrain(Index point_a, Index point_b) {
     Index a = alias_[point_a] + 3;
     const Index end = alias_[point_b] + 3;
-    const auto fix = [&](Index face, int corner) {
-        Face& f = faces_[face];
-        f.fixed = static_cast<std::uint8_t>(f.fixed | 1u << corner);
-        const Index other = f.n[static_cast<std::size_t>(corner)];
-        if (other == kNone) return;
-        Face& g = faces_[other];
-        g.fixed = static_cast<std::uint8_t>(g.fixed | 1u << corner_towards(other, face));
-    };
     while (a != end) {
-        Index face = 0;
-        int corner = 0;
-        if (find_edge(a, end, face, corner)) {
-            fix(face, corner);
-            return true;
+        if (fix_edge(a, end)) return true;
+        const std::optional<Exit> exit = leave(a, end);
+        if (!exit) return false;
+        Index b = exit->vertex;
+        if (b == kNone) {
+            std::optional<Crossed> crossed = march(a, end, *exit);
+            if (!crossed) return false;
+            b = crossed->vertex;
+            if (!clear(a, std::move(*crossed))) return false;
         }
-        // The fan at a: a vertex on the way, or the edge through which the way leaves.
-        const GridPoint &pa = points_[a], &pe = points_[end];
-        std::deque<std::pair<Index, Index>> crossing;
-        Index f = face_at_[a], b = kNone;
-        const Index first = f;
-        bool found = false;
-        do {
-            const int at = corner_of(f, a);
-            const Index r = faces_[f].v[static_cast<std::size_t>(next(at))];
-            const Index l = faces_[f].v[static_cast<std::size_t>(prev(at))];
-            const std::int64_t side_r = orient(pa, pe, points_[r]);
-            const std::int64_t side_l = orient(pa, pe, points_[l]);
-            const auto ahead = [&](Index v) {
-                return (std::int64_t(points_[v].x) - pa.x) * (std::int64_t(pe.x) - pa.x) +
-                           (std::int64_t(points_[v].y) - pa.y) * (std::int64_t(pe.y) - pa.y) >
-                       0;
-            };
-            if (side_r == 0 && ahead(r)) {
-                if (!find_edge(a, r, face, corner)) return false;
-                fix(face, corner);
-                a = r;
-                found = true;
-                break;
-            }
-            if (side_r < 0 && side_l > 0) {
-                if (faces_[f].fixed >> at & 1) return false;
-                crossing.push_back({r, l});
-                // March on to the end, or to a vertex exactly on the way.
-                Index from = f, to = faces_[f].n[static_cast<std::size_t>(at)];
-                Index right = r, left = l;
-                for (;;) {
-                    const int c = corner_towards(to, from);
-                    const Index v = faces_[to].v[static_cast<std::size_t>(c)];
-                    const std::int64_t side = orient(pa, pe, points_[v]);
-                    if (side == 0) {
-                        b = v;
-                        break;
-                    }
-                    const int leave = corner_of(to, side > 0 ? left : right);
-                    (side > 0 ? left : right) = v;
-                    if (faces_[to].fixed >> leave & 1) return false;
-                    crossing.push_back({right, left});
-                    from = to;
-                    to = faces_[to].n[static_cast<std::size_t>(leave)];
-                }
-                found = true;
-                break;
-            }
-            f = faces_[f].n[static_cast<std::size_t>(next(at))];
-        } while (f != first && f != kNone);
-        if (!found) return false;
-        if (crossing.empty()) continue;
-        const GridPoint& pb = points_[b];
-        while (!crossing.empty()) {
-            const auto [v, w] = crossing.front();
-            crossing.pop_front();
-            if (!find_edge(v, w, face, corner)) return false;
-            const Index other = faces_[face].n[static_cast<std::size_t>(corner)];
-            const Index p = faces_[face].v[static_cast<std::size_t>(corner)];
-            const Index q = faces_[other].v[static_cast<std::size_t>(corner_towards(other, face))];
-            // Convex: the other diagonal p-q lies strictly between v and w.
-            if (orient(points_[p], points_[q], points_[v]) >= 0 ||
-                orient(points_[p], points_[q], points_[w]) <= 0) {
-                // q is seen from p with v on the right, w on the left, or the quad is not convex.
-                crossing.push_back({v, w});
-                continue;
-            }
-            flip(face, corner);
-            const std::int64_t sp = orient(pa, pb, points_[p]), sq = orient(pa, pb, points_[q]);
-            if (p != a && q != a && p != b && q != b && ((sp < 0 && sq > 0) || (sp > 0 && sq < 0)))
-                crossing.push_back({p, q});
-        }
-        if (!find_edge(a, b, face, corner)) return false;
-        fix(face, corner);
+        if (!fix_edge(a, b)) return false;
         a = b;
     }
     return true;

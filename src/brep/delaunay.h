@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace beltgrinding {
@@ -62,6 +65,24 @@ class Delaunay {
     int corner_of(Index face, Index vertex) const;
     int corner_towards(Index face, Index neighbour) const;
     bool find_edge(Index a, Index b, Index& face, int& corner) const;
+    /// Makes the edge a constraint. False if there is none.
+    bool fix_edge(Index a, Index b);
+    /// How the straight way from a vertex leaves its fan: along the edge to a vertex that lies on
+    /// the way, or (vertex: kNone) through the edge opposite to the face's corner.
+    struct Exit {
+        Index vertex, face;
+        int corner;
+    };
+    std::optional<Exit> leave(Index a, Index end) const;
+    /// The edges, right and left ends, that the way crosses up to the first vertex on it.
+    struct Crossed {
+        std::deque<std::pair<Index, Index>> edges;
+        Index vertex = kNone;
+    };
+    /// Empty where the way crosses a constraint.
+    std::optional<Crossed> march(Index a, Index end, const Exit& exit) const;
+    /// Flips the edges out of the way from `a`. False where one is missing.
+    bool clear(Index a, Crossed crossed);
 
     std::vector<GridPoint> points_;
     std::vector<Index> alias_;

@@ -188,85 +188,132 @@ std::vector<double> best_signs(const std::vector<Piece>& pieces,
     return best;
 }
 
-}  // namespace
-
-FaceSides face_sides(const TopoDS_Shape& meshed, const std::vector<char>& loose,
-                     const std::vector<FaceBorder>& borders, const RunContext& context) {
-    const std::size_t count = loose.size();
-    FaceSides sides;
-    sides.turned.assign(count, 0);
-    sides.doubtful.assign(count, 0);
-    Neighbours neighbours(count);
+/// Joins the loose faces that meet at judged borders. `contrary`: the borders of some length that
+/// say otherwise than those before.
+Neighbours joined(const std::vector<char>& loose, const std::vector<FaceBorder>& borders,
+                  std::vector<FaceBorder>& contrary) {
+    Neighbours neighbours(loose.size());
     for (const FaceBorder& border : borders) {
         if (!border.judged || loose[border.a] == 0 || loose[border.b] == 0) continue;
-        if (!neighbours.join(border.a, border.b, border.alike)) sides.contrary.push_back(border);
+        if (!neighbours.join(border.a, border.b, border.alike)) contrary.push_back(border);
     }
-    std::vector<double> own(count, 0.0);  // length of a face's borders with loose ones, mm
+    std::vector<double> own(loose.size(), 0.0);  // length of a face's borders with loose ones, mm
     for (const FaceBorder& border : borders)
         own[border.a] += border.length, own[border.b] += border.length;
-    std::erase_if(sides.contrary, [&](const FaceBorder& border) {
+    std::erase_if(contrary, [&](const FaceBorder& border) {
         return border.length < kContrary * std::min(own[border.a], own[border.b]);
     });
+    return neighbours;
+}
 
-    const std::vector<Corners> triangles = triangles_of_loose(meshed, loose);
-    std::vector<double> area(count, 0.0);
-    for (const Corners& t : triangles) area[t.face] += t.area;
+/// Faces that are turned so that what hangs together is as most of its area is given.
+std::vector<char> turned_as_most(const Neighbours& neighbours, const std::vector<double>& area) {
+    const auto count = static_cast<std::uint32_t>(area.size());
     std::vector<double> whole(count, 0.0), against(count, 0.0);  // mm2, by the piece's lowest face
     for (std::uint32_t f = 0; f < count; ++f) {
         const auto [root, turned] = neighbours.find(f);
         whole[root] += area[f];
         if (turned) against[root] += area[f];
     }
-    // As most of the area is given.
-    std::vector<std::uint32_t> number(count, 0);
-    std::vector<Piece> pieces;
+    std::vector<char> turn(count, 0);
     for (std::uint32_t f = 0; f < count; ++f) {
         const auto [root, turned] = neighbours.find(f);
-        sides.turned[f] = turned != (against[root] > 0.5 * whole[root]) ? 1 : 0;
-        if (loose[f] == 0) continue;
-        if (root == f) {
-            number[f] = static_cast<std::uint32_t>(pieces.size());
-            pieces.emplace_back();
-        }
-        number[f] = number[root];
-        pieces[number[f]].area += area[f];
-        if (turned) pieces[number[f]].mixed = true;
+        turn[f] = turned != (against[root] > 0.5 * whole[root]) ? 1 : 0;
     }
-    std::vector<std::uint32_t> piece_of;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        piece_of.push_back(number[triangles[t].face]);
-        pieces[piece_of.back()].triangles.push_back(static_cast<std::uint32_t>(t));
-    }
-    for (std::uint32_t f = 0; f < count; ++f)  // what has no triangles tells nothing
-        if (loose[f] != 0 && pieces[number[f]].triangles.empty()) sides.doubtful[f] = 1;
-    if (triangles.empty()) return sides;
+    return turn;
+}
 
-    // Pieces without triangles stay out of the sums: their area is 0.
-    std::vector<std::uint32_t> used(pieces.size(), 0);
-    std::vector<Piece> sound;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        used[i] = static_cast<std::uint32_t>(sound.size());
-        if (!pieces[i].triangles.empty()) sound.push_back(std::move(pieces[i]));
+/// The loose faces in pieces that hang together.
+struct Pieces {
+    std::vector<Piece> all;
+    std::vector<std::uint32_t> of_face;  ///< of a loose one
+    std::vector<std::uint32_t> of_triangle;
+
+    Pieces(const std::vector<char>& loose, const Neighbours& neighbours,
+           const std::vector<double>& area, const std::vector<Corners>& triangles);
+    /// Leaves out pieces without triangles. Their faces belong to any.
+    void drop_empty();
+};
+
+Pieces::Pieces(const std::vector<char>& loose, const Neighbours& neighbours,
+               const std::vector<double>& area, const std::vector<Corners>& triangles)
+    : of_face(loose.size(), 0) {
+    for (std::uint32_t f = 0; f < loose.size(); ++f) {
+        if (loose[f] == 0) continue;
+        const auto [root, turned] = neighbours.find(f);
+        if (root == f) {
+            of_face[f] = static_cast<std::uint32_t>(all.size());
+            all.emplace_back();
+        }
+        of_face[f] = of_face[root];
+        all[of_face[f]].area += area[f];
+        if (turned) all[of_face[f]].mixed = true;
     }
-    for (std::uint32_t& piece : piece_of) piece = used[piece];
-    const auto w = windings(sound, triangles, piece_of, sides.turned, context);
-    std::vector<double> sign = best_signs(sound, w);
-    const double least = misfit(sound, w, sign);
-    std::vector<char> turn(sound.size(), 0), doubt(sound.size(), 0);
-    for (std::size_t i = 0; i < sound.size(); ++i) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        of_triangle.push_back(of_face[triangles[t].face]);
+        all[of_triangle.back()].triangles.push_back(static_cast<std::uint32_t>(t));
+    }
+}
+
+void Pieces::drop_empty() {
+    std::vector<std::uint32_t> kept(all.size(), 0);
+    std::vector<Piece> sound;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        kept[i] = static_cast<std::uint32_t>(sound.size());
+        if (!all[i].triangles.empty()) sound.push_back(std::move(all[i]));
+    }
+    all = std::move(sound);
+    for (std::uint32_t& piece : of_face) piece = kept[piece];
+    for (std::uint32_t& piece : of_triangle) piece = kept[piece];
+}
+
+/// By piece: it is to be turned; which way round it is could not be told.
+struct Verdict {
+    std::vector<char> turn, doubt;
+};
+
+Verdict judge(const std::vector<Piece>& pieces, const std::vector<std::vector<double>>& w) {
+    std::vector<double> sign = best_signs(pieces, w);
+    const double least = misfit(pieces, w, sign);
+    Verdict verdict{std::vector<char>(pieces.size(), 0), std::vector<char>(pieces.size(), 0)};
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
         sign[i] = -sign[i];
         // 1 of what closes, 0 of a flat sheet.
-        const double told = 0.25 * (misfit(sound, w, sign) - least) / sound[i].area;
+        const double told = 0.25 * (misfit(pieces, w, sign) - least) / pieces[i].area;
         sign[i] = -sign[i];
         const bool against_given = sign[i] < 0;
-        doubt[i] = told < (against_given && !sound[i].mixed ? kCloses : kTold) ? 1 : 0;
-        turn[i] = against_given && doubt[i] == 0 ? 1 : 0;
+        const bool doubt = told < (against_given && !pieces[i].mixed ? kCloses : kTold);
+        verdict.doubt[i] = doubt ? 1 : 0;
+        verdict.turn[i] = against_given && !doubt ? 1 : 0;
     }
+    return verdict;
+}
+
+}  // namespace
+
+FaceSides face_sides(const TopoDS_Shape& meshed, const std::vector<char>& loose,
+                     const std::vector<FaceBorder>& borders, const RunContext& context) {
+    const std::size_t count = loose.size();
+    FaceSides sides;
+    sides.doubtful.assign(count, 0);
+    const Neighbours neighbours = joined(loose, borders, sides.contrary);
+    const std::vector<Corners> triangles = triangles_of_loose(meshed, loose);
+    std::vector<double> area(count, 0.0);
+    for (const Corners& t : triangles) area[t.face] += t.area;
+    sides.turned = turned_as_most(neighbours, area);
+    Pieces pieces(loose, neighbours, area, triangles);
+    for (std::uint32_t f = 0; f < count; ++f)  // what has no triangles tells nothing
+        if (loose[f] != 0 && pieces.all[pieces.of_face[f]].triangles.empty()) sides.doubtful[f] = 1;
+    if (triangles.empty()) return sides;
+
+    pieces.drop_empty();  // out of the sums: their area is 0
+    const Verdict verdict = judge(
+        pieces.all, windings(pieces.all, triangles, pieces.of_triangle, sides.turned, context));
     for (std::uint32_t f = 0; f < count; ++f) {
         if (loose[f] == 0 || sides.doubtful[f] != 0) continue;
-        const std::uint32_t piece = used[number[f]];
-        if (turn[piece] != 0) sides.turned[f] = sides.turned[f] != 0 ? 0 : 1;
-        sides.doubtful[f] = doubt[piece];
+        const std::uint32_t piece = pieces.of_face[f];
+        if (verdict.turn[piece] != 0) sides.turned[f] = sides.turned[f] != 0 ? 0 : 1;
+        sides.doubtful[f] = verdict.doubt[piece];
     }
     return sides;
 }

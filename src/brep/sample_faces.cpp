@@ -7,7 +7,9 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "base/large_memory.h"
 #include "base/memory.h"
@@ -125,12 +127,7 @@ Fact not_sampled(const Shape::Impl& impl, std::size_t face) {
             {{"face", face + 1}, {"shape", impl.name}}};
 }
 
-}  // namespace
-
-HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
-                         const SamplingOptions& options, const RunContext& context,
-                         SamplingReport* report) {
-    const Shape::Impl& impl = shape.impl();
+void refuse(const SamplingOptions& options) {
     if (!(options.spacing > 0) || !std::isfinite(options.spacing))
         throw InputError("brep.spacing", "the spacing must be above 0 mm, not {spacing:.3g}",
                          {{"spacing", options.spacing}});
@@ -143,6 +140,13 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     if (!(options.depth > 0) || !std::isfinite(options.depth))
         throw InputError("brep.depth", "the depth must be above 0 mm, not {depth:.3g}",
                          {{"depth", options.depth}});
+}
+
+/// Jobs for the faces, all if none is named, with their areas. `border`: mm, all of their borders'
+/// length.
+std::vector<Job> jobs_of(const Shape& shape, std::vector<std::size_t> faces, double& border,
+                         const RunContext& context) {
+    const Shape::Impl& impl = shape.impl();
     if (faces.empty())
         for (std::size_t i = 0; i < shape.face_count(); ++i) faces.push_back(i);
     std::vector<char> chosen(shape.face_count(), 0);
@@ -155,7 +159,6 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
             throw InputError("brep.face_twice", "face {face} is chosen twice; once is enough",
                              {{"face", f + 1}});
     }
-
     std::vector<Job> jobs(faces.size());
     std::vector<double> length(faces.size(), 0.0);
     parallel_blocks(faces.size(), 1, context, [&](std::size_t begin, std::size_t end) {
@@ -165,22 +168,79 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
             length[i] = perimeter(impl.face(faces[i]));
         }
     });
-    double area = 0, border = 0;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        if (std::isinf(jobs[i].area))  // so the reader tells what it could not find in time
+    border = std::accumulate(length.begin(), length.end(), 0.0);
+    return jobs;
+}
+
+/// mm2 of all jobs; refuses what is no area.
+double whole_area(const std::vector<Job>& jobs, const Shape::Impl& impl) {
+    double area = 0;
+    for (const Job& job : jobs) {
+        if (std::isinf(job.area))  // so the reader tells what it could not find in time
             throw InputError("brep.area_endless",
                              "the area of face {face} of {shape} was not found in the time that a "
                              "face is given; repair the shape or leave the face out",
-                             {{"face", jobs[i].face + 1}, {"shape", impl.name}});
-        if (!std::isfinite(jobs[i].area))
+                             {{"face", job.face + 1}, {"shape", impl.name}});
+        if (!std::isfinite(job.area))
             throw InputError("brep.area_not_finite",
                              "face {face} of {shape} has an area that is not a number: its surface "
                              "evaluates to NaN; repair the shape or leave the face out",
-                             {{"face", jobs[i].face + 1}, {"shape", impl.name}});
-        area += jobs[i].area;
-        border += length[i];
+                             {{"face", job.face + 1}, {"shape", impl.name}});
+        area += job.area;
     }
-    refuse_if_too_large(area, border, options.spacing, options.max_bytes);
+    return area;
+}
+
+/// Takes the samples of a job's face as the request says for all, or says why there are none.
+void take_samples(Job& job, FaceRequest request, const Shape::Impl& impl, bool reversed,
+                  const RunContext& context) {
+    if (job.area < kZeroArea) {
+        job.warning = {"brep.face_without_area",
+                       "face {face} of {shape} has no area and is left out",
+                       {{"face", job.face + 1}, {"shape", impl.name}}};
+        return;
+    }
+    try {
+        request.face = impl.face(job.face);
+        request.area = job.area;
+        request.reverse = (request.face.Orientation() == TopAbs_REVERSED) != reversed;
+        job.samples = sample_face(request, context);
+        if (job.samples.point.size() > kEnoughSamples &&
+            std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)
+            job.warning = {"brep.areas_differ",
+                           "face {face} of {shape} has an area of {area:.3g} mm2 by "
+                           "integration, {sampled:.3g} mm2 by its samples: check the shape",
+                           {{"face", job.face + 1},
+                            {"shape", impl.name},
+                            {"area", job.area},
+                            {"sampled", job.samples.sampled_area}}};
+    } catch (const Standard_Failure& failure) {
+        throw InputError("brep.failure", "{reason}; repair the shape or leave the face out",
+                         {{"reason", failure.GetMessageString()}})
+            .within(not_sampled(impl, job.face));
+    } catch (const InputError& error) {
+        throw error.within(not_sampled(impl, job.face));
+    }
+}
+
+void report_parameters(const std::vector<Job>& jobs, SamplingReport& report) {
+    for (const Job& job : jobs) {
+        const auto& found = job.samples.parameters;
+        report.parameters.insert(report.parameters.end(), found.begin(), found.end());
+        report.period.push_back(job.samples.period);
+    }
+}
+
+}  // namespace
+
+HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
+                         const SamplingOptions& options, const RunContext& context,
+                         SamplingReport* report) {
+    const Shape::Impl& impl = shape.impl();
+    refuse(options);
+    double border = 0;
+    std::vector<Job> jobs = jobs_of(shape, std::move(faces), border, context);
+    refuse_if_too_large(whole_area(jobs, impl), border, options.spacing, options.max_bytes);
     SampleBudget budget;
     const double allowed =
         options.max_bytes > 0 ? double(options.max_bytes) : 0.5 * double(usable_memory());
@@ -188,55 +248,21 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     const std::vector<char> reversed = shape.reversed(context);
     context.report(0.05);
 
+    FaceRequest request;
+    request.spacing = options.spacing;
+    request.precision = options.precision;
+    request.edge_spacing = options.edge_spacing;
+    if (options.precision > 0 || options.edge_spacing > 0) request.budget = &budget;
+    request.parameters = options.parameters && report != nullptr;
     std::atomic<std::size_t> done{0};
     parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            Job& job = jobs[i];
-            if (job.area < kZeroArea) {
-                job.warning = {"brep.face_without_area",
-                               "face {face} of {shape} has no area and is left out",
-                               {{"face", job.face + 1}, {"shape", impl.name}}};
-                continue;
-            }
-            try {
-                FaceRequest request;
-                request.face = impl.face(job.face);
-                request.spacing = options.spacing;
-                request.precision = options.precision;
-                request.edge_spacing = options.edge_spacing;
-                request.area = job.area;
-                if (options.precision > 0 || options.edge_spacing > 0) request.budget = &budget;
-                request.parameters = options.parameters && report != nullptr;
-                request.reverse =
-                    (request.face.Orientation() == TopAbs_REVERSED) != (reversed[job.face] != 0);
-                job.samples = sample_face(request, context);
-                if (job.samples.point.size() > kEnoughSamples &&
-                    std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)
-                    job.warning = {"brep.areas_differ",
-                                   "face {face} of {shape} has an area of {area:.3g} mm2 by "
-                                   "integration, {sampled:.3g} mm2 by its samples: check the shape",
-                                   {{"face", job.face + 1},
-                                    {"shape", impl.name},
-                                    {"area", job.area},
-                                    {"sampled", job.samples.sampled_area}}};
-            } catch (const Standard_Failure& failure) {
-                throw InputError("brep.failure", "{reason}; repair the shape or leave the face out",
-                                 {{"reason", failure.GetMessageString()}})
-                    .within(not_sampled(impl, job.face));
-            } catch (const InputError& error) {
-                throw error.within(not_sampled(impl, job.face));
-            }
+            take_samples(jobs[i], request, impl, reversed[jobs[i].face] != 0, context);
             context.report(0.05 + 0.9 * double(++done) / double(jobs.size()));
         }
     });
 
-    if (report && options.parameters) {
-        for (const Job& job : jobs) {
-            const auto& found = job.samples.parameters;
-            report->parameters.insert(report->parameters.end(), found.begin(), found.end());
-            report->period.push_back(job.samples.period);
-        }
-    }
+    if (request.parameters) report_parameters(jobs, *report);
     HeightField field;
     field.spacing = options.spacing;
     field.depth = options.depth;

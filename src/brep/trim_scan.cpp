@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "face_trim.h"
 
@@ -9,61 +10,72 @@ namespace {
 constexpr std::size_t kLeaf = 16;  // segments that are compared each with each
 constexpr int kDeepest = 24;       // halvings of the plane
 
-}  // namespace
+/// True if two segments without a common end cross inside both.
+bool cross(const Boundary& boundary, std::size_t i, std::size_t j) {
+    const auto &s = boundary.segments[i], &r = boundary.segments[j];
+    if (s.a == r.a || s.a == r.b || s.b == r.a || s.b == r.b) return false;
+    const GridPoint a = boundary.nodes[s.a].grid, b = boundary.nodes[s.b].grid;
+    const GridPoint c = boundary.nodes[r.a].grid, d = boundary.nodes[r.b].grid;
+    const std::int64_t o1 = orient(a, b, c), o2 = orient(a, b, d);
+    const std::int64_t o3 = orient(c, d, a), o4 = orient(c, d, b);
+    return ((o1 < 0 && o2 > 0) || (o1 > 0 && o2 < 0)) && ((o3 < 0 && o4 > 0) || (o3 > 0 && o4 < 0));
+}
 
-std::vector<std::size_t> crossing_segments(const Boundary& boundary) {
-    const auto& segments = boundary.segments;
-    struct Extent {
-        std::int32_t x0, x1, y0, y1;
-    };
-    std::vector<Extent> box(segments.size());
-    std::vector<std::size_t> order(segments.size());
-    const auto grid = [&](std::uint32_t node) { return boundary.nodes[node].grid; };
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        const GridPoint a = grid(segments[i].a), b = grid(segments[i].b);
-        box[i] = {std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)};
-        order[i] = i;
-    }
-    // A sweep along x would compare whole columns of a long upright border: sweep over both.
-    std::vector<char> hit(segments.size(), 0);
-    const auto cross = [&](std::size_t i, std::size_t j) {
-        const auto &s = segments[i], &r = segments[j];
-        if (s.a == r.a || s.a == r.b || s.b == r.a || s.b == r.b) return false;
-        const GridPoint a = grid(s.a), b = grid(s.b), c = grid(r.a), d = grid(r.b);
-        const std::int64_t o1 = orient(a, b, c), o2 = orient(a, b, d);
-        const std::int64_t o3 = orient(c, d, a), o4 = orient(c, d, b);
-        return ((o1 < 0 && o2 > 0) || (o1 > 0 && o2 < 0)) &&
-               ((o3 < 0 && o4 > 0) || (o3 > 0 && o4 < 0));
-    };
-    const auto visit = [&](auto&& self, std::vector<std::size_t>& set, int depth) -> void {
-        if (set.size() <= kLeaf || depth > kDeepest) {
-            for (std::size_t i = 0; i < set.size(); ++i)
-                for (std::size_t j = i + 1; j < set.size(); ++j)
-                    if (cross(set[i], set[j])) hit[set[i]] = hit[set[j]] = 1;
-            return;
+/// Looks for segments that cross by halving the plane along x and y in turns: a sweep along x would
+/// compare whole columns of a long upright border.
+class CrossingSearch {
+  public:
+    explicit CrossingSearch(const Boundary& boundary)
+        : boundary_(boundary), hit_(boundary.segments.size(), 0) {
+        for (const auto& s : boundary.segments) {
+            const GridPoint a = boundary.nodes[s.a].grid, b = boundary.nodes[s.b].grid;
+            low_.push_back({std::min(a.x, b.x), std::min(a.y, b.y)});
+            high_.push_back({std::max(a.x, b.x), std::max(a.y, b.y)});
         }
-        const bool by_x = depth % 2 == 0;
+    }
+    /// Compares the segments of `set`, which lie in one of 2^depth parts of the plane.
+    void look(const std::vector<std::size_t>& set, int depth) {
+        if (set.size() <= kLeaf || depth > kDeepest) return compare(set);
+        const auto along = [by_x = depth % 2 == 0](const GridPoint& p) { return by_x ? p.x : p.y; };
         std::vector<std::int32_t> middles;
         middles.reserve(set.size());
-        for (const std::size_t i : set)
-            middles.push_back(by_x ? box[i].x0 / 2 + box[i].x1 / 2 : box[i].y0 / 2 + box[i].y1 / 2);
+        for (const std::size_t i : set) middles.push_back(along(low_[i]) / 2 + along(high_[i]) / 2);
         std::nth_element(middles.begin(),
                          middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2),
                          middles.end());
         const std::int32_t cut = middles[middles.size() / 2];
-        std::vector<std::size_t> low, high;
+        std::vector<std::size_t> below, above;
         for (const std::size_t i : set) {
-            if ((by_x ? box[i].x0 : box[i].y0) <= cut) low.push_back(i);
-            if ((by_x ? box[i].x1 : box[i].y1) >= cut) high.push_back(i);
+            if (along(low_[i]) <= cut) below.push_back(i);
+            if (along(high_[i]) >= cut) above.push_back(i);
         }
-        self(self, low, depth + 1);
-        self(self, high, depth + 1);
-    };
-    visit(visit, order, 0);
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < hit.size(); ++i)
-        if (hit[i]) found.push_back(i);
-    return found;
+        look(below, depth + 1);
+        look(above, depth + 1);
+    }
+    /// True by segment that crosses another.
+    const std::vector<char>& hit() const { return hit_; }
+
+  private:
+    void compare(const std::vector<std::size_t>& set) {
+        for (std::size_t i = 0; i < set.size(); ++i)
+            for (std::size_t j = i + 1; j < set.size(); ++j)
+                if (cross(boundary_, set[i], set[j])) hit_[set[i]] = hit_[set[j]] = 1;
+    }
+
+    const Boundary& boundary_;
+    std::vector<GridPoint> low_, high_;  // corners of each segment's box
+    std::vector<char> hit_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> crossing_segments(const Boundary& boundary) {
+    std::vector<std::size_t> all(boundary.segments.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    CrossingSearch search(boundary);
+    search.look(all, 0);
+    std::erase_if(all, [&](std::size_t i) { return search.hit()[i] == 0; });
+    return all;
 }
 
 TrimScan::TrimScan(const Boundary& boundary, double top, std::size_t bins)

@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace beltgrinding {
-namespace {
-
-BeltArc arc_at(const Platen& platen, double above) {
-    if (platen.radius == 0.0) return {};
-    return {platen.radius + above, platen.end_angle()};
-}
-
-}  // namespace
 
 double BeltArc::angle(double s) const {
     return flat() ? 0.0 : std::clamp(s / radius, -end, end);
@@ -36,15 +28,6 @@ double BeltArc::behind(double x) const {
     // The sagitta in a form that loses no digits of a large radius.
     return on * on / (radius + std::sqrt(radius * radius - on * on)) +
            (std::abs(x) - on) * std::tan(end);
-}
-
-BeltArc face_arc(const BeltMachine& machine) {
-    if (machine.kind != BeltMachine::Kind::kPlaten) return {};
-    return arc_at(machine.platen, machine.belt.thickness);
-}
-
-BeltArc middle_arc(const AbrasiveBelt& belt, const Platen& platen) {
-    return arc_at(platen, 0.5 * belt.thickness);
 }
 
 }  // namespace beltgrinding

@@ -9,6 +9,9 @@ namespace beltgrinding {
 
 namespace {
 
+// mm: of larger ones single precision loses the samples' places along the normal.
+constexpr double kLargest = 1e6;
+
 /// The profile's stretch that y lies on.
 std::pair<Eigen::Vector2d, Eigen::Vector2d> stretch(const std::vector<Eigen::Vector2d>& profile,
                                                     double y) {
@@ -42,14 +45,18 @@ double ContactWheel::drop_slope(double y) const {
 }
 
 void ContactWheel::validate() const {
-    if (!std::isfinite(radius) || radius <= 0.0) {
+    if (!(radius > 0.0 && radius <= kLargest)) {
         throw InputError("wheel.radius",
-                         "contact wheel: radius is {radius:f} mm; give a positive one",
-                         {{"radius", radius}});
+                         "contact wheel: radius is {radius:g} mm; give one above 0 and up to "
+                         "{most:g} mm",
+                         {{"radius", radius}, {"most", kLargest}});
     }
-    if (!std::isfinite(width) || width <= 0.0) {
-        throw InputError("wheel.width", "contact wheel: width is {width:f} mm; give a positive one",
-                         {{"width", width}});
+    if (!(width > 0.0 && width <= kLargest)) {
+        throw InputError(
+            "wheel.width",
+            "contact wheel: width is {width:g} mm; give one above 0 and up to {most:g} "
+            "mm",
+            {{"width", width}, {"most", kLargest}});
     }
     if (!std::isfinite(crown_radius) || crown_radius < 0.0) {
         throw InputError("wheel.crown_radius",

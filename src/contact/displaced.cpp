@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace beltgrinding {
+namespace {
+
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 DisplacedPressure displaced(const ContactGrid& grid, const ContactSolution& solution,
                             const Eigen::ArrayXd& coverage, double most) {
@@ -19,11 +25,23 @@ DisplacedPressure displaced(const ContactGrid& grid, const ContactSolution& solu
         bool pressed = false;
         for (int j = 0; j < ny; ++j) pressed = pressed || solution.pressure[j * nx + i] > 0.0;
         if (!pressed) continue;
+        const double width = ny * grid.dy;
+        // No border passes one that stays: behind an edge there is no work to press on.
+        const auto stays = [&](int j) { return !covered(j - 1) || !covered(j); };
+        double low = -kAnywhere, high = kAnywhere;
         for (int j = 0; j <= ny; ++j) {
             border[j] = j * grid.dy;
-            if (covered(j - 1) && covered(j)) border[j] += solution.axial(i, j);
+            if (stays(j))
+                low = border[j];
+            else
+                border[j] = std::max(border[j] + solution.axial(i, j), low);
         }
-        const double width = ny * grid.dy;
+        for (int j = ny; j >= 0; --j) {
+            if (stays(j))
+                high = border[j];
+            else
+                border[j] = std::min(border[j], high);
+        }
         double below = 0.0, above = 0.0;
         force.setZero();
         for (int j = 0; j < ny; ++j) {
@@ -47,8 +65,7 @@ DisplacedPressure displaced(const ContactGrid& grid, const ContactSolution& solu
         }
         for (int j = 0; j < ny; ++j) {
             const int cell = j * nx + i;
-            result.pressure[cell] =
-                force[j] > 0.0 ? force[j] / (std::max(coverage[cell], 1e-300) * grid.dy) : 0.0;
+            result.pressure[cell] = force[j] > 0.0 ? force[j] / (coverage[cell] * grid.dy) : 0.0;
         }
         const auto put = [&](int at, double load, double reach) {
             if (!(load > 0.0)) return;

@@ -85,11 +85,13 @@ class Child {
         posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
         posix_spawn_file_actions_adddup2(&actions, output, kAnswerDescriptor);
         posix_spawn_file_actions_addclosefrom_np(&actions, kAnswerDescriptor + 1);
-        // What a host ignores, a program started by it would ignore as well.
+        // What a host ignores, a program started by it would ignore as well. That stays so of what
+        // a terminal sends: it comes even before the program has a group of its own.
         posix_spawnattr_t attributes;
         posix_spawnattr_init(&attributes);
         sigset_t signals;
         sigfillset(&signals);
+        for (const int number : {SIGINT, SIGQUIT, SIGHUP}) sigdelset(&signals, number);
         posix_spawnattr_setsigdefault(&attributes, &signals);
         sigemptyset(&signals);
         posix_spawnattr_setsigmask(&attributes, &signals);

@@ -35,11 +35,12 @@ bool CoarseHeat::little(const float* row) {
     return greatest_of_row(row) < kLeft;
 }
 
-CoarseHeat::Level::Level(const ThermalLevel& level, double diffusivity, double now)
+CoarseHeat::Level::Level(const ThermalLevel& level, double diffusivity, double now,
+                         const PartHeat* even)
     : place(level),
       rows(level.size() * kModes, 0.0f),
       layer({level.first, level.neighbour, level.conductance, level.area, level.depth,
-             level.dispersion},
+             level.sectional, level.spacing, level.dispersion, even},
             diffusivity, rows),
       interval(kInterval * level.spacing * level.spacing / diffusivity),
       ripe(kRipe * level.spacing * level.spacing / diffusivity),
@@ -53,16 +54,23 @@ CoarseHeat::Level::Level(const ThermalLevel& level, double diffusivity, double n
       total(level.size(), 0.0f),
       total_slope(level.size(), 0.0f) {}
 
-CoarseHeat::CoarseHeat(const PartHeat& part)
+CoarseHeat::CoarseHeat(const PartHeat& part, bool decays)
     : part_(part),
       diffusivity_(part.material().diffusivity()),
       interval_(kInterval * std::pow(ThermalLevel::kCoarser * part.spacing(), 2) / diffusivity_),
-      factors_(part.material()),
+      factors_(part.material(), part.nodes().longer, decays),
       stepped_(part.state().time) {}
 
 void CoarseHeat::make(double now) {
-    for (const ThermalLevel& level : part_.levels())
-        levels_.push_back(std::make_unique<Level>(level, diffusivity_, now));
+    const auto& all = part_.levels();
+    for (const ThermalLevel& level : all)
+        levels_.push_back(std::make_unique<Level>(level, diffusivity_, now,
+                                                  &level == &all.back() ? &part_ : nullptr));
+}
+
+void CoarseHeat::clear(double now) {
+    levels_.clear();
+    stepped_ = now;
 }
 
 bool CoarseHeat::empty() const {
@@ -77,11 +85,12 @@ bool CoarseHeat::due(double now) const {
     return std::floor(now / interval_) != std::floor(stepped_ / interval_);
 }
 
-void CoarseHeat::step(double now, double heated, const Way& way) {
+void CoarseHeat::step(double now, double heated, const Way& way, bool all) {
     if (levels_.empty()) make(stepped_);
     std::size_t count = 0;  // that are due: each has intervals of several of the one before
     for (const auto& level : levels_) {
-        if (std::floor(now / level->interval) == std::floor(level->time / level->interval)) break;
+        if (!all && std::floor(now / level->interval) == std::floor(level->time / level->interval))
+            break;
         level->layer.conduct(now, now - level->time, factors_);
         level->before = level->time;
         level->time = now;
@@ -122,6 +131,19 @@ void CoarseHeat::step(double now, double heated, const Way& way) {
             give_rest(m + 1, k, from.place.area[k], from.place.depth[k], from.layer.row(k));
             from.layer.remove(k);
             from.last[k] = kNever;
+        }
+    }
+}
+
+void CoarseHeat::add(CoarseHeat& other, const Row& share, double now) {
+    if (other.levels_.empty()) return;
+    if (levels_.empty()) make(stepped_ = now);
+    for (std::size_t m = 0; m < levels_.size(); ++m) {
+        Level &to = *levels_[m], &from = *other.levels_[m];
+        from.layer.list(list_);
+        for (const std::uint32_t k : list_) {
+            to.layer.put(k, to.time);
+            to.layer.add(k, from.layer.row(k), share);
         }
     }
 }

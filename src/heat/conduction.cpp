@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "beltgrinding/error.h"
 #include "heat/heat_rows.h"
 
 namespace beltgrinding {
@@ -13,45 +14,53 @@ namespace {
 constexpr std::size_t kModes = DepthModes::kModes;
 constexpr int kInnerRings = 3;  // that the heat may come to before a new zone is made
 constexpr int kAside = 3;       // rings round the zone that know how near heat came
-// alpha t over spacing^2: between sweeps; the longest part of a step, of which there are no more
-// than so many; and where what comes in may all be taken at both ends.
+// alpha t over spacing^2: between sweeps; the longest part of a step (with more of them than so
+// many it is `dwell`'s); and where what comes in may all be taken at both ends.
 constexpr double kUnit = 0.25;
 constexpr double kPart = 1.0;
-constexpr int kMostParts = 4;
+constexpr double kMostParts = 16.0;
 constexpr double kBrief = 0.15;
 constexpr std::array kSimpson = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 constexpr double kRounding = 1e-9;   // s: less is no time
 constexpr float kLeastRise = 1e-3f;  // K: less is none
-
-std::vector<float> depths(const ThermalNodes& nodes) {
-    std::vector<float> found(nodes.size());
-    for (std::size_t k = 0; k < nodes.size(); ++k) found[k] = 1.0f / nodes.own[k].modes[0];
-    return found;
-}
+// What is no fault: of the bound, K beside it, and of the heat.
+constexpr double kLongAgo = -1e30;  // s
+constexpr double kMargin = 0.05;
+constexpr double kFree = 0.5;
+constexpr double kUnbalanced = 1e-3;
 
 }  // namespace
 
-Conduction::Conduction(const PartHeat& part, int rings)
-    : nodes_(part.nodes()),
+Conduction::Conduction(const PartHeat& part, int rings, bool pulse)
+    : part_(part),
+      nodes_(part.nodes()),
       rings_(rings),
       material_(part.material()),
       diffusivity_(material_.diffusivity()),
       unit_(kUnit * nodes_.spacing * nodes_.spacing / diffusivity_),
       state_(part.state()),
-      depth_(depths(nodes_)),
-      layer_({nodes_.first, nodes_.neighbour, nodes_.conductance, nodes_.area, depth_,
-              nodes_.dispersion},
+      depth_(nodes_.depth()),
+      sectional_(sectional_conductances(nodes_, depth_)),
+      layer_({nodes_.first, nodes_.neighbour, nodes_.conductance, nodes_.area, depth_, sectional_,
+              nodes_.spacing, nodes_.dispersion, part.levels().empty() ? &part : nullptr},
              diffusivity_, state_.modes),
-      coarse_(part),
+      coarse_(part, !pulse),
       power_(nodes_.size(), 0.0),
       ring_(nodes_.size(), kOutside),
       next_ring_(nodes_.size(), kOutside),
       place_(nodes_.size(), 0),
+      ended_(nodes_.size(), HUGE_VALF),
       direct_(nodes_.size(), 0.0f),
       zone_time_(state_.time),
       last_sweep_(state_.time),
       changed_(nodes_.size(), 0),
-      factors_(material_) {
+      factors_(material_, nodes_.longer, !pulse) {
+    if (pulse) {
+        std::fill(state_.modes.begin(), state_.modes.end(), 0.0f);
+        std::fill(state_.last.begin(), state_.last.end(), kLongAgo);
+        std::fill(state_.peak.begin(), state_.peak.end(), HUGE_VALF);  // which are not its own
+        return;
+    }
     for (std::uint32_t k = 0; k < nodes_.size(); ++k)
         if (state_.warm[k] != 0) layer_.put(k, state_.time);
 }
@@ -62,7 +71,7 @@ void Conduction::add(std::uint32_t node, double power) {
     power_[node] += power;
 }
 
-void Conduction::advance(double duration, std::uint32_t motion) {
+void Conduction::advance(double duration, std::uint32_t motion, double before) {
     if (!(duration > 0.0)) {
         for (const std::uint32_t k : powered_) power_[k] = 0.0;
         powered_.clear();
@@ -73,17 +82,23 @@ void Conduction::advance(double duration, std::uint32_t motion) {
         return;
     }
     if (state_.time > zone_time_) catch_up();
-    state_.motion = motion;
-    hottest_ = 0.0;
+    hottest_ = lowest_ = 0.0;
     const double longest = kPart * nodes_.spacing * nodes_.spacing / diffusivity_;
-    const int parts =
-        static_cast<int>(std::clamp(std::ceil(duration / longest), 1.0, double{kMostParts}));
-    for (int part = 0; part < parts; ++part) {
-        if (!zone_holds()) make_zone();
-        heat(duration / parts);
-        // What is outside the zone follows it.
-        if (zone_time_ - last_sweep_ >= unit_) sweep();
+    const double parts = std::max(std::ceil(duration / longest), 1.0);
+    if (parts > kMostParts && rings_ <= kRings) {
+        dwell(duration, motion);
+    } else {
+        state_.motion = motion;
+        before_ = parts > 1.0 ? 0.0 : before;
+        for (double part = 0.0; part < parts; ++part) {
+            if (!zone_holds()) make_zone();
+            heat(duration / parts);
+            // What is outside the zone follows it.
+            if (zone_time_ - last_sweep_ >= unit_) sweep();
+        }
+        keep_ended();
     }
+    check_bounds();
     for (const std::uint32_t k : powered_) power_[k] = 0.0;
     powered_.clear();
 }
@@ -191,7 +206,7 @@ void Conduction::make_zone() {
 }
 
 void Conduction::place_zone() {
-    const std::size_t all = zone_.nodes.size() + 2 * beyond_.size();
+    const std::size_t all = zone_.nodes.size() + beyond_.size();
     zone_rows_.resize(all * kModes);
     zone_.slow.assign(all, 0);
     std::uint32_t place = 0;
@@ -202,53 +217,35 @@ void Conduction::place_zone() {
     join_zone();
 }
 
-// After its nodes come those beyond, which stay as they are, and then once more, for what flows
-// into them.
+// After its nodes come those beyond, with their ways into the zone: the others are the sweeps'. So
+// each conducts what is conducted at all, to and fro alike, and none can run away.
 void Conduction::join_zone() {
-    const auto add = [this](std::uint32_t other, double sign, std::uint32_t edge) {
-        const HeatWay& way = layer_.ways()[edge];
-        zone_.ways.push_back(
-            {other, static_cast<float>(sign * way.rate), static_cast<float>(sign * way.mean_rate)});
-        return static_cast<double>(std::max(way.rate, way.mean_rate));
-    };
-    const auto end = [this] {
-        zone_.first.push_back(static_cast<std::uint32_t>(zone_.ways.size()));
-    };
-    end();
-    for (const std::uint32_t k : zone_.nodes) {
-        double sum = 0.0;
-        for (std::uint32_t e = nodes_.first[k]; e < nodes_.first[k + 1]; ++e)
-            sum += add(place_[nodes_.neighbour[e]], 1.0, e);
-        zone_.most = std::max(zone_.most, sum);
-        end();
-    }
-    for (std::size_t i = 0; i < beyond_.size(); ++i) end();
-    for (const std::uint32_t k : beyond_) {
-        for (std::uint32_t e = nodes_.first[k]; e < nodes_.first[k + 1]; ++e) {
-            if (!in_zone(nodes_.neighbour[e])) continue;
-            add(place_[nodes_.neighbour[e]], 1.0, e);
-            add(place_[k], -1.0, e);
+    zone_.first.push_back(0);
+    for (const auto* list : {&zone_.nodes, &beyond_}) {
+        for (const std::uint32_t k : *list) {
+            double sum = 0.0;
+            for (std::uint32_t e = nodes_.first[k]; e < nodes_.first[k + 1]; ++e) {
+                if (list == &beyond_ && !in_zone(nodes_.neighbour[e])) continue;
+                const HeatWay& way = layer_.ways()[e];
+                zone_.ways.push_back({place_[way.other], way.rate, way.mean_rate});
+                sum += std::max(way.rate, way.mean_rate);
+            }
+            zone_.first.push_back(static_cast<std::uint32_t>(zone_.ways.size()));
+            zone_.most = std::max(zone_.most, sum);
         }
-        end();
     }
 }
 
 void Conduction::put_beyond_back() {
-    const std::size_t inside = zone_.nodes.size(), count = beyond_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const float* row = &zone_rows_[(inside + i) * kModes];
-        const float* in = &zone_rows_[(inside + count + i) * kModes];
-        float* back = layer_.row(beyond_[i]);
-        for (std::size_t j = 0; j < kModes; ++j) back[j] = row[j] + in[j];
-        layer_.current(beyond_[i]) = zone_time_;
+    for (const std::uint32_t k : beyond_) {
+        std::copy_n(&zone_rows_[place_[k] * kModes], kModes, layer_.row(k));
+        layer_.current(k) = zone_time_;
     }
 }
 
 void Conduction::take_beyond() {
-    const std::size_t inside = zone_.nodes.size(), count = beyond_.size();
     const double near = zone_time_ - zone_age(static_cast<std::uint32_t>(rings_) + 1);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t k = beyond_[i];
+    for (const std::uint32_t k : beyond_) {
         layer_.put(k, zone_time_);
         float* row = layer_.row(k);
         const double since = zone_time_ - layer_.current(k);
@@ -256,8 +253,7 @@ void Conduction::take_beyond() {
         layer_.current(k) = zone_time_;
         state_.last[k] = std::max(state_.last[k], near);
         changed_[k] = 1;
-        std::copy_n(row, kModes, &zone_rows_[(inside + i) * kModes]);
-        std::fill_n(&zone_rows_[(inside + count + i) * kModes], kModes, 0.0f);
+        std::copy_n(row, kModes, &zone_rows_[place_[k] * kModes]);
     }
 }
 
@@ -288,16 +284,87 @@ void Conduction::inject(const Row& gain) {
                  nodes_.other[k].modes.data(), flux(nodes_.opposite[k]));
 }
 
+Conduction::Row Conduction::source(std::uint32_t node) const {
+    const float one = flux(node), other = flux(nodes_.opposite[node]);
+    Row found;
+    for (std::size_t j = 0; j < kModes; ++j)
+        found[j] = nodes_.own[node].modes[j] * one + nodes_.other[node].modes[j] * other;
+    return found;
+}
+
 float Conduction::flux(std::uint32_t node) const {
     return node == ThermalNodes::kNone ? 0.0f
                                        : static_cast<float>(power_[node] / nodes_.area[node]);
 }
 
-void Conduction::heat(double duration) {
+// All rows are conducted between nodes, which makes none greater than the greatest; so none is
+// greater than that of a node which always has the greatest flux.
+void Conduction::account(double duration) {
+    Row most{};
+    float direct = 0.0f;
+    double stored = 0.0;
+    for (const std::uint32_t k : heated_) {
+        const Row one = source(k);
+        for (std::size_t j = 0; j < kModes; ++j) most[j] = std::max(most[j], std::abs(one[j]));
+        direct_[k] =
+            (nodes_.own[k].direct * flux(k) + nodes_.other[k].direct * flux(nodes_.opposite[k])) /
+            static_cast<float>(material_.conductivity);
+        direct = std::max(direct, direct_[k]);
+        stored += double{nodes_.area[k]} * depth_[k] * one[0];
+    }
+    state_.flowed += stored * duration / material_.capacity();
+    const Row& gain = factors_(duration).gain;
+    double bound = direct;
+    for (std::size_t j = 0; j < kModes; ++j) {
+        state_.most[j] += double{most[j]} * gain[j];
+        bound += state_.most[j];
+    }
+    state_.bound = std::max(state_.bound, bound);
+}
+
+void Conduction::decay_bound(double duration) {
+    const Row& decay = factors_(duration).decay;
+    for (std::size_t j = 0; j < kModes; ++j) state_.most[j] *= decay[j];
+}
+
+void Conduction::check_bounds() const {
+    // Series and levels err by that much, at most.
+    const double most = kMargin * state_.bound + kFree;
+    if (hottest_ <= most + state_.bound && lowest_ >= -most) return;
+    throw InputError(
+        "heat.bound",
+        "the computed heat makes no sense, a fault of this program: rises of "
+        "{least:.4g} to {greatest:.4g} K, where {bound:.4g} K are the most that can be",
+        {{"least", lowest_}, {"greatest", hottest_}, {"bound", state_.bound}});
+}
+
+void Conduction::check_energy() const {
+    double stored = 0.0, sum = 0.0;
+    for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
+        stored += double{nodes_.area[k]} * depth_[k] * layer_.row(k)[0];
+        sum += std::abs(sum_of_row(layer_.row(k)));
+    }
+    const double most = kUnbalanced * state_.flowed;
+    if (std::abs(stored - state_.flowed) <= most && std::isfinite(sum)) return;
+    const double joules = 1e-3 * material_.capacity();
+    throw InputError(
+        "heat.energy",
+        "the computed heat makes no sense, a fault of this program: {stored:.5g} J are "
+        "in the part, {flowed:.5g} J flowed in",
+        {{"stored", joules * stored}, {"flowed", joules * state_.flowed}});
+}
+
+void Conduction::find_heated(const std::vector<std::uint32_t>& nodes) {
     forget_direct();
     heated_ = powered_;
-    for (const std::uint32_t k : thin_)
+    for (const std::uint32_t k : nodes)
         if (power_[k] == 0.0 && power_[nodes_.opposite[k]] > 0.0) heated_.push_back(k);
+}
+
+void Conduction::heat(double duration) {
+    find_heated(thin_);
+    decay_bound(duration);
+    account(duration);
     // What comes in is conducted along the surface as if it came at the beginning, in the middle
     // and in the end; in a short time, at beginning and end. Decay and conduction may change
     // places.
@@ -319,23 +386,38 @@ void Conduction::heat(double duration) {
     }
     zone_sums_.resize(zone_.nodes.size());
     sum_rows(zone_rows_.data(), zone_sums_.size(), zone_sums_.data());
-    for (const std::uint32_t k : heated_) {
-        direct_[k] =
-            (nodes_.own[k].direct * flux(k) + nodes_.other[k].direct * flux(nodes_.opposite[k])) /
-            static_cast<float>(material_.conductivity);
-        zone_sums_[place_[k]] += direct_[k];
-    }
+    for (const std::uint32_t k : heated_) zone_sums_[place_[k]] += direct_[k];
     state_.time += duration;
     state_.heated = zone_time_ = state_.time;
     const auto since = static_cast<float>(zone_time_ - base_time_);
     for (std::size_t i = 0; i < base_.size(); ++i) zone_sums_[i] += base_[i] + since * slope_[i];
+    const auto share = static_cast<float>(before_);
     for (std::size_t i = 0; i < zone_.nodes.size(); ++i) {
-        note_peak(zone_.nodes[i], zone_sums_[i]);
-        if (zone_sums_[i] > hottest_) {
-            hottest_ = zone_sums_[i];
-            hottest_node_ = zone_.nodes[i];
-        }
+        const float now = zone_sums_[i], ended = ended_[zone_.nodes[i]];
+        note_now(zone_.nodes[i], ended < now ? now - share * (now - ended) : now);
     }
+}
+
+void Conduction::keep_ended() {
+    for (const std::uint32_t k : last_) ended_[k] = HUGE_VALF;
+    last_ = zone_.nodes;
+    for (std::size_t i = 0; i < last_.size(); ++i) ended_[last_[i]] = zone_sums_[i];
+}
+
+void Conduction::note_ended() {
+    for (const std::uint32_t k : last_) {
+        note_peak(k, ended_[k]);
+        ended_[k] = HUGE_VALF;
+    }
+    last_.clear();
+}
+
+void Conduction::note_now(std::uint32_t node, float rise) {
+    note_peak(node, rise);
+    lowest_ = std::min(lowest_, double{rise});
+    if (rise <= hottest_) return;
+    hottest_ = rise;  // or no number
+    hottest_node_ = node;
 }
 
 double Conduction::rise(std::uint32_t node) const {

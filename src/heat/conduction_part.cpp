@@ -15,7 +15,7 @@ constexpr std::size_t kModes = DepthModes::kModes;
 
 std::size_t Conduction::Part::bytes() const {
     return nodes.size() * sizeof(Node) + (zone.size() + beyond.size()) * sizeof(std::uint32_t) +
-           ring.size() + (rows.size() + base.size() + slope.size()) * sizeof(float) +
+           ring.size() + (rows.size() + base.size() + slope.size() + ended.size()) * sizeof(float) +
            coarse.bytes();
 }
 
@@ -46,6 +46,9 @@ Conduction::Part Conduction::next_part() {
         part.nodes.push_back(node);
     }
     part.time = state_.time;
+    part.flowed = state_.flowed;
+    part.bound = state_.bound;
+    part.most = state_.most;
     part.heated = state_.heated;
     part.zone_time = zone_time_;
     part.last_sweep = last_sweep_;
@@ -59,6 +62,7 @@ Conduction::Part Conduction::next_part() {
     part.base = base_;
     part.slope = slope_;
     part.base_time = base_time_;
+    for (const std::uint32_t k : last_) part.ended.push_back(ended_[k]);
     part.coarse = coarse_.parts();
     return part;
 }
@@ -79,6 +83,9 @@ void Conduction::restore(std::span<const Part* const> parts) {
     if (parts.empty()) return;
     const Part& now = *parts.back();
     state_.time = now.time;
+    state_.flowed = now.flowed;
+    state_.bound = now.bound;
+    state_.most = now.most;
     state_.heated = now.heated;
     zone_time_ = now.zone_time;
     last_sweep_ = now.last_sweep;
@@ -96,6 +103,8 @@ void Conduction::restore(std::span<const Part* const> parts) {
     base_ = now.base;
     slope_ = now.slope;
     base_time_ = now.base_time;
+    if (!now.ended.empty()) last_ = now.zone;
+    for (std::size_t i = 0; i < now.ended.size(); ++i) ended_[last_[i]] = now.ended[i];
     coarse_.restore(now.coarse);
 }
 

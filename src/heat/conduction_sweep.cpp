@@ -13,14 +13,14 @@ constexpr double kGrow = 0.25;  // of the time since heat came: an interval when
 
 }  // namespace
 
-void Conduction::sweep() {
+void Conduction::sweep(bool all) {
     put_beyond_back();
     layer_.conduct(zone_time_, zone_time_ - last_sweep_, factors_);
     last_sweep_ = zone_time_;
     const auto& nodes = layer_.nodes();
     for (const std::uint32_t k : nodes) changed_[k] = 1;
-    if (rings_ <= kRings && coarse_.due(zone_time_)) {
-        hand_up();
+    if (rings_ <= kRings && (all || coarse_.due(zone_time_))) {
+        hand_up(all);
         for (const std::uint32_t k : nodes)
             if (layer_.has(k))
                 note_peak(k, sum_of_row(layer_.row(k)) + coarse_.rise(k, zone_time_).rise);
@@ -31,7 +31,7 @@ void Conduction::sweep() {
     take_beyond();
 }
 
-void Conduction::hand_up() {
+void Conduction::hand_up(bool all) {
     std::vector<std::uint32_t> nodes, ripe;
     std::vector<double> ages;
     const auto look = [&](std::uint32_t k, double old) {
@@ -42,7 +42,8 @@ void Conduction::hand_up() {
     for (const std::uint32_t k : layer_.nodes()) look(k, age(k));
     for (const std::uint32_t k : zone_.nodes) look(k, age(k));
     if (nodes.empty() && coarse_.empty()) return;
-    coarse_.step(zone_time_, state_.heated, [this](const Vec3& point) { return way(point); });
+    const auto from_heat = [this](const Vec3& point) { return way(point); };
+    coarse_.step(zone_time_, state_.heated, from_heat, all);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const std::uint32_t k = nodes[i];
         const float keep = coarse_.kept(ages[i]);
@@ -95,14 +96,16 @@ void Conduction::find_base() {
     }
 }
 
-void Conduction::catch_up() {
+void Conduction::catch_up(bool all) {
     forget_direct();
+    note_ended();
+    decay_bound(state_.time - zone_time_);
     if (!zone_.nodes.empty()) sweep();
     leave_zone();
     while (zone_time_ < state_.time) {
         const double step = std::max(unit_, kGrow * (zone_time_ - state_.heated));
         zone_time_ = std::min(state_.time, zone_time_ + step);
-        sweep();
+        sweep(all && zone_time_ == state_.time);
     }
 }
 
@@ -111,8 +114,10 @@ const HeatState& Conduction::settle() {
         catch_up();
     else
         sweep();
+    note_ended();
     leave_zone();
     coarse_.settle(zone_time_, layer_);
+    check_energy();
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) state_.warm[k] = layer_.has(k) ? 1 : 0;
     std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
     return state_;

@@ -11,12 +11,12 @@ const DepthFactors::Factors& DepthFactors::operator()(double duration) {
     Factors& known = known_[hash >> 58U];
     if (duration == known.duration) return known;
     known.duration = duration;
-    const auto& rates = DepthModes::rates();
-    for (std::size_t j = 0; j < rates.size(); ++j) {
-        const double lost = -std::expm1(-rates[j] * material_.diffusivity() * duration);
-        known.decay[j] = static_cast<float>(1.0 - lost);
+    for (std::size_t j = 0; j < DepthModes::kModes; ++j) {
+        const double rate = DepthModes::rates()[j] / (longer_ * longer_);
+        const double lost = -std::expm1(-rate * material_.diffusivity() * duration);
+        known.decay[j] = decays_ ? static_cast<float>(1.0 - lost) : 1.0f;
         known.gain[j] = static_cast<float>(j == 0 ? duration / material_.capacity()
-                                                  : lost / (material_.conductivity * rates[j]));
+                                                  : lost / (material_.conductivity * rate));
     }
     return known;
 }

@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kModes = DepthModes::kModes;
 constexpr int kDecaying = kModes - 1;
+constexpr double kLeast = 1.0, kMost = 20.0;         // mm2/s, of steels
+constexpr double kSpacings = 6.0;                    // 1/mm
 constexpr double kSlowest = 0.008, kFastest = 20.0;  // 1/mm, of z
 constexpr int kTimes = 140;                          // that a plate is fitted at
 constexpr int kThicknesses = 97;                     // of the table
@@ -116,8 +118,15 @@ const DepthModes::Weights& fitted_at(int k, bool opposite) {
     return entry.weights;
 }
 
-DepthModes::Weights interpolated(double thickness, bool opposite) {
-    const double d = std::clamp(thickness, DepthModes::kThin, DepthModes::kThick);
+DepthModes::Weights thin(double d, bool opposite) {
+    DepthModes::Weights weights;
+    weights.modes[0] = static_cast<float>(1.0 / d);
+    weights.direct = static_cast<float>(opposite ? -d / 6.0 : d / 3.0);
+    return weights;
+}
+
+DepthModes::Weights interpolated(double d, bool opposite) {
+    if (d < DepthModes::kThin) return thin(d, opposite);
     const double at = std::log(d / DepthModes::kThin) /
                       std::log(DepthModes::kThick / DepthModes::kThin) * (kThicknesses - 1);
     const int k = std::clamp(static_cast<int>(at), 0, kThicknesses - 2);
@@ -127,6 +136,12 @@ DepthModes::Weights interpolated(double thickness, bool opposite) {
     for (int j = 0; j < kModes; ++j) weights.modes[j] = (1 - u) * a.modes[j] + u * b.modes[j];
     weights.modes[0] = static_cast<float>(1.0 / d);  // what is stored in the section, exactly
     weights.direct = (1 - u) * a.direct + u * b.direct;
+    return weights;
+}
+
+DepthModes::Weights lengthened(DepthModes::Weights weights, double longer) {
+    for (float& weight : weights.modes) weight = static_cast<float>(weight / longer);
+    weights.direct = static_cast<float>(weights.direct * longer);
     return weights;
 }
 
@@ -142,13 +157,20 @@ const std::array<double, kModes>& DepthModes::rates() {
     return all;
 }
 
-DepthModes::Weights DepthModes::own(double thickness) {
-    static const Weights thick = half_space();
-    return thickness < kThick ? interpolated(thickness, false) : thick;
+double DepthModes::longer(double diffusivity, double spacing) {
+    const double ways = std::sqrt(diffusivity / std::clamp(diffusivity, kLeast, kMost));
+    return std::min(ways, std::max(kSpacings * spacing, 1.0));
 }
 
-DepthModes::Weights DepthModes::opposite(double thickness) {
-    return thickness < kThick ? interpolated(thickness, true) : Weights{};
+DepthModes::Weights DepthModes::own(double thickness, double longer) {
+    static const Weights thick = half_space();
+    const double d = thickness / longer;
+    return lengthened(d < kThick ? interpolated(d, false) : thick, longer);
+}
+
+DepthModes::Weights DepthModes::opposite(double thickness, double longer) {
+    const double d = thickness / longer;
+    return lengthened(d < kThick ? interpolated(d, true) : Weights{}, longer);
 }
 
 }  // namespace beltgrinding

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/heat.h"
+#include "heat/heat_spectrum.h"
 #include "heat/thermal_levels.h"
 #include "heat/thermal_nodes.h"
 
@@ -15,10 +16,12 @@ namespace {
 constexpr std::size_t kBlock = 4096;     // of samples, for a thread
 constexpr double kSamplesPerNode = 1.5;  // of the field's spacing, at least
 
-void check(double value, const char* name) {
-    if (!std::isfinite(value) || value <= 0.0) {
-        throw InputError("heat.material", "the material's {name} must be positive and finite",
-                         {{"name", name}});
+// As in job.schema.json and job/load.py.
+void check(double value, const char* name, double least, double most) {
+    if (!(value >= least && value <= most)) {
+        throw InputError("heat.material",
+                         "the material's {name} is {value:.4g}; materials have {least} to {most}",
+                         {{"name", name}, {"value", value}, {"least", least}, {"most", most}});
     }
 }
 
@@ -78,25 +81,29 @@ float between(const ThermalNodes& nodes, const std::vector<float>& values,
 }  // namespace
 
 struct PartHeat::Levels {
-    std::once_flag once;
+    std::once_flag once, spectral;
     std::vector<ThermalLevel> all;
+    std::unique_ptr<const HeatSpectrum> spectrum;
 };
 
 void HeatMaterial::validate() const {
-    check(conductivity, "conductivity");
-    check(heat_capacity, "heat capacity");
-    check(density, "density");
+    check(conductivity, "conductivity (W/(m K))", 0.1, 2500.0);
+    check(heat_capacity, "heat capacity (J/(kg K))", 0.1, 15000.0);
+    check(density, "density (kg/m3)", 1.0, 25000.0);
+    check(1e-3 * heat_capacity * density, "heat capacity times density (kJ/(m3 K))", 1.0, 1e4);
 }
 
 PartHeat::PartHeat(const HeightField& field, double spacing, const HeatMaterial& material)
     : material_(material) {
+    field.validate();
     material.validate();
     if (field.size() == 0) throw InputError("heat.empty_field", "the height field is empty");
     if (!std::isfinite(spacing) || spacing <= 0.0) {
         throw InputError("heat.spacing", "the distance of the heat's nodes must be positive");
     }
+    const double apart = std::max(spacing, kSamplesPerNode * field.spacing);
     nodes_ = std::make_shared<ThermalNodes>(
-        make_thermal_nodes(field, std::max(spacing, kSamplesPerNode * field.spacing)));
+        make_thermal_nodes(field, apart, DepthModes::longer(material.diffusivity(), apart)));
     levels_ = std::make_shared<Levels>();
     const std::size_t n = nodes_->size();
     state_.modes.assign(n * DepthModes::kModes, 0.0f);
@@ -134,6 +141,26 @@ const std::vector<ThermalLevel>& PartHeat::levels() const {
     return levels_->all;
 }
 
+const HeatSpectrum& PartHeat::spectrum() const {
+    const auto& all = levels();
+    std::call_once(levels_->spectral, [&] {
+        const ThermalNodes& nodes = *nodes_;
+        if (!all.empty()) {
+            const ThermalLevel& last = all.back();
+            levels_->spectrum = std::make_unique<HeatSpectrum>(
+                HeatLayer::Grid{last.first, last.neighbour, last.conductance, last.area, last.depth,
+                                last.sectional, last.spacing, last.dispersion, nullptr});
+            return;
+        }
+        const std::vector<float> depth = nodes.depth(),
+                                 sectional = sectional_conductances(nodes, depth);
+        levels_->spectrum = std::make_unique<HeatSpectrum>(
+            HeatLayer::Grid{nodes.first, nodes.neighbour, nodes.conductance, nodes.area, depth,
+                            sectional, nodes.spacing, nodes.dispersion, nullptr});
+    });
+    return *levels_->spectrum;
+}
+
 const std::vector<float>& PartHeat::thickness() const {
     return nodes_->thickness;
 }
@@ -154,6 +181,7 @@ std::size_t PartHeat::bytes() const {
 }
 
 void PartHeat::keep(HeightField& field) const {
+    field.validate();
     const ThermalNodes& nodes = *nodes_;
     if (field.size() != nodes.node_of.size()) {
         throw InputError("heat.other_field", "the heat is of another height field");

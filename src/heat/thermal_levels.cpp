@@ -9,8 +9,9 @@
 namespace beltgrinding {
 namespace {
 
-constexpr int kMostLevels = 3;
+constexpr int kMostLevels = 8;
 constexpr std::size_t kFewest = 64;  // nodes of a level
+constexpr double kFewer = 0.75;      // of the nodes below, or a level is worth nothing
 constexpr std::size_t kBlock = 512;  // of nodes, for a thread
 constexpr double kWhole = 0.05;      // of a cell's area, that it may differ by
 constexpr int kRounds = 2;           // in which nodes move to the middle of what is theirs
@@ -29,22 +30,25 @@ struct Finer {
     const std::vector<std::uint32_t>& first;
     const std::vector<std::uint32_t>& neighbour;
     const std::vector<float>& conductance;
+    const std::vector<float>& sectional;
     double spacing;  // mm
 };
 
 struct Border {
     std::uint32_t other;
-    double conductance;
+    double conductance, sectional = 0.0;
 };
 using Borders = std::vector<std::vector<Border>>;  // by node, ascending
 
-void add(std::vector<Border>& borders, std::uint32_t other, double conductance) {
+void add(std::vector<Border>& borders, std::uint32_t other, double conductance,
+         double sectional = 0.0) {
     for (Border& border : borders) {
         if (border.other != other) continue;
         border.conductance += conductance;
+        border.sectional += sectional;
         return;
     }
-    borders.push_back({other, conductance});
+    borders.push_back({other, conductance, sectional});
 }
 
 bool has(const std::vector<Border>& borders, std::uint32_t other) {
@@ -138,16 +142,20 @@ void join(ThermalLevel& level, const Finer& finer) {
                     parts[k].share += sign * shares.share[i];
                 }
             }
-            for (std::size_t i = 0; i < count; ++i)
-                for (std::size_t j = 0; j < i; ++j)
+            for (std::size_t i = 0; i < count; ++i) {
+                for (std::size_t j = 0; j < i; ++j) {
+                    const double both = -parts[i].share * parts[j].share;
                     add(borders[std::max(parts[i].node, parts[j].node)],
-                        std::min(parts[i].node, parts[j].node),
-                        -finer.conductance[e] * parts[i].share * parts[j].share);
+                        std::min(parts[i].node, parts[j].node), both * finer.conductance[e],
+                        both * finer.sectional[e]);
+                }
+            }
         }
     }
     for (std::uint32_t a = 0; a < level.size(); ++a)
         for (const Border& border : borders[a])
-            if (border.other < a) borders[border.other].push_back({a, border.conductance});
+            if (border.other < a)
+                borders[border.other].push_back({a, border.conductance, border.sectional});
     level.first.assign(1, 0);
     double dispersion = 0.0;
     for (std::uint32_t a = 0; a < level.size(); ++a) {
@@ -158,6 +166,7 @@ void join(ThermalLevel& level, const Finer& finer) {
             if (std::abs(border.conductance) < kNoBorder) continue;
             level.neighbour.push_back(border.other);
             level.conductance.push_back(static_cast<float>(border.conductance));
+            level.sectional.push_back(static_cast<float>(border.sectional));
             const double away = (level.point[border.other] - level.point[a]).squaredNorm();
             fourth += border.conductance * away * away;
         }
@@ -312,15 +321,16 @@ ThermalLevel make_level(const Finer& finer) {
 std::vector<ThermalLevel> make_thermal_levels(const ThermalNodes& nodes) {
     std::vector<ThermalLevel> levels;
     if (nodes.size() <= kFewest) return levels;
-    std::vector<float> depth(nodes.size());
-    for (std::size_t k = 0; k < nodes.size(); ++k) depth[k] = 1.0f / nodes.own[k].modes[0];
+    const std::vector<float> depth = nodes.depth();
+    const std::vector<float> sectional = sectional_conductances(nodes, depth);
     levels.push_back(make_level({nodes.point, nodes.normal, nodes.area, depth, nodes.first,
-                                 nodes.neighbour, nodes.conductance, nodes.spacing}));
+                                 nodes.neighbour, nodes.conductance, sectional, nodes.spacing}));
     while (levels.size() < kMostLevels && levels.back().size() > kFewest) {
         const ThermalLevel& finer = levels.back();
         ThermalLevel next =
             make_level({finer.point, finer.normal, finer.area, finer.depth, finer.first,
-                        finer.neighbour, finer.conductance, finer.spacing});
+                        finer.neighbour, finer.conductance, finer.sectional, finer.spacing});
+        if (next.size() > kFewer * static_cast<double>(finer.size())) break;
         // Of the nodes themselves, by way of those between.
         std::vector<std::uint32_t> between(finer.size()), home(nodes.size());
         for (std::uint32_t k = 0; k < next.size(); ++k)

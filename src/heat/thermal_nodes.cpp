@@ -249,6 +249,12 @@ double dispersion_of(const ThermalNodes& nodes) {
 
 }  // namespace
 
+std::vector<float> ThermalNodes::depth() const {
+    std::vector<float> found(size());
+    for (std::size_t k = 0; k < size(); ++k) found[k] = 1.0f / own[k].modes[0];
+    return found;
+}
+
 std::size_t ThermalNodes::bytes() const {
     const std::size_t each = 2 * sizeof(std::uint32_t) + sizeof(Vec3) + sizeof(Vec3f) +
                              3 * sizeof(float) + 2 * sizeof(DepthModes::Weights);
@@ -256,8 +262,9 @@ std::size_t ThermalNodes::bytes() const {
            neighbour.size() * (sizeof(std::uint32_t) + sizeof(float));
 }
 
-ThermalNodes make_thermal_nodes(const HeightField& field, double spacing) {
+ThermalNodes make_thermal_nodes(const HeightField& field, double spacing, double longer) {
     ThermalNodes nodes;
+    nodes.longer = longer;
     nodes.spacing = spacing;
     choose(nodes, field);
     const Near near = find_near(nodes);
@@ -266,6 +273,18 @@ ThermalNodes make_thermal_nodes(const HeightField& field, double spacing) {
     nodes.dispersion = dispersion_of(nodes);
     set_thickness(nodes, std::vector<float>(nodes.size(), NAN));
     return nodes;
+}
+
+std::vector<float> sectional_conductances(const ThermalNodes& nodes,
+                                          const std::vector<float>& depth) {
+    std::vector<float> found(nodes.conductance.size());
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        for (std::uint32_t e = nodes.first[k]; e < nodes.first[k + 1]; ++e) {
+            const double one = depth[k], other = depth[nodes.neighbour[e]];
+            found[e] = static_cast<float>(nodes.conductance[e] * 2.0 * one * other / (one + other));
+        }
+    }
+    return found;
 }
 
 void set_thickness(ThermalNodes& nodes, const std::vector<float>& thickness) {
@@ -282,15 +301,15 @@ void set_thickness(ThermalNodes& nodes, const std::vector<float>& thickness) {
     std::optional<PointHash> hash;
     for (float& d : nodes.thickness) {
         if (d <= 0.0f) throw InputError("heat.thickness", "a section has no thickness");
-        if (!(d < DepthModes::kThick)) d = HUGE_VALF;
+        if (!(d < nodes.longer * DepthModes::kThick)) d = HUGE_VALF;
         if (std::isfinite(d) && !hash) hash = hash_of(nodes, reach);
     }
     parallel_blocks(nodes.size(), kBlock, {}, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> near;
         for (std::size_t k = begin; k < end; ++k) {
             const float d = nodes.thickness[k];
-            nodes.own[k] = DepthModes::own(d);
-            nodes.other[k] = DepthModes::opposite(d);
+            nodes.own[k] = DepthModes::own(d, nodes.longer);
+            nodes.other[k] = DepthModes::opposite(d, nodes.longer);
             if (!std::isfinite(d)) continue;
             const Vec3 there = nodes.point[k] - d * nodes.normal[k].cast<double>();
             hash->near(hash->cube(there), 1, near);

@@ -1,10 +1,9 @@
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/height_field.h"
 #include "heightfield/hdf5_io.h"
+#include "heightfield/sound_field.h"
 
 namespace beltgrinding {
 namespace {
@@ -98,88 +97,6 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
     write_text(file, "attributes", attributes);
 }
 
-void check(const RemovalTrace& t, std::size_t n) {
-    if (t.empty()) return;
-    require(t.first.size() == n && t.last.size() == n && t.dominant.size() == n &&
-                t.dominant_depth.size() == n && t.peak_pressure.size() == n,
-            "heightfield.lengths", "its arrays differ in length");
-    constexpr std::uint32_t kNever = RemovalTrace::kNever;
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool never = t.first[i] == kNever;
-        const float depth = t.dominant_depth[i], pressure = t.peak_pressure[i];
-        if ((t.last[i] == kNever) != never || (t.dominant[i] == kNever) != never ||
-            !std::isfinite(depth) || depth < 0.0F || !std::isfinite(pressure) || pressure < 0.0F) {
-            require(false, "heightfield.trace", "the trace of sample {sample} makes no sense",
-                    {{"sample", i}});
-        }
-    }
-}
-
-void check(const HeatTrace& t, std::size_t n) {
-    if (t.empty() && t.motion.empty()) return;
-    require(t.rise.size() == n && t.motion.size() == n, "heightfield.lengths",
-            "its arrays differ in length");
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool never = t.motion[i] == HeatTrace::kNever;
-        if (!std::isfinite(t.rise[i]) || t.rise[i] < 0.0F || (never && t.rise[i] > 0.0F)) {
-            require(false, "heightfield.heat", "the temperature of sample {sample} makes no sense",
-                    {{"sample", i}});
-        }
-    }
-}
-
-void check(const FinishTrace& f, std::size_t n) {
-    if (f.empty()) return;
-    require(f.settled.size() == n && f.unknown.size() == n && f.lay.size() == n &&
-                f.crossing.size() == n && f.passes.size() == n && f.motion.size() == n &&
-                f.outside.size() == n,
-            "heightfield.lengths", "its arrays differ in length");
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool never = f.passes[i] == 0;
-        if (!std::isfinite(f.settled[i]) || f.settled[i] < 0.0F ||
-            !(f.unknown[i] >= 0.0F && f.unknown[i] <= 1.0F) || !f.lay[i].allFinite() ||
-            f.crossing[i] < 0.0F || std::isinf(f.crossing[i]) ||
-            never != (f.motion[i] == FinishTrace::kNever) ||
-            f.outside[i] > FinishTrace::kBeltWear) {
-            require(false, "heightfield.finish", "the finish of sample {sample} makes no sense",
-                    {{"sample", i}});
-        }
-    }
-}
-
-void check(const HeightField& f) {
-    const std::size_t n = f.size();
-    require(f.normal.size() == n && f.area.size() == n && f.stock_height.size() == n &&
-                f.height.size() == n && f.face.size() == n && f.flags.size() == n,
-            "heightfield.lengths", "its arrays differ in length");
-    require(std::isfinite(f.spacing) && f.spacing > 0.0 && std::isfinite(f.depth) && f.depth >= 0.0,
-            "heightfield.spacing", "its spacing or depth is no length");
-    require(f.height_sd.empty() || f.height_sd.size() == n, "heightfield.lengths",
-            "its arrays differ in length");
-    for (const float sd : f.height_sd) {
-        require(std::isfinite(sd) && sd >= 0.0f, "heightfield.deviations",
-                "its standard deviations are no lengths");
-    }
-    require(f.measured.empty() || f.measured.size() == n, "heightfield.lengths",
-            "its arrays differ in length");
-    for (const float height : f.measured) {
-        require(!std::isinf(height), "heightfield.measured", "its measured heights are no lengths");
-    }
-    require(f.rays.empty() || f.rays.size() == n, "heightfield.lengths",
-            "its arrays differ in length");
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!f.point[i].allFinite() || !f.ray(i).allFinite() || !f.normal[i].allFinite() ||
-            !std::isfinite(f.height[i]) || !std::isfinite(f.area[i]) ||
-            !std::isfinite(f.stock_height[i])) {
-            require(false, "heightfield.sample", "sample {sample} is not finite", {{"sample", i}});
-        }
-    }
-    for (const Triangle& t : f.triangles) {
-        require(std::max({t[0], t[1], t[2]}) < n, "heightfield.triangle_without_sample",
-                "a triangle names a sample that is not there");
-    }
-}
-
 /// A field of a file, checked. Throws FileFault.
 HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
     const InputFile file(std::move(storage), "format", kFormat);
@@ -219,10 +136,7 @@ HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
                               read_array(file, array, data, type, row);
                           });
     }
-    check(field);
-    check(field.trace, field.size());
-    check(field.finish, field.size());
-    check(field.heat, field.size());
+    if (auto fault = fault_of(field)) throw FileFault{*std::move(fault)};
     if (attributes != nullptr) *attributes = read_text(file, "attributes");
     return field;
 }
@@ -239,15 +153,18 @@ Writer writer(const HeightField& field, const std::string& attributes) {
 }  // namespace
 
 std::string hdf5_image(const HeightField& field, const std::string& attributes) {
+    check_sound(field);
     return locked(within("HDF5"),
                   [&] { return image_of(writer(field, attributes), expected(field)); });
 }
 
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes) {
+    check_sound(field);
     locked(within(path), [&] { write_file(path, writer(field, attributes)); });
 }
 
 std::error_code write_hdf5(const HeightField& field, int file, const std::string& attributes) {
+    check_sound(field);
     return locked(within("HDF5"), [&] { return write_into(file, writer(field, attributes)); });
 }
 

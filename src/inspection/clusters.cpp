@@ -100,7 +100,7 @@ std::vector<MotionShare> motions_of(const HeightField& field,
             recent = motion;
             place = found.first->second;
         }
-        shares[place].share += area / cluster.area;
+        shares[place].share += area;  // a share of the cluster's below
         shares[place].depth = std::max(shares[place].depth, depth);
     };
     for (const std::uint32_t i : samples) {
@@ -112,6 +112,7 @@ std::vector<MotionShare> motions_of(const HeightField& field,
         if (first != dominant) add(first, field.area[i], 0.0);
         if (last != dominant && last != first) add(last, field.area[i], 0.0);
     }
+    for (MotionShare& one : shares) one.share /= cluster.area;
     std::sort(shares.begin(), shares.end(), [](const MotionShare& a, const MotionShare& b) {
         return a.share != b.share ? a.share > b.share : a.motion < b.motion;
     });

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
+#include "heightfield/sound_field.h"
 
 namespace beltgrinding {
 namespace {
@@ -105,6 +106,7 @@ void add_uncertainty(const HeightField& field, const Tolerance& tolerance,
 }  // namespace
 
 DeviationStatistics deviation_statistics(const HeightField& field, const Tolerance& tolerance) {
+    field.validate();
     refuse_no_band(tolerance);
     DeviationStatistics s;
     s.samples = field.size();
@@ -120,7 +122,7 @@ DeviationStatistics deviation_statistics(const HeightField& field, const Toleran
             continue;
         }
         s.stock_volume += a * std::max(static_cast<double>(field.stock_height[i]), 0.0);
-        s.removed_volume += a * (field.stock_height[i] - h);
+        s.removed_volume += a * removed_from(field, i);
         inspected.push_back(static_cast<std::uint32_t>(i));
         area += a;
         sum += a * h;
@@ -159,6 +161,7 @@ std::uint32_t uncertainty_colour(double sd, double limit) {
 }
 
 std::vector<std::uint32_t> uncertainty_colours(const HeightField& field, double limit) {
+    field.validate();
     if (field.height_sd.size() != field.size()) {
         throw InputError("inspection.no_uncertainty",
                          "the result has no uncertainty: its law was not calibrated");
@@ -195,6 +198,7 @@ std::uint32_t ColourScale::missed_colour() const {
 }
 
 std::vector<std::uint32_t> deviation_colours(const HeightField& field, const ColourScale& scale) {
+    field.validate();
     scale.validate();
     std::vector<std::uint32_t> colours(field.size());
     parallel_blocks(field.size(), kSamplesOfTask, {}, [&](std::size_t begin, std::size_t end) {

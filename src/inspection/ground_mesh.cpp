@@ -205,6 +205,7 @@ void count_turned(const SurfaceMesh& mesh, GroundMesh& out) {
 
 GroundMesh ground_mesh(const SurfaceMesh& mesh, const HeightField& field, bool ground,
                        const RunContext& context) {
+    field.validate();
     GroundMesh out;
     out.vertices = mesh.vertices;
     out.triangles = mesh.triangles;

@@ -300,10 +300,12 @@ Section whole_section(const HeightField& field, const Vec3& origin, const Vec3& 
 }  // namespace
 
 Section section_by_plane(const HeightField& field, const Vec3& origin, const Vec3& normal) {
+    field.validate();
     return whole_section(field, origin, normal, nullptr);
 }
 
 SectionIndex::SectionIndex(const HeightField& field) : field_(field) {
+    field.validate();
     samples_.resize((field.size() + kTogether - 1) / kTogether);
     for (std::size_t i = 0; i < field.size(); ++i) samples_[i / kTogether].extend(field.point[i]);
     triangles_.resize((field.triangles.size() + kTogether - 1) / kTogether);
@@ -331,6 +333,7 @@ std::vector<std::uint32_t> SectionIndex::near_plane(const Vec3& origin, const Ve
 }
 
 Section section_between(const HeightField& field, const Vec3& from, const Vec3& to) {
+    field.validate();
     if (!from.allFinite() || !to.allFinite() || field.size() == 0)
         throw InputError("section.no_line", "section: a line needs two points on a surface");
     const Vec3 mean = field.normal[nearest_sample(field, from)].cast<double>() +

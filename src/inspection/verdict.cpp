@@ -5,6 +5,7 @@
 
 #include "beltgrinding/error.h"
 #include "clusters.h"
+#include "heightfield/sound_field.h"
 #include "inspection/zones.h"
 
 namespace beltgrinding {
@@ -31,7 +32,7 @@ void add(RegionVerdict& r, const HeightField& field, const WorstPoint& judged) {
         return;
     }
     if (!field.trace.empty() && !field.trace.touched(i)) r.untouched_area += a;
-    r.removed_volume += a * (field.stock_height[i] - h);
+    r.removed_volume += a * removed_from(field, i);
     r.excess_volume += a * std::max(h, 0.0);
     r.gouge_volume += a * std::max(-h, 0.0);
     if (judged.beyond > 0.0) (h > judged.limit ? r.above_area : r.below_area) += a;
@@ -53,6 +54,7 @@ void finish(RegionVerdict& r) {
 
 Verdict judge(const HeightField& field, const std::vector<ToleranceZone>& zones,
               const Tolerance& rest) {
+    field.validate();
     if (!std::isfinite(rest.lower) || !std::isfinite(rest.upper) || rest.lower > rest.upper) {
         throw InputError("inspection.tolerance",
                          "tolerance: the lower limit must not lie above the upper one");

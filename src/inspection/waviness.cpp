@@ -129,6 +129,7 @@ class Faces {
         };
         take(field_.point, one.point);
         take(field_.normal, one.normal);
+        take(field_.area, one.area);
         take(field_.stock_height, one.stock_height);
         take(field_.height, one.height);
         take(field_.face, one.face);
@@ -396,6 +397,7 @@ std::vector<double> gaussian_filter(std::span<const double> values, double step,
 
 std::vector<FaceWaviness> waviness(const HeightField& field, const std::vector<MotionEnd>& ends,
                                    const RunContext& context) {
+    field.validate();
     std::vector<FaceWaviness> result;
     if (field.size() == 0) return result;
     if (field.trace.empty()) {

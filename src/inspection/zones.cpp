@@ -178,6 +178,7 @@ std::vector<std::uint32_t> sharp_convex_borders(const HeightField& field) {
 
 std::vector<std::uint32_t> zone_of_samples(const HeightField& field,
                                            const std::vector<ToleranceZone>& zones) {
+    field.validate();
     std::vector<std::uint32_t> zone(field.size(), static_cast<std::uint32_t>(zones.size()));
     std::vector<float> curvature;
     std::vector<std::uint32_t> borders;

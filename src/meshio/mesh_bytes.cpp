@@ -1,6 +1,7 @@
 #include "meshio/mesh_bytes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "foreign/answer.h"
@@ -32,14 +33,16 @@ std::string pack_mesh(const MeshBytes& mesh) {
     put_all(bytes, mesh.vertices);
     put_all(bytes, mesh.triangles);
     put_all(bytes, mesh.colours);
+    put_bytes(bytes, mesh.unit);
     return bytes;
 }
 
 std::optional<MeshBytes> unpack_mesh(std::string_view bytes) {
     MeshBytes mesh;
     if (!take_all(bytes, mesh.vertices) || !take_all(bytes, mesh.triangles) ||
-        !take_all(bytes, mesh.colours) || !bytes.empty())
+        !take_all(bytes, mesh.colours) || !take_bytes(bytes, mesh.unit) || !bytes.empty())
         return std::nullopt;
+    if (!(mesh.unit >= 0.0 && std::isfinite(mesh.unit))) return std::nullopt;
     if (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()) return std::nullopt;
     for (const Triangle& t : mesh.triangles)
         if (std::max({t[0], t[1], t[2]}) >= mesh.vertices.size()) return std::nullopt;

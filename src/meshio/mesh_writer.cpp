@@ -108,6 +108,7 @@ void mesh_ply(const GroundMesh& mesh, const ColourScale* scale, const FileMemory
 
 void deviation_ply(const HeightField& field, const ColourScale& scale, bool ground,
                    const std::string& run, const FileMemory& memory) {
+    field.validate();
     scale.validate();
     const auto vertex = [&](std::size_t i) { return place(field, i, ground); };
     const auto missed = [&](std::size_t i) { return (field.flags[i] & kMissed) != 0; };
@@ -123,6 +124,7 @@ void deviation_ply(const HeightField& field, const ColourScale& scale, bool grou
 }
 
 void mesh_ply(const HeightField& field, bool ground, const FileMemory& memory) {
+    field.validate();
     const auto vertex = [&](std::size_t i) { return place(field, i, ground); };
     const auto none = [](std::size_t) { return 0U; };
     const auto nothing = [](std::size_t) { return 0.0F; };

@@ -1,14 +1,11 @@
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
 
-#include "beltgrinding/contact_factory.h"
 #include "contact/displaced.h"
-#include "contact/press_belt.h"
-#include "contact/regression.h"
-#include "contact/single_contact.h"
 #include "dict.h"
+#include "models/press_belt.h"
+#include "models/single_contact.h"
 #include "simulation_settings.h"
+#include "surrogate/regression.h"
 
 namespace beltgrinding::python {
 
@@ -20,17 +17,6 @@ void refuse_rest(const py::dict& d, const char* where) {
 
 py::dict copy_of(const py::dict& d) {
     return d.attr("copy")().cast<py::dict>();
-}
-
-ContactWheel wheel_from(const py::dict& given) {
-    ContactWheel wheel;
-    py::dict d = copy_of(given);
-    wheel.radius = take(d, "radius", wheel.radius);
-    wheel.width = take(d, "width", wheel.width);
-    wheel.crown_radius = take(d, "crown_radius", wheel.crown_radius);
-    wheel.profile = take(d, "profile", wheel.profile);
-    refuse_rest(d, "wheel");
-    return wheel;
 }
 
 namespace {
@@ -51,49 +37,7 @@ Workpiece workpiece_from(const py::dict& given) {
     return workpiece;
 }
 
-/// Where solved rims are kept: $XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding; empty if the
-/// user has no such place.
-std::filesystem::path user_cache() {
-    const auto in = [](const char* variable, const char* folder) -> std::filesystem::path {
-        const char* place = std::getenv(variable);
-        if (place == nullptr || *place == '\0') return {};
-        return std::filesystem::path(place) / folder;
-    };
-    const std::filesystem::path cache = in("XDG_CACHE_HOME", "beltgrinding");
-    return cache.empty() ? in("HOME", ".cache/beltgrinding") : cache;
-}
-
 }  // namespace
-
-std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
-                                              double force) {
-    py::dict d = copy_of(given);
-    ContactModelParameters p;
-    p.model = take(d, "model", p.model);
-    p.youngs_modulus = take(d, "youngs_modulus", p.youngs_modulus);
-    p.poissons_ratio = take(d, "poissons_ratio", p.poissons_ratio);
-    p.rim_thickness = take(d, "rim_thickness", p.rim_thickness);
-    p.stiffness = take(d, "stiffness", p.stiffness);
-    p.belt_tension = take(d, "belt_tension", p.belt_tension);
-    p.belt_bending = take(d, "belt_bending", p.belt_bending);
-    const auto learnt = take(d, "regression", py::dict());
-    p.name = take(d, "name", p.name);
-    p.cell = take(d, "cell", p.cell);
-    for (const auto& item : take(d, "layers", py::list())) {
-        py::dict l = copy_of(item.cast<py::dict>());
-        ContactModelParameters::Layer layer;
-        layer.thickness = take(l, "thickness", layer.thickness);
-        layer.youngs_modulus = take(l, "youngs_modulus", p.youngs_modulus);
-        layer.poissons_ratio = take(l, "poissons_ratio", p.poissons_ratio);
-        refuse_rest(l, "layers");
-        p.layers.push_back(layer);
-    }
-    refuse_rest(d, "compliance");
-    if (p.model == "surrogate")
-        p.regression = std::make_shared<const TrainedRegression>(regression_from(learnt));
-    p.cache_folder = user_cache();
-    return make_contact_model(p, wheel, force);
-}
 
 py::array_t<double> cells(const ContactGrid& grid, const Eigen::ArrayXd& values) {
     py::array_t<double> array({grid.ny, grid.nx});
@@ -139,15 +83,15 @@ void add_displaced(py::dict& d, const ContactGrid& grid, const ContactSolution& 
 
 void bind_contact(py::module_& m) {
     m.def(
-        "check_wheel", [](const py::dict& wheel) { wheel_from(wheel).validate(); },
+        "check_wheel", [](const py::object& wheel) { wheel_from(Record(wheel)).validate(); },
         py::arg("wheel"), "Raises InputError for a wheel that cannot be.");
     m.def(
         "single_contact",
-        [](const py::dict& wheel, const py::dict& workpiece, const py::dict& compliance,
+        [](const py::object& wheel, const py::dict& workpiece, const py::object& elasticity,
            std::optional<double> force, std::optional<double> approach, double spacing,
            double tolerance) {
             SingleContact contact;
-            contact.wheel = wheel_from(wheel);
+            contact.wheel = wheel_from(Record(wheel));
             contact.workpiece = workpiece_from(workpiece);
             if (force.has_value() == approach.has_value()) {
                 throw InputError("call.force_or_approach",
@@ -159,7 +103,7 @@ void bind_contact(py::module_& m) {
             contact.spacing = spacing;
             contact.tolerance = tolerance;
             const auto elastic =
-                compliance_from(compliance, contact.wheel, force.value_or(kUsualForce));
+                compliance_from(Record(elasticity), contact.wheel, force.value_or(kUsualForce));
             SingleContactResult result;
             {
                 const py::gil_scoped_release release;
@@ -174,7 +118,7 @@ void bind_contact(py::module_& m) {
             d["model"] = result.model;
             return d;
         },
-        py::arg("wheel"), py::arg("workpiece"), py::arg("compliance"),
+        py::arg("wheel"), py::arg("workpiece"), py::arg("elasticity"),
         py::arg("force") = py::none(), py::arg("approach") = py::none(), py::arg("spacing") = 0.5,
         py::arg("tolerance") = 1e-4,
         "One contact of a wheel with an analytic workpiece: dict(x (nx,) along the circumference, "
@@ -186,14 +130,14 @@ void bind_contact(py::module_& m) {
         "MPa, up to reach (2, nx) mm).");
     m.def(
         "press_belt",
-        [](const py::dict& machine, double first, double second, double angle,
+        [](const py::object& machine, double first, double second, double angle,
            std::optional<double> force, std::optional<double> approach, double tolerance) {
             if (force.has_value() == approach.has_value()) {
                 throw InputError("call.force_or_approach",
                                  "contact: give either a force or an approach");
             }
             PressedBelt pressed;
-            pressed.machine = machine_from(machine);
+            pressed.machine = machine_from(Record(machine));
             pressed.first = first;
             pressed.second = second;
             pressed.angle = angle;
@@ -214,7 +158,7 @@ void bind_contact(py::module_& m) {
         py::arg("machine"), py::arg("first"), py::arg("second"), py::arg("angle") = 0.0,
         py::arg("force") = py::none(), py::arg("approach") = py::none(),
         py::arg("tolerance") = 1e-3,
-        "A free belt or a platen (the option machine of simulate) on a part with the curvatures "
+        "A free belt or a platen (a job's belt_machine) on a part with the curvatures "
         "first, 1/mm, positive: convex, along the direction at angle (rad) to the belt's travel, "
         "and second, square to it: as single_contact, gap and coverage (ny, nx); x along the "
         "belt.");

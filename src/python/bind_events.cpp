@@ -54,13 +54,15 @@ void bind_events(py::module_& m) {
                 d["code"] = kind.code;
                 d["severity"] = name(kind.severity);
                 d["unit"] = kind.unit;
+                d["larger_is_worse"] = kind.larger_is_worse;
                 d["meaning"] = kind.meaning;
                 d["advice"] = kind.advice;
                 list.append(d);
             }
             return list;
         },
-        "All kinds of events, as dicts of code, severity, unit, meaning, advice.");
+        "All kinds of events, as dicts of code, severity, unit, larger_is_worse, meaning, "
+        "advice.");
 }
 
 }  // namespace beltgrinding::python

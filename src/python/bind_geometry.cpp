@@ -51,22 +51,35 @@ void bind_geometry(py::module_& m) {
             py::array_t<std::uint32_t> triangles({data.triangles.size(), std::size_t{3}});
             std::copy_n(reinterpret_cast<const std::uint32_t*>(data.triangles.data()),
                         triangles.size(), triangles.mutable_data());
-            return py::make_tuple(vertices, triangles);
+            return py::make_tuple(vertices, triangles, data.turned);
         },
-        py::arg("path"), "(vertices (n, 3), triangles (m, 3)) of a PLY, as the file has them.");
+        py::arg("path"),
+        "(vertices (n, 3), triangles (m, 3), closed pieces that were inside out and are turned) of "
+        "a PLY, in its unit.");
     m.def(
         "read_mesh",
         [](const std::filesystem::path& path, double unit_mm, const Eigen::Matrix4d& placement,
-           const RunContext* context) {
+           const RunContext* context, const std::optional<py::dict>& told) {
             const Frame frame = frame_from(
                 placement, "placement", Fact{"mesh.file", "{file}: ", {{"file", path.string()}}});
-            const py::gil_scoped_release release;
-            return read_mesh(path, unit_mm, frame, context != nullptr ? *context : RunContext());
+            MeshReport report;
+            TriangleMesh mesh;
+            {
+                const py::gil_scoped_release release;
+                mesh = read_mesh(path, unit_mm, frame, context != nullptr ? *context : RunContext(),
+                                 &report);
+            }
+            if (told) {
+                (*told)["unit_mm"] = report.unit;
+                (*told)["warnings"] = to_list(report.warnings);
+            }
+            return mesh;
         },
         py::arg("path"), py::arg("unit_mm") = 1.0,
         py::arg("work_from_mesh") = Eigen::Matrix4d::Identity().eval(),
-        py::arg("context") = nullptr,
-        "Reads STL, PLY, OBJ, OFF, 3MF; unit_mm: millimetres per unit of the file.");
+        py::arg("context") = nullptr, py::arg("report") = py::none(),
+        "Reads STL, PLY, OBJ, OFF, 3MF; unit_mm: millimetres per unit of the file, 1: what a 3MF "
+        "says. report: a dict that is given unit_mm, as it was taken, and warnings.");
 
     m.def("set_cad_reader", &set_cad_reader, py::arg("program"),
           "Path of the beltgrinding-cad-reader that reads foreign files; '': look for it.");
@@ -98,6 +111,16 @@ void bind_geometry(py::module_& m) {
         .def_property_readonly("valid", &Shape::valid, "By OpenCASCADE's check.")
         .def("bounds_solid", &Shape::bounds_solid, py::arg("face"))
         .def("face_area", &Shape::face_area, py::arg("face"), "mm2")
+        .def(
+            "face_centre",
+            [](const Shape& shape, std::size_t face) -> py::object {
+                const auto found = shape.face_centre(face);
+                if (!found) return py::none();
+                return py::make_tuple(found->centroid, found->point, found->normal);
+            },
+            py::arg("face"),
+            "(centroid of its area, place on the face nearest to it, unit normal there as the face "
+            "is oriented, 0 where there is no such place), mm; None where they cannot be found.")
         .def("surface_type", &Shape::surface_type, py::arg("face"))
         .def("extents",
              [](const Shape& shape) {

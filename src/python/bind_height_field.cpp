@@ -3,6 +3,7 @@
 #include "beltgrinding/stock.h"
 #include "facts.h"
 #include "hdf5_files.h"
+#include "heightfield/sound_field.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -119,6 +120,9 @@ void bind_height_field(py::module_& m) {
             "of the last pass was not measured: 0 nothing, 1 pressure, 2 belt speed, 3 feed, 4 "
             "wear), and lay (n, 3), along which the last pass scratched (unit, work frame; 0: no "
             "pass); None where it was not computed.")
+        .def("check", &check_sound,
+             "Raises RuntimeError naming what of it no reader of its file would take: a fault of "
+             "the program.")
         .def("copy", [](const HeightField& field) { return HeightField(field); })
         .def(
             "set_height",

@@ -1,6 +1,6 @@
 #include "arrays.h"
 #include "hdf5_files.h"
-#include "simulation/recording.h"
+#include "recorders/recording.h"
 
 namespace beltgrinding::python {
 

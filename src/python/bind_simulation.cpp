@@ -5,9 +5,9 @@
 
 #include "beltgrinding/simulation.h"
 #include "beltgrinding/tool_path.h"
+#include "checkpoints/checkpoints.h"
 #include "dict.h"
-#include "simulation/checkpoints.h"
-#include "simulation/recording.h"
+#include "recorders/recording.h"
 #include "simulation_settings.h"
 
 namespace beltgrinding::python {
@@ -213,8 +213,8 @@ void bind_simulation(py::module_& m) {
             "(n, 4, 4), mm");
     m.def(
         "belt_remaining",
-        [](const py::dict& wear, const py::dict& belt) {
-            return wear_from(wear).remaining(belt_from(belt));
+        [](const py::object& wear, const py::dict& belt) {
+            return wear_from(Record(wear)).remaining(belt_from(belt));
         },
         py::arg("wear"), py::arg("belt"), "k_t, the share of a fresh belt's cut that remains.");
     py::class_<Checkpoints>(m, "Checkpoints",
@@ -228,14 +228,14 @@ void bind_simulation(py::module_& m) {
         .def_property_readonly("bytes", &Checkpoints::bytes);
     m.def(
         "simulate",
-        [](HeightField& field, const ToolPath& path, const py::dict& wheel,
-           const py::dict& compliance, const py::dict& law, const py::dict& options,
+        [](HeightField& field, const ToolPath& path, const py::object& given,
            const RunContext* context, Recording* recording, Checkpoints* checkpoints) {
-            SimulationOptions o = options_from(wheel, options);
+            const Record input(given);
+            SimulationOptions o = options_from(input);
             o.outputs.recording = recording;
             o.outputs.checkpoints = checkpoints;
-            const auto elastic = contact_from(compliance, o.process);
-            const auto removal = law_from(law);
+            const auto elastic = contact_from(input, o.process);
+            const auto removal = law_from(input.in("law"));
             SimulationResult result;
             {
                 const py::gil_scoped_release release;
@@ -252,28 +252,22 @@ void bind_simulation(py::module_& m) {
             d["law"] = removal->describe() + ", " + o.process.wear.describe();
             return d;
         },
-        py::arg("field"), py::arg("path"), py::arg("wheel") = py::dict(),
-        py::arg("compliance") = py::dict(), py::arg("law") = py::dict(),
-        py::arg("options") = py::dict(), py::arg("context") = nullptr,
+        py::arg("field"), py::arg("path"), py::arg("input"), py::arg("context") = nullptr,
         py::arg("recording") = nullptr, py::arg("checkpoints") = nullptr,
-        "Grinds field along path; see simulation/simulation.h for units. With the option machine, "
-        "a "
-        "dict of kind (free_belt, platen) and of what beltgrinding/belt_machine.h has (width, "
-        "thickness, youngs_modulus, poissons_ratio, tension, surface_stiffness; length, position, "
-        "tensioned; platen_length, platen_radius, layers, layer_surface_stiffness: mm, N/mm, MPa, "
-        "MPa/mm), that "
-        "belt is pressed in place of the wheel, and compliance is not looked at. A recording goes "
-        "on with "
-        "the path. With the options influence and force_influence: an Influence; else None. "
-        "checkpoints: those of an earlier call with this field and these settings, to go on from "
-        "as far as the paths are the same; they are this call's from then on. resumed: how many of "
-        "the steps were taken from there; unchanged: all of them, and there were no more.");
+        "Grinds field along path. input: an EngineInput of a job "
+        "(beltgrinding/job/engine_input.py). "
+        "A recording goes on with the path. With the input's influence and force_influence: an "
+        "Influence; else None. checkpoints: those of an earlier call with this field and this "
+        "input, to go on from as far as the paths are the same; they are this call's from then on. "
+        "resumed: how many of the steps were taken from there; unchanged: all of them, and there "
+        "were no more.");
     m.def(
         "contact_at",
-        [](const HeightField& field, const ToolPath& path, std::size_t pose, const py::dict& wheel,
-           const py::dict& compliance, const py::dict& options) {
-            const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = contact_from(compliance, o.process);
+        [](const HeightField& field, const ToolPath& path, std::size_t pose,
+           const py::object& given) {
+            const Record input(given);
+            const SimulationOptions o = options_from(input);
+            const auto elastic = contact_from(input, o.process);
             PoseContact contact;
             {
                 const py::gil_scoped_release release;
@@ -281,8 +275,7 @@ void bind_simulation(py::module_& m) {
             }
             return pose_contact_to_dict(contact);
         },
-        py::arg("field"), py::arg("path"), py::arg("pose"), py::arg("wheel"), py::arg("compliance"),
-        py::arg("options"),
+        py::arg("field"), py::arg("path"), py::arg("pose"), py::arg("input"),
         "The contact at pose number `pose` (from 0), nothing is ground: as single_contact, and gap "
         "(ny, nx) mm with the wheel `beyond_placed` mm short of where it stands, coverage (ny, "
         "nx); "
@@ -290,10 +283,10 @@ void bind_simulation(py::module_& m) {
     m.def(
         "contacts_at",
         [](const HeightField& field, const ToolPath& path, const std::vector<std::size_t>& poses,
-           const py::dict& wheel, const py::dict& compliance, const py::dict& options,
-           const RunContext* context) {
-            const SimulationOptions o = options_from(wheel, options);
-            const auto elastic = contact_from(compliance, o.process);
+           const py::object& given, const RunContext* context) {
+            const Record input(given);
+            const SimulationOptions o = options_from(input);
+            const auto elastic = contact_from(input, o.process);
             std::vector<std::optional<PoseContact>> found;
             {
                 const py::gil_scoped_release release;
@@ -309,8 +302,8 @@ void bind_simulation(py::module_& m) {
             }
             return result;
         },
-        py::arg("field"), py::arg("path"), py::arg("poses"), py::arg("wheel"),
-        py::arg("compliance"), py::arg("options"), py::arg("context") = nullptr,
+        py::arg("field"), py::arg("path"), py::arg("poses"), py::arg("input"),
+        py::arg("context") = nullptr,
         "contact_at for several poses (numbers from 0), each by itself: a list, None where the "
         "wheel does not touch.");
 }

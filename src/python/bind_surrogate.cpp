@@ -1,6 +1,7 @@
 #include "base/stopwatch.h"
-#include "contact/surrogate.h"
 #include "dict.h"
+#include "simulation_settings.h"
+#include "surrogate/surrogate.h"
 #include "training/train_regression.h"
 
 namespace beltgrinding::python {
@@ -63,14 +64,14 @@ TrainedRegression regression_from(const py::dict& given) {
 void bind_surrogate(py::module_& m) {
     m.def(
         "solve_gap",
-        [](const Cells& gap, const Cells& coverage, double ds, const py::dict& wheel,
-           const py::dict& compliance, double force, double tolerance) {
-            const ContactWheel shape = wheel_from(wheel);
+        [](const Cells& gap, const Cells& coverage, double ds, const py::object& wheel,
+           const py::object& elasticity, double force, double tolerance) {
+            const ContactWheel shape = wheel_from(Record(wheel));
             const ContactGrid grid = grid_of(gap, ds, shape.width);
             ContactProblem problem = problem_from(gap, coverage);
             problem.force = force;
             problem.tolerance = tolerance;
-            const auto elastic = compliance_from(compliance, shape, force);
+            const auto elastic = compliance_from(Record(elasticity), shape, force);
             ContactSolution solution;
             double seconds = 0.0;
             std::string model;
@@ -89,7 +90,7 @@ void bind_surrogate(py::module_& m) {
             d["model"] = model;
             return d;
         },
-        py::arg("gap"), py::arg("coverage"), py::arg("ds"), py::arg("wheel"), py::arg("compliance"),
+        py::arg("gap"), py::arg("coverage"), py::arg("ds"), py::arg("wheel"), py::arg("elasticity"),
         py::arg("force"), py::arg("tolerance") = 1e-3,
         "The contact at a gap given cell by cell: gap (ny, nx) mm from the wheel where it stands "
         "undeformed (inf: nothing there), coverage (ny, nx) in [0, 1], ds mm along the "
@@ -130,7 +131,7 @@ void bind_surrogate(py::module_& m) {
         py::arg("features"), py::arg("targets"), py::arg("cost"), py::arg("gamma"),
         py::arg("epsilon"),
         "Epsilon support-vector regression by libsvm: features (n, m), targets (n,). A dict that "
-        "compliance takes as 'regression'.");
+        "a surrogate has as 'regression'.");
 }
 
 }  // namespace beltgrinding::python

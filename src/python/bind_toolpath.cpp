@@ -1,5 +1,6 @@
-#include "contact/wheel_fit.h"
+#include "belt/face_arc.h"
 #include "dict.h"
+#include "gap/wheel_fit.h"
 #include "raster/raster.h"
 #include "simulation_settings.h"
 
@@ -107,9 +108,9 @@ void bind_toolpath(py::module_& m) {
           "(k, 3), level, closed), distance (levels,) mm, uncovered_area, area mm2).");
     m.def(
         "wheel_fit",
-        [](const py::dict& wheel, const Doubles& frames, const Doubles& points,
+        [](const py::object& wheel, const Doubles& frames, const Doubles& points,
            const Doubles& normals, const RunContext* context, bool whole) {
-            const ContactWheel shape = wheel_from(wheel);
+            const ContactWheel shape = wheel_from(Record(wheel));
             const std::vector<Frame> poses = poses_from(frames);
             const auto point = vectors(points, "points"), normal = vectors(normals, "normals");
             std::vector<double> depth;
@@ -126,9 +127,9 @@ void bind_toolpath(py::module_& m) {
         "into a surface at each pose, mm (n,).");
     m.def(
         "run_fit",
-        [](const py::dict& machine, double behind, const Doubles& frames, const Doubles& points,
+        [](const py::object& machine, double behind, const Doubles& frames, const Doubles& points,
            const RunContext* context) {
-            const BeltMachine belt = machine_from(machine);
+            const BeltMachine belt = machine_from(Record(machine));
             belt.validate();
             const FlatRun run{belt.run.length, -belt.run.position, belt.belt.width, behind,
                               face_arc(belt)};
@@ -143,8 +144,9 @@ void bind_toolpath(py::module_& m) {
         },
         py::arg("machine"), py::arg("behind"), py::arg("work_from_contact"), py::arg("points"),
         py::arg("context") = nullptr,
-        "How deep points reach through the belt of a free belt or a platen (the option machine of "
-        "simulate), which touches nothing, into the `behind` mm that lie behind it at each pose, "
+        "How deep points reach through the belt of a free belt or a platen (a job's "
+        "belt_machine), which touches nothing, into the `behind` mm that lie behind it at each "
+        "pose, "
         "mm (n,).");
 }
 

@@ -5,9 +5,8 @@
 
 #include "arrays.h"
 #include "beltgrinding/contact_model.h"
-#include "beltgrinding/contact_wheel.h"
 #include "beltgrinding/event.h"
-#include "contact/regression.h"
+#include "surrogate/regression.h"
 
 namespace beltgrinding::python {
 
@@ -30,16 +29,8 @@ void refuse_rest(const py::dict& d, const char* where);
 
 py::dict copy_of(const py::dict& d);
 
-/// A contact wheel from a dict of its members.
-ContactWheel wheel_from(const py::dict& given);
-
 /// A surrogate's regression from what `train_regression` gives.
 TrainedRegression regression_from(const py::dict& given);
-
-/// The contact model that a dict describes: "model" and the parameters of any, for `wheel`
-/// under about `force` N.
-std::unique_ptr<ContactModel> compliance_from(const py::dict& given, const ContactWheel& wheel,
-                                              double force);
 
 /// One dict of its members per event.
 py::list events_to_list(const std::vector<Event>& events);

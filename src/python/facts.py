@@ -1,13 +1,20 @@
 """What the core tells as facts, and its errors: compiled into ``beltgrinding_core``, so that it needs no
 package, and Python's own errors are of the same class."""
 
+from __future__ import annotations
+
 import numbers
+from collections.abc import Mapping
+from typing import Any, Union
+
+Value = Union[int, float, str]
+Context = tuple[str, str, dict[str, Value]]  # code, text, arguments
 
 
-def _plain(arguments):
+def _plain(arguments: Mapping[str, object]) -> dict[str, Value]:
     """Arguments as JSON has them: {name: int, float or str}, such as a path's text or an error's fact."""
 
-    def plain(value):
+    def plain(value: object) -> Value:
         if isinstance(value, (str, int, float)):
             return value
         if isinstance(value, numbers.Integral):  # numpy's
@@ -19,7 +26,7 @@ def _plain(arguments):
     return {name: plain(value) for name, value in arguments.items()}
 
 
-def _sentence(code, text, arguments):
+def _sentence(code: str, text: str, arguments: Mapping[str, Value]) -> str:
     if not code:
         return text
     try:
@@ -36,19 +43,23 @@ class Fact(str):
     str may be a fact itself; ``context`` and ``remarks``: as an InputError's.
     """
 
-    context = remarks = ()
+    code: str
+    text: str
+    arguments: dict[str, Value]
+    context: tuple[Context, ...] | list[Context] = ()
+    remarks: tuple[Context, ...] | list[Context] = ()
 
-    def __new__(cls, code, text, /, **arguments):
-        arguments = _plain(arguments)
+    def __new__(cls, code: str, text: str, /, **given: object) -> Fact:
+        arguments = _plain(given)
         self = super().__new__(cls, _sentence(code, text, arguments))
         self.code, self.text, self.arguments = code, text, arguments
         return self
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return self._again, (str(self), self.__dict__)
 
     @classmethod
-    def _again(cls, sentence, attributes):
+    def _again(cls, sentence: str, attributes: Mapping[str, Any]) -> Fact:
         self = str.__new__(cls, sentence)
         self.__dict__.update(attributes)
         return self
@@ -70,18 +81,21 @@ class InputError(ValueError):
     ``InputError(message)`` is an error without a code.
     """
 
+    code: str
+    text: str
+    arguments: dict[str, Value]
+    context: list[Context]
+    remarks: list[Context]
+
     CULPRIT = ("key", "file", "line", "face", "pose")
 
-    def __init__(self, code, text=None, /, **arguments):
-        if text is None:
-            code, text = "", str(code)
-        arguments = _plain(arguments)
-        self.code, self.text, self.arguments, self.context = code, text, arguments, []
-        self.remarks = []
-        super().__init__(_sentence(code, text, arguments))
+    def __init__(self, code: object, text: str | None = None, /, **given: object) -> None:
+        self.code, self.text = ("", str(code)) if text is None else (str(code), text)
+        self.arguments, self.context, self.remarks = _plain(given), [], []
+        super().__init__(_sentence(self.code, self.text, self.arguments))
 
     @property
-    def culprit(self):
+    def culprit(self) -> dict[str, Value]:
         """{name: value} of the arguments that name the culprit, the context's included."""
         told = [arguments for _, _, arguments in self.context] + [self.arguments]
         return {
@@ -92,31 +106,31 @@ class InputError(ValueError):
         }
 
     @property
-    def fact(self):
+    def fact(self) -> Fact:
         """What it tells, as a Fact."""
         return Fact._again(str(self), dict(self.__dict__))
 
-    def within(self, code, text, /, **arguments):
+    def within(self, code: str, text: str, /, **given: object) -> InputError:
         """The same error with a context before all that it says:
 
         raise error.within("programs.at_line", "{file}:{line}: ", file=path, line=3) from error
         """
-        arguments = _plain(arguments)
+        arguments = _plain(given)
         outer = self._copy(_sentence(code, text, arguments) + str(self))
         outer.context = [(code, text, arguments), *self.context]
         return outer
 
-    def followed_by(self, code, text, /, **arguments):
+    def followed_by(self, code: str, text: str, /, **given: object) -> InputError:
         """The same error with a remark after all that it says:
 
         raise error.followed_by("simulation.notes", ". Note: {notes}", notes=notes) from error
         """
-        arguments = _plain(arguments)
+        arguments = _plain(given)
         more = self._copy(str(self) + _sentence(code, text, arguments))
         more.remarks = [*self.remarks, (code, text, arguments)]
         return more
 
-    def _copy(self, sentence):
+    def _copy(self, sentence: str) -> InputError:
         other = type(self).__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.args = (sentence,)

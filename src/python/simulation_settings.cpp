@@ -1,150 +1,186 @@
 #include "simulation_settings.h"
 
-#include <algorithm>
 #include <array>
-#include <optional>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
+#include "beltgrinding/contact_factory.h"
 #include "dict.h"
 
 namespace beltgrinding::python {
 namespace {
 
-Curve curve_from(py::dict& d, const char* key) {
-    return Curve(take(d, key, std::vector<Eigen::Vector2d>()), key);
+constexpr double kMmPerM = 1000.0;
+constexpr double kSecondsPerHour = 3600.0;
+constexpr double kTonnesPerKg = 1e-3;
+constexpr double kRadPerDegree = M_PI / 180.0;
+
+/// `unit`: of the curve's x.
+Curve curve_from(const Record& law, const char* key, double unit = 1.0) {
+    auto points = law.get<std::vector<Eigen::Vector2d>>(key);
+    for (Eigen::Vector2d& point : points) point.x() *= unit;
+    return Curve(points, key);
 }
 
-void take_dynamics(const py::dict& given, SimulationOptions& o) {
-    py::dict d = copy_of(given);
+ContactModelParameters::Layer layer_from(const Record& given, double factor = 1.0) {
+    ContactModelParameters::Layer layer;
+    layer.thickness = given.get<double>("thickness_mm");
+    layer.youngs_modulus = factor * given.get<double>("youngs_modulus_MPa");
+    layer.poissons_ratio = given.get<double>("poissons_ratio");
+    return layer;
+}
+
+void take_dynamics(const Record& given, SimulationOptions& o) {
     ForceDynamics& dynamics = o.process.dynamics;
-    dynamics.lag = take(d, "lag", dynamics.lag);
-    dynamics.mass = take(d, "mass", dynamics.mass);
-    dynamics.damping = take(d, "damping", dynamics.damping);
-    dynamics.speed_limit = take(d, "speed_limit", dynamics.speed_limit);
-    o.limits.overshoot = take(d, "overshoot", o.limits.overshoot);
-    o.limits.bounce = take(d, "bounce", o.limits.bounce);
-    refuse_rest(d, "force_dynamics");
+    const auto model = given.get<std::string>("model");
+    if (model != "ideal") dynamics.lag = given.get<double>("lag_s");
+    if (model == "actuator") {
+        dynamics.mass = kTonnesPerKg * given.get<double>("moving_mass_kg");
+        dynamics.damping = given.get<double>("damping_N_s_per_mm");
+        dynamics.speed_limit = given.get<double>("speed_limit_mm_s");
+    }
+    o.limits.overshoot = given.get<double>("overshoot_limit");
+    o.limits.bounce = given.get<double>("bounce_s");
 }
 
-void take_heat(const py::dict& given, HeatRequest& heat) {
-    if (given.empty()) return;
-    py::dict d = copy_of(given);
-    heat.part = take<PartHeat*>(d, "part", nullptr);
-    heat.friction = take(d, "friction", heat.friction);
-    heat.partition = take(d, "partition", heat.partition);
-    heat.low = take(d, "low", heat.low);
-    heat.high = take(d, "high", heat.high);
-    heat.start = take(d, "start", heat.start);
-    heat.burn = take(d, "burn", heat.burn);
-    refuse_rest(d, "heat");
+void take_heat(const Record& given, HeatRequest& heat) {
+    if (given.is_none()) return;
+    heat.part = given.get<PartHeat*>("part");
+    heat.friction = given.get<double>("friction");
+    heat.partition = given.get<double>("partition");
+    heat.low = given.get<double>("low");
+    heat.high = given.get<double>("high");
+    heat.start = given.get<double>("start");
+    heat.burn = given.get<double>("burn");
 }
 
-Range range_from(const std::array<double, 2>& ends) {
-    return {ends[0], ends[1]};
+void take_range(const Record& given, const char* key, Range& range) {
+    if (!given.has(key)) return;
+    const auto ends = given.get<std::array<double, 2>>(key);
+    range = {ends[0], ends[1]};
 }
 
-void take_finish(const py::dict& given, FinishRequest& finish) {
-    if (given.empty()) return;
-    py::dict d = copy_of(given);
-    const auto take_range = [&d](const char* key, Range& range) {
-        range = range_from(take(d, key, std::array<double, 2>{range.low, range.high}));
-    };
+void take_finish(const Record& given, FinishRequest& finish) {
+    if (given.is_none()) return;
     finish.wanted = true;
-    finish.before = take(d, "before", finish.before);
-    finish.rest = take(d, "rest", finish.rest);
-    finish.roughness = take(d, "roughness", finish.roughness);
-    finish.pressure_exponent = take(d, "pressure_exponent", finish.pressure_exponent);
-    finish.speed_exponent = take(d, "speed_exponent", finish.speed_exponent);
-    finish.feed_exponent = take(d, "feed_exponent", finish.feed_exponent);
-    finish.cut_exponent = take(d, "cut_exponent", finish.cut_exponent);
-    finish.reference_pressure = take(d, "reference_pressure", finish.reference_pressure);
-    finish.reference_speed = take(d, "reference_speed", finish.reference_speed);
-    finish.reference_feed = take(d, "reference_feed", finish.reference_feed);
-    take_range("pressure", finish.pressure);
-    take_range("speed", finish.speed);
-    take_range("feed", finish.feed);
-    take_range("cut", finish.cut);
-    refuse_rest(d, "finish");
+    given.take("before", finish.before);
+    given.take("rest", finish.rest);
+    given.take("roughness", finish.roughness);
+    given.take("pressure_exponent", finish.pressure_exponent);
+    given.take("speed_exponent", finish.speed_exponent);
+    given.take("feed_exponent", finish.feed_exponent);
+    given.take("cut_exponent", finish.cut_exponent);
+    given.take("reference_pressure", finish.reference_pressure);
+    given.take("reference_speed", finish.reference_speed);
+    given.take("reference_feed", finish.reference_feed);
+    take_range(given, "pressure", finish.pressure);
+    take_range(given, "speed", finish.speed);
+    take_range(given, "feed", finish.feed);
+    take_range(given, "cut", finish.cut);
+}
+
+BeltState belt_of(const Record& belt) {
+    BeltState state;
+    state.work = belt.get<double>("work_J");
+    state.volume = belt.get<double>("removed_mm3");
+    state.time = kSecondsPerHour * belt.get<double>("hours");
+    return state;
+}
+
+/// Where solved rims are kept: $XDG_CACHE_HOME/beltgrinding, or ~/.cache/beltgrinding; empty if the
+/// user has no such place.
+std::filesystem::path user_cache() {
+    const auto in = [](const char* variable, const char* folder) -> std::filesystem::path {
+        const char* place = std::getenv(variable);
+        if (place == nullptr || *place == '\0') return {};
+        return std::filesystem::path(place) / folder;
+    };
+    const std::filesystem::path cache = in("XDG_CACHE_HOME", "beltgrinding");
+    return cache.empty() ? in("HOME", ".cache/beltgrinding") : cache;
 }
 
 }  // namespace
 
-BeltMachine machine_from(const py::dict& given) {
+ContactWheel wheel_from(const Record& given) {
+    ContactWheel wheel;
+    wheel.radius = given.get<double>("radius_mm");
+    wheel.width = given.get<double>("width_mm");
+    wheel.crown_radius = given.get<double>("crown_radius_mm");
+    given.take("profile_mm", wheel.profile);
+    return wheel;
+}
+
+BeltMachine machine_from(const Record& given) {
     BeltMachine machine;
-    py::dict d = copy_of(given);
-    const auto kind = take<std::string>(d, "kind", "contact_wheel");
+    std::string kind = "contact_wheel";
+    given.take("kind", kind);
+    if (kind == "contact_wheel" || kind == "small_wheel") return machine;
     if (kind == "free_belt") {
         machine.kind = BeltMachine::Kind::kFreeBelt;
     } else if (kind == "platen") {
         machine.kind = BeltMachine::Kind::kPlaten;
-    } else if (kind != "contact_wheel") {
+    } else {
         throw InputError("call.belt_machine",
                          "machine: there is no kind '{name}'; use contact_wheel, free_belt or "
                          "platen",
                          {{"name", kind}});
     }
+    const Record run = given.in("free_run");
     AbrasiveBelt& belt = machine.belt;
-    belt.width = take(d, "width", belt.width);
-    belt.thickness = take(d, "thickness", belt.thickness);
-    belt.youngs_modulus = take(d, "youngs_modulus", belt.youngs_modulus);
-    belt.poissons_ratio = take(d, "poissons_ratio", belt.poissons_ratio);
-    belt.tension = take(d, "tension", belt.tension);
-    belt.surface_stiffness = take(d, "surface_stiffness", belt.surface_stiffness);
-    machine.run.length = take(d, "length", machine.run.length);
-    machine.run.position = take(d, "position", machine.run.position);
-    if (take(d, "tensioned", false)) machine.run.rollers = BeltRun::Rollers::kTensioned;
-    machine.platen.length = take(d, "platen_length", machine.platen.length);
-    machine.platen.radius = take(d, "platen_radius", machine.platen.radius);
-    machine.platen.layer_surface_stiffness =
-        take(d, "layer_surface_stiffness", machine.platen.layer_surface_stiffness);
-    for (const auto& item : take(d, "layers", py::list())) {
-        py::dict l = copy_of(item.cast<py::dict>());
-        ContactModelParameters::Layer layer;
-        layer.thickness = take(l, "thickness", layer.thickness);
-        layer.youngs_modulus = take(l, "youngs_modulus", layer.youngs_modulus);
-        layer.poissons_ratio = take(l, "poissons_ratio", layer.poissons_ratio);
-        refuse_rest(l, "layers");
-        machine.platen.layers.push_back(layer);
-    }
-    refuse_rest(d, "machine");
+    belt.width = run.get<double>("width_mm");
+    belt.thickness = run.get<double>("thickness_mm");
+    belt.youngs_modulus = run.get<double>("youngs_modulus_MPa");
+    belt.poissons_ratio = run.get<double>("poissons_ratio");
+    belt.tension = run.get<double>("tension_N_per_mm");
+    belt.surface_stiffness = run.get<double>("surface_stiffness_MPa_per_mm");
+    machine.run.length = run.get<double>("length_mm");
+    machine.run.position = run.get<double>("position_mm");
+    if (run.get<std::string>("rollers") == "tensioned")
+        machine.run.rollers = BeltRun::Rollers::kTensioned;
+    if (machine.kind != BeltMachine::Kind::kPlaten) return machine;
+    const Record platen = given.in("platen");
+    machine.platen.length = platen.get<double>("length_mm");
+    machine.platen.radius = platen.get<double>("radius_mm");
+    machine.platen.layer_surface_stiffness = platen.get<double>("surface_stiffness_MPa_per_mm");
+    for (const Record& layer : platen.each("layers"))
+        machine.platen.layers.push_back(layer_from(layer));
     return machine;
 }
 
-std::unique_ptr<RemovalLaw> law_from(const py::dict& given) {
-    py::dict d = copy_of(given);
-    const auto model = take<std::string>(d, "model", "local");
+std::unique_ptr<RemovalLaw> law_from(const Record& law) {
     LocalLawParameters p;
-    p.coefficient = take(d, "coefficient", p.coefficient);
-    if (model != "hammann") {
-        p.pressure_threshold = take(d, "pressure_threshold", p.pressure_threshold);
-        p.pressure_exponent = take(d, "pressure_exponent", p.pressure_exponent);
-        p.reference_pressure = take(d, "reference_pressure", p.reference_pressure);
-        p.saturation_pressure = take(d, "saturation_pressure", p.saturation_pressure);
-        p.speed_exponent = take(d, "speed_exponent", p.speed_exponent);
-        p.reference_speed = take(d, "reference_speed", p.reference_speed);
-        p.feed_exponent = take(d, "feed_exponent", p.feed_exponent);
-        p.reference_feed = take(d, "reference_feed", p.reference_feed);
-        p.land_share = take(d, "land_share", p.land_share);
-        p.pressure_curve = curve_from(d, "pressure_curve");
-        p.speed_curve = curve_from(d, "speed_curve");
-        p.feed_curve = curve_from(d, "feed_curve");
-        p.land_curve = curve_from(d, "land_curve");
+    p.coefficient = law.get<double>("coefficient_mm2_per_N");
+    const auto model = law.get<std::string>("model");
+    if (model == "hammann") return make_removal_law(model, p);
+    if (model == "local") {
+        p.pressure_threshold = law.get<double>("pressure_threshold_MPa");
+        p.pressure_exponent = law.get<double>("pressure_exponent");
+        p.reference_pressure = law.get<double>("reference_pressure_MPa");
+        p.saturation_pressure = law.get<double>("saturation_pressure_MPa");
+        p.speed_exponent = law.get<double>("speed_exponent");
+        p.reference_speed = kMmPerM * law.get<double>("reference_speed_m_s");
+        p.feed_exponent = law.get<double>("feed_exponent");
+        p.reference_feed = law.get<double>("reference_feed_mm_s");
+        p.land_share = law.get<double>("land_share");
+        p.pressure_curve = curve_from(law, "pressure_curve");
+        p.speed_curve = curve_from(law, "speed_curve", kMmPerM);
+        p.feed_curve = curve_from(law, "feed_curve");
+        p.land_curve = curve_from(law, "land_curve");
     }
-    refuse_rest(d, "law");
-    return make_removal_law(model, p);
+    return make_removal_law("local", p);
 }
 
-BeltWear wear_from(const py::dict& given) {
-    py::dict d = copy_of(given);
+BeltWear wear_from(const Record& wear) {
     BeltWear::Parameters p;
-    p.model = BeltWear::model_named(take<std::string>(d, "model", "none"));
-    p.variable = BeltWear::variable_named(take<std::string>(d, "variable", "work"));
-    p.scale = take(d, "scale", p.scale);
-    p.rest = take(d, "rest", p.rest);
-    p.first_share = take(d, "first_share", p.first_share);
-    p.first_scale = take(d, "first_scale", p.first_scale);
-    p.exponent = take(d, "exponent", p.exponent);
-    p.curve = curve_from(d, "curve");
-    refuse_rest(d, "wear");
+    p.model = BeltWear::model_named(wear.get<std::string>("model"));
+    p.variable = BeltWear::variable_named(wear.get<std::string>("variable"));
+    p.scale = wear.get<double>("scale");
+    p.rest = wear.get<double>("rest");
+    p.first_share = wear.get<double>("first_share");
+    p.first_scale = wear.get<double>("first_scale");
+    p.exponent = wear.get<double>("exponent");
+    p.curve = curve_from(wear, "curve");
     return BeltWear(p);
 }
 
@@ -158,48 +194,76 @@ BeltState belt_from(const py::dict& given) {
     return belt;
 }
 
-std::unique_ptr<ContactModel> contact_from(const py::dict& compliance,
-                                           const ProcessSettings& process) {
-    if (process.machine.free_face()) return make_belt_contact(process.machine);
-    return compliance_from(compliance, process.wheel, process.force);
+std::unique_ptr<ContactModel> compliance_from(const Record& given, const ContactWheel& wheel,
+                                              double force) {
+    ContactModelParameters p;
+    p.model = given.get<std::string>("model");
+    p.cache_folder = user_cache();
+    if (p.model == "surrogate") {
+        p.name = given.get<std::string>("name");
+        p.cell = given.get<double>("cell");
+        p.rim_thickness = given.get<double>("rim_thickness");
+        p.regression = std::make_shared<const TrainedRegression>(
+            regression_from(given.get<py::dict>("regression")));
+    } else if (p.model != "geometric") {
+        const double factor = given.get<double>("dynamic_modulus_factor");
+        p.youngs_modulus = factor * given.get<double>("youngs_modulus_MPa");
+        p.poissons_ratio = given.get<double>("poissons_ratio");
+        p.rim_thickness = given.get<double>("rim_thickness_mm");
+        p.stiffness = factor * given.get<double>("stiffness_MPa_per_mm");
+        p.belt_tension = given.get<double>("belt_tension_N_per_mm");
+        p.belt_bending = given.get<double>("belt_bending_N_mm");
+        for (const Record& layer : given.each("layers"))
+            p.layers.push_back(layer_from(layer, factor));
+    }
+    return make_contact_model(p, wheel, force);
 }
 
-SimulationOptions options_from(const py::dict& wheel_given, const py::dict& given) {
+std::unique_ptr<ContactModel> contact_from(const Record& input, const ProcessSettings& process) {
+    if (process.machine.free_face()) return make_belt_contact(process.machine);
+    return compliance_from(input.in("elasticity"), process.wheel, process.force);
+}
+
+SimulationOptions options_from(const Record& input) {
     SimulationOptions o;
-    o.process.wheel = wheel_from(wheel_given);
-    py::dict d = copy_of(given);
-    o.process.machine = machine_from(take(d, "machine", py::dict()));
-    o.process.force_control = take(d, "force_control", o.process.force_control);
-    o.process.force = take(d, "force", o.process.force);
-    o.process.force_travel = take(d, "force_travel", o.process.force_travel);
-    o.process.wheel_growth = take(d, "wheel_growth", o.process.wheel_growth);
-    take_dynamics(take(d, "force_dynamics", py::dict()), o);
-    o.process.robot_stiffness = take(d, "robot_stiffness", o.process.robot_stiffness);
-    o.process.belt_speed = take(d, "belt_speed", o.process.belt_speed);
-    o.process.belt_wear = take(d, "belt_wear", o.process.belt_wear);
-    o.process.wear = wear_from(take(d, "wear", py::dict()));
-    o.process.belt = belt_from(take(d, "belt", py::dict()));
-    o.limits.heat = take(d, "heat_limit", o.limits.heat);
-    o.limits.pressure = take(d, "pressure_limit", o.limits.pressure);
-    o.limits.orientation_jump = take(d, "orientation_jump", o.limits.orientation_jump);
-    o.limits.tilt = take(d, "tilt_limit", o.limits.tilt);
-    const Eigen::ArrayXf limits = take(d, "lower_limits", Eigen::ArrayXf());
-    o.limits.lower.assign(limits.begin(), limits.end());
-    for (const auto& shifted : take(d, "shifted_laws", py::list())) {
-        o.outputs.shifted_laws.push_back(law_from(shifted.cast<py::dict>()));
+    const Record machine = input.in("machine");
+    o.process.wheel = wheel_from(machine.in("wheel"));
+    o.process.machine = machine_from(machine);
+    o.process.force_control = machine.get<std::string>("control") == "force";
+    o.process.force = machine.get<double>("force_N");
+    o.process.force_travel = machine.get<double>("force_travel_mm");
+    o.process.robot_stiffness = machine.get<double>("robot_stiffness_N_per_mm");
+    take_dynamics(machine.in("force_dynamics"), o);
+    o.process.wheel_growth = input.get<double>("wheel_growth");
+    o.process.belt_speed = kMmPerM * machine.get<double>("belt_speed_m_s");
+    o.process.belt_wear = machine.get<double>("belt_wear");
+    o.process.belt =
+        input.has("belt") ? belt_from(input.get<py::dict>("belt")) : belt_of(machine.in("belt"));
+    const Record law = input.in("law");
+    o.process.wear = wear_from(law.in("wear"));
+    o.limits.heat = kMmPerM * law.get<double>("heat_limit_MPa_m_s");
+    o.limits.pressure = law.get<double>("pressure_limit_MPa");
+    for (const Record& shifted : input.each("shifted_laws"))
+        o.outputs.shifted_laws.push_back(law_from(shifted));
+    const Record steps = input.in("simulation");
+    o.limits.orientation_jump = steps.get<double>("orientation_jump_deg") * kRadPerDegree;
+    o.limits.tilt = steps.get<double>("tilt_limit_deg") * kRadPerDegree;
+    o.resolution.max_travel = steps.get<double>("max_travel_mm");
+    o.resolution.max_angle = steps.get<double>("max_angle_deg") * kRadPerDegree;
+    input.take("max_angle", o.resolution.max_angle);
+    o.resolution.contact_spacing = machine.get<double>("contact_spacing_mm");
+    o.resolution.contact_tolerance = machine.get<double>("contact_tolerance");
+    if (input.has("lower_limits")) {
+        const auto limits = input.get<Eigen::ArrayXf>("lower_limits");
+        o.limits.lower.assign(limits.begin(), limits.end());
     }
-    o.resolution.contact_spacing = take(d, "contact_spacing", o.resolution.contact_spacing);
-    o.resolution.contact_tolerance = take(d, "contact_tolerance", o.resolution.contact_tolerance);
-    o.resolution.max_travel = take(d, "max_travel", o.resolution.max_travel);
-    o.resolution.max_angle = take(d, "max_angle", o.resolution.max_angle);
-    o.outputs.trace = take(d, "trace", o.outputs.trace);
-    o.outputs.influence = take(d, "influence", o.outputs.influence);
-    o.outputs.force_influence = take(d, "force_influence", o.outputs.force_influence);
-    o.outputs.first_motion = take(d, "first_motion", o.outputs.first_motion);
-    take_heat(take(d, "heat", py::dict()), o.heat);
-    take_finish(take(d, "finish", py::dict()), o.finish);
-    o.must_touch = take(d, "must_touch", o.must_touch);
-    refuse_rest(d, "options");
+    o.outputs.trace = input.get<bool>("trace");
+    o.outputs.influence = input.get<bool>("influence");
+    o.outputs.force_influence = input.get<bool>("force_influence");
+    o.outputs.first_motion = input.get<std::uint32_t>("first_motion");
+    take_heat(input.in("heat"), o.heat);
+    take_finish(input.in("finish"), o.finish);
+    o.must_touch = input.get<bool>("must_touch");
     return o;
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <new>
 
 #include "beltgrinding/error.h"
 
@@ -43,6 +44,8 @@ RayScene::RayScene(const TriangleMesh& mesh) : RayScene({&mesh, 1}, Build::kBest
 RayScene::RayScene(std::span<const TriangleMesh> meshes, Build build)
     : impl_(std::make_unique<Impl>()) {
     impl_->device.reset(rtcNewDevice("threads=0"));
+    if (!impl_->device && rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU)
+        throw std::bad_alloc();  // it starts nothing else
     if (!impl_->device)
         throw InputError("rays.no_embree",
                          "Embree could not be started; is the processor without SSE2?");
@@ -104,43 +107,6 @@ RayScene::Hit RayScene::first(const Vec3f& origin, const Vec3f& direction, float
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     return met(ray.ray.tfar, Vec3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z), direction,
                ray.hit.primID, ray.hit.geomID, ray.hit.u, ray.hit.v);
-}
-
-void RayScene::first_together(std::span<const Vec3f> origins, const Vec3f& direction, float near,
-                              float far, std::span<Hit> hits) const {
-    RTCRayHit16 rays{};
-    alignas(64) std::array<int, kTogether> valid{};
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        valid[i] = -1;
-        rays.ray.org_x[i] = origins[i].x();
-        rays.ray.org_y[i] = origins[i].y();
-        rays.ray.org_z[i] = origins[i].z();
-        rays.ray.dir_x[i] = direction.x();
-        rays.ray.dir_y[i] = direction.y();
-        rays.ray.dir_z[i] = direction.z();
-        rays.ray.tnear[i] = near;
-        rays.ray.tfar[i] = far;
-        rays.ray.mask[i] = ~0U;
-        rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    }
-#if RTC_VERSION_MAJOR >= 4
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcIntersect16(valid.data(), impl_->scene.get(), &rays, &arguments);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid.data(), impl_->scene.get(), &context, &rays);
-#endif
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        hits[i] = {};
-        if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        hits[i] =
-            met(rays.ray.tfar[i], Vec3f(rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]),
-                direction, rays.hit.primID[i], rays.hit.geomID[i], rays.hit.u[i], rays.hit.v[i]);
-    }
 }
 
 }  // namespace beltgrinding

@@ -127,6 +127,27 @@ std::string write_3mf_file(const MeshBytes& whole_mesh) {
     return std::move(file.bytes);
 }
 
+namespace {
+
+double millimetres_of(DWORD unit) {
+    switch (unit) {
+        case NMR::MODELUNIT_MICROMETER:
+            return 1e-3;
+        case NMR::MODELUNIT_CENTIMETER:
+            return 10.0;
+        case NMR::MODELUNIT_INCH:
+            return 25.4;
+        case NMR::MODELUNIT_FOOT:
+            return 304.8;
+        case NMR::MODELUNIT_METER:
+            return 1000.0;
+        default:
+            return 1.0;
+    }
+}
+
+}  // namespace
+
 std::optional<MeshBytes> read_3mf(const std::string& path) {
     Object model, reader, merged, meshes;
     const auto read = [&](HRESULT result) {
@@ -140,10 +161,13 @@ std::optional<MeshBytes> read_3mf(const std::string& path) {
     read(NMR::lib3mf_createmodel(model.slot()));
     read(NMR::lib3mf_model_queryreader(model, "3mf", reader.slot()));
     read(NMR::lib3mf_reader_readfromfileutf8(reader, path.c_str()));
+    DWORD unit = 0;
+    read(NMR::lib3mf_model_getunit(model, &unit));
     // What is built, where it is built: objects of objects become one.
     read(NMR::lib3mf_model_mergetomodel(model, merged.slot()));
     read(NMR::lib3mf_model_getmeshobjects(merged, meshes.slot()));
     MeshBytes whole;
+    whole.unit = millimetres_of(unit);
     for (BOOL more = 0;;) {
         read(NMR::lib3mf_resourceiterator_movenext(meshes, &more));
         if (!more) return whole;

@@ -13,8 +13,8 @@ namespace beltgrinding {
 /// and for a mesh that it refuses (a triangle that names a vertex twice).
 std::string write_3mf_file(const MeshBytes& mesh);
 
-/// The mesh of a file: all that is built, in one, in the file's unit. None where this was built
-/// without lib3mf. Throws InputError naming the file.
+/// The mesh of a file: all that is built, in one, in the file's unit, which it says. None where
+/// this was built without lib3mf. Throws InputError naming the file.
 std::optional<MeshBytes> read_3mf(const std::string& path);
 
 }  // namespace beltgrinding

@@ -1,6 +1,7 @@
 #include "beltgrinding/curve.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "beltgrinding/error.h"
 
@@ -13,6 +14,14 @@ double end_slope(double h0, double h1, double d0, double d1) {
     if (slope * d0 <= 0.0) return 0.0;
     if (d0 * d1 <= 0.0 && std::abs(slope) > 3.0 * std::abs(d0)) return 3.0 * d0;
     return slope;
+}
+
+void refuse_too_steep(const std::vector<double>& slopes, const std::string& name) {
+    if (std::all_of(slopes.begin(), slopes.end(), [](double s) { return std::isfinite(s); }))
+        return;
+    throw InputError("law.curve_too_steep",
+                     "{key}: two points of the curve are so near that its slope cannot be computed",
+                     {{"key", name}});
 }
 
 }  // namespace
@@ -38,6 +47,7 @@ Curve::Curve(std::vector<Eigen::Vector2d> points, const std::string& name)
         d[k] = (points_[k + 1].y() - points_[k].y()) / h[k];
     }
     slopes_.assign(n, d[0]);
+    refuse_too_steep(d, name);
     if (n == 2) return;
     for (std::size_t k = 1; k + 1 < n; ++k) {
         slopes_[k] = 0.0;
@@ -47,6 +57,7 @@ Curve::Curve(std::vector<Eigen::Vector2d> points, const std::string& name)
     }
     slopes_.front() = end_slope(h[0], h[1], d[0], d[1]);
     slopes_.back() = end_slope(h[n - 2], h[n - 3], d[n - 2], d[n - 3]);
+    refuse_too_steep(slopes_, name);
 }
 
 double Curve::operator()(double x) const {

@@ -5,6 +5,22 @@
 #include "removal/calibration.h"
 
 namespace beltgrinding {
+namespace {
+
+using Column = Eigen::ArrayXd;
+
+bool positive(const Column& column) {
+    return column.allFinite() && (column > 0.0).all();
+}
+bool not_negative(const Column& column) {
+    return column.allFinite() && (column >= 0.0).all();
+}
+/// NaN stands for what is not known.
+bool positive_if_known(const Column& column) {
+    return !(column <= 0.0).any() && !column.isInf().any();
+}
+
+}  // namespace
 
 void MeasuredGrinds::validate() const {
     const Eigen::Index n = measured.size();
@@ -13,12 +29,12 @@ void MeasuredGrinds::validate() const {
             throw InputError("calibration.lengths", "calibration: columns differ in length");
     }
     for (const auto* column : {&force, &speed, &time, &measured}) {
-        if (!column->allFinite() || !(*column > 0.0).all()) {
+        if (!positive(*column)) {
             throw InputError("calibration.not_positive",
                              "calibration: force, speed, time and removal must be positive");
         }
     }
-    if (!feed.allFinite() || (feed < 0.0).any() || !wear.allFinite() || (wear < 0.0).any()) {
+    if (!not_negative(feed) || !not_negative(wear)) {
         throw InputError("calibration.negative",
                          "calibration: feed and wear must be zero or positive");
     }
@@ -26,7 +42,7 @@ void MeasuredGrinds::validate() const {
         if (column->size() == 0) continue;
         if (column->size() != n)
             throw InputError("calibration.lengths", "calibration: columns differ in length");
-        if (!column->allFinite() || !(*column > 0.0).all()) {
+        if (!positive(*column)) {
             throw InputError("calibration.grain",
                              "calibration: grit and remaining cut must be positive");
         }
@@ -38,8 +54,7 @@ void MeasuredGrinds::validate() const {
             "calibration.relative",
             "calibration: pressures over the mean must be zero or positive, a row each");
     }
-    if (!areas.allFinite() || !(areas > 0.0).all() || (area <= 0.0).any() || area.isInf().any() ||
-        (spread <= 0.0).any() || spread.isInf().any()) {
+    if (!positive(areas) || !positive_if_known(area) || !positive_if_known(spread)) {
         throw InputError("calibration.areas", "calibration: areas must be positive");
     }
     if (areas.size() == 0 && area.isNaN().any()) {

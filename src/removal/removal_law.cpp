@@ -1,5 +1,6 @@
 #include "beltgrinding/removal_law.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -8,6 +9,9 @@
 
 namespace beltgrinding {
 namespace {
+
+// mm/s: a surface that recedes faster is ground as far as the tool reaches in any step.
+constexpr double kFastest = 1e9;
 
 double checked(double coefficient) {
     if (!std::isfinite(coefficient) || coefficient < 0.0) {
@@ -65,6 +69,14 @@ void LocalLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
     } else if (p.feed_exponent != 0.0 && state.feed > 0.0) {
         factor *= std::pow(state.feed / p.reference_feed, p.feed_exponent);
     }
+    if (!std::isfinite(factor)) {
+        throw InputError(
+            "law.beyond_numbers",
+            "removal law: at a belt speed of {speed:.3g} m/s and a feed of {feed:.3g} "
+            "mm/s it takes more than can be computed; check its coefficient, exponents "
+            "and references",
+            {{"speed", 1e-3 * state.belt_speed}, {"feed", state.feed}});
+    }
     if (!p.pressure_curve.empty()) {
         // From no cut at no pressure to the first point in a straight line.
         const double first = p.pressure_curve.lower(), cut = p.pressure_curve(first);
@@ -72,7 +84,7 @@ void LocalLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
             const double land = at / p.land_share;
             return land < first ? cut * land / first : p.pressure_curve(land);
         });
-        rate *= factor * p.reference_pressure;
+        rate = (rate * (factor * p.reference_pressure)).min(kFastest);
         return;
     }
     rate = (pressure / p.land_share - p.pressure_threshold).max(0.0);
@@ -80,9 +92,10 @@ void LocalLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
         rate = p.saturation_pressure * (1.0 - (-rate / p.saturation_pressure).exp());
     }
     if (p.pressure_exponent != 1.0) {
-        rate = p.reference_pressure * (rate / p.reference_pressure).pow(p.pressure_exponent);
+        rate = (rate / p.reference_pressure).pow(p.pressure_exponent).min(kFastest);
+        rate *= p.reference_pressure;
     }
-    rate *= factor;
+    rate = (rate * factor).min(kFastest);
 }
 
 std::optional<OutsideRange> LocalLaw::outside(double peak_pressure,
@@ -146,7 +159,9 @@ void HammannLaw::rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
                       Eigen::ArrayXd& rate) const {
     const double mean = state.contact_area > 0.0 ? state.force / state.contact_area : 0.0;
     const double everywhere = coefficient_ * state.belt_wear * state.belt_speed * mean;
-    rate = (pressure > 0.0).select(Eigen::ArrayXd::Constant(pressure.size(), everywhere), 0.0);
+    rate =
+        (pressure > 0.0)
+            .select(Eigen::ArrayXd::Constant(pressure.size(), std::min(everywhere, kFastest)), 0.0);
 }
 
 std::string HammannLaw::describe() const {
@@ -159,11 +174,6 @@ std::unique_ptr<RemovalLaw> make_removal_law(const std::string& name,
     if (name == "hammann") return std::make_unique<HammannLaw>(parameters.coefficient);
     throw InputError("call.law", "law: there is no model '{name}'; use local or hammann",
                      {{"name", name}});
-}
-
-double hammann_depth(double coefficient, double wear, double belt_speed, double force, double feed,
-                     double contact_width) {
-    return coefficient * wear * belt_speed * force / (feed * contact_width);
 }
 
 }  // namespace beltgrinding

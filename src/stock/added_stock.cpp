@@ -7,6 +7,7 @@
 namespace beltgrinding {
 
 StockReport add_stock(HeightField& field, const std::vector<double>& thickness) {
+    field.validate();
     if (thickness.size() != field.size()) {
         throw InputError("stock.added_count", "stock: {given} thicknesses for {count} samples",
                          {{"given", thickness.size()}, {"count", field.size()}});

@@ -19,6 +19,7 @@ double layer_on(double thickness, double tangent, double distance) {
 }  // namespace
 
 StockReport apply_allowance(HeightField& field, double allowance) {
+    field.validate();
     if (!std::isfinite(allowance)) {
         throw InputError("stock.allowance",
                          "stock: the allowance must be a finite number of millimetres");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
@@ -56,6 +57,7 @@ float stock_height(const RayScene& scene, const Vec3f& point, const Vec3f& ray,
 }
 
 void validate(const HeightField& field, const TriangleMesh& mesh, const StockOptions& options) {
+    field.validate();
     if (mesh.vertices.empty() || mesh.triangles.empty()) {
         throw InputError("stock.no_triangle", "stock: the mesh has no triangle");
     }
@@ -133,6 +135,51 @@ void validate(const HeightField& field, const TriangleMesh& mesh, const StockOpt
          {"apart", (design.center() - stock.center()).norm()}});
 }
 
+constexpr std::size_t kTried = 2000;  // rays
+constexpr double kMostMissed = 0.5;   // of the rays: more, and the mesh may be inside out
+constexpr std::size_t kClearly = 3;   // times as many rays meet it from the other side
+
+constexpr double kClosed = 1e-4;  // of a closed mesh's area, that its area vectors sum up to
+
+/// Whether a mesh's area vectors cancel out, as a closed one's do.
+bool closed(const TriangleMesh& mesh) {
+    Vec3 sum = Vec3::Zero();
+    double area = 0.0;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 a = mesh.vertices[t[0]].cast<double>();
+        const Vec3 b = mesh.vertices[t[1]].cast<double>();
+        const Vec3 c = mesh.vertices[t[2]].cast<double>();
+        const Vec3 normal = (b - a).cross(c - a);
+        sum += normal;
+        area += normal.norm();
+    }
+    return sum.norm() <= kClosed * area;
+}
+
+/// Refuses an open mesh that most rays would meet if its triangles were turned. A closed one is
+/// turned when it is read.
+void refuse_inside_out(const HeightField& field, const std::vector<float>& found, TriangleMesh mesh,
+                       const Vec3& origin, const StockOptions& options) {
+    if (closed(mesh)) return;
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    const RayScene scene(mesh);
+    const std::size_t stride = std::max<std::size_t>(1, field.size() / kTried);
+    std::size_t tried = 0, hits = 0, turned = 0;
+    for (std::size_t i = 0; i < field.size(); i += stride, ++tried) {
+        const Vec3f point = (field.point[i] - origin).cast<float>();
+        hits += !std::isnan(found[i]);
+        turned += !std::isnan(stock_height(scene, point, field.ray(i), options));
+    }
+    if (static_cast<double>(turned) < kMostMissed * static_cast<double>(tried) ||
+        turned < kClearly * hits)
+        return;
+    throw InputError(
+        "stock.inside_out",
+        "the mesh is inside out: {percent:.0f} % of the rays would meet it if its "
+        "triangles were turned; reverse its normals and export it again",
+        {{"percent", 100.0 * static_cast<double>(turned) / static_cast<double>(tried)}});
+}
+
 }  // namespace
 
 StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const StockOptions& options,
@@ -159,6 +206,8 @@ StockReport apply_mesh(HeightField& field, const TriangleMesh& mesh, const Stock
     StockReport report;
     report.missed = static_cast<std::size_t>(
         std::count_if(found.begin(), found.end(), [](float h) { return std::isnan(h); }));
+    if (static_cast<double>(report.missed) > kMostMissed * static_cast<double>(field.size()))
+        refuse_inside_out(field, found, std::move(local), origin, options);
     if (report.missed == field.size()) explain_misses(field, mesh, options.unit);
     for (std::size_t i = 0; i < field.size(); ++i) {
         auto flags = static_cast<std::uint8_t>(field.flags[i] & ~(kMissed | kDefective));

@@ -51,6 +51,14 @@ TriangleMesh whole_surface(const HeightField& field, const TriangleMesh& others,
 
 Thickness measure_thickness(const HeightField& field, const std::vector<std::uint32_t>& samples,
                             const TriangleMesh& others, const RunContext& context) {
+    field.validate();
+    for (const std::uint32_t i : samples) {
+        if (i >= field.size()) {
+            throw InputError("thickness.no_such_sample",
+                             "thickness: there is no sample {sample}; the field has {count}",
+                             {{"sample", i}, {"count", field.size()}});
+        }
+    }
     Thickness found;
     found.design.assign(samples.size(), kNone);
     found.deviation.assign(samples.size(), kNone);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,13 @@
 #include "beltgrinding/run_context.h"
 
 namespace beltgrinding {
+
+/// The middle of a face, mm.
+struct FaceCentre {
+    Vec3 centroid = Vec3::Zero();  ///< of its area; on a curved face not on it
+    Vec3 point = Vec3::Zero();     ///< on the face
+    Vec3 normal = Vec3::Zero();    ///< unit, at `point`, as the face is oriented; 0: no point found
+};
 
 /// A boundary representation. Values are cheap to copy (they share OpenCASCADE's data) and never
 /// change. Lengths in mm, frame: work. Faces are numbered from 0 in the order of
@@ -44,6 +52,11 @@ class Shape {
     bool bounds_solid(std::size_t face) const;
     /// Area by Gauss integration, mm2.
     double face_area(std::size_t face) const;
+    /// The place on the face that is nearest to the centroid of its area, within its borders; where
+    /// a whole circle is as near, or the nearest one lies beyond the borders, the middle of its
+    /// parameters; no point where that lies in a hole. None: OpenCASCADE cannot find the centroid.
+    /// Throws InputError as `face_area` does.
+    std::optional<FaceCentre> face_centre(std::size_t face) const;
     /// Name of the face's surface type ("plane", "bspline", ...).
     std::string surface_type(std::size_t face) const;
     /// Tight extents of the triangulated shape (not the pole box), mm.

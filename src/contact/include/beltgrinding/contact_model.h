@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "beltgrinding/run_context.h"
+
 namespace beltgrinding {
 
 /// The wheel's own regular grid: nx cells along the circumference (arc length s, contact frame's x
@@ -53,6 +55,7 @@ struct ContactProblem {
     double recession = 0.0;
     double tolerance = 1e-4;   ///< relative error of the pressure field, L1
     int max_iterations = 500;  ///< then it has not converged
+    RunContext context;        ///< looked at in each iteration
 
     /// Throws InputError on arrays of another size than the grid's, NaN, or a negative force.
     void validate(const ContactGrid& grid) const;
@@ -98,7 +101,7 @@ class PreparedContact {
     /// Name and parameters of the model as it is used here, for the report.
     const std::string& describe() const { return description_; }
     /// `start`, if not null, is a pressure (MPa per cell) to start from. Throws InputError for a
-    /// problem that is none, or not of this grid.
+    /// problem that is none, or not of this grid; Cancelled, after which it can solve anew.
     ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd* start = nullptr);
     /// For another one, of the same model and grid, to go on from to the last bit. Null: the
     /// pressure is all.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "beltgrinding/belt_machine.h"
-
 namespace beltgrinding {
 
 /// How a surface of the belt that touches nothing lies in the machine's plane y = 0: round an arc
@@ -23,10 +21,5 @@ struct BeltArc {
     /// mm that it lies behind the plane z = 0 of the contact frame at x.
     double behind(double x) const;
 };
-
-/// The belt's outer face, which meets the work. Of a free belt and a flat platen: straight.
-BeltArc face_arc(const BeltMachine& machine);
-/// The belt's middle surface.
-BeltArc middle_arc(const AbrasiveBelt& belt, const Platen& platen);
 
 }  // namespace beltgrinding

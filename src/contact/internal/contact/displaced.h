@@ -22,8 +22,8 @@ struct DisplacedPressure {
 };
 
 /// Spreads the force of every cell evenly over where its borders have moved to. Nothing moves at an
-/// edge of the workpiece, past which the rubber slides. Beyond the sides it is put within `most`
-/// mm. The force stays as it is.
+/// edge of the workpiece, past which the rubber slides, nor beyond one. Beyond the sides it is put
+/// within `most` mm. The force stays as it is.
 DisplacedPressure displaced(const ContactGrid& grid, const ContactSolution& solution,
                             const Eigen::ArrayXd& coverage,
                             double most = std::numeric_limits<double>::infinity());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,7 @@
 
 namespace beltgrinding {
 
+class HeatSpectrum;
 struct ThermalLevel;
 struct ThermalNodes;
 
@@ -31,12 +33,16 @@ struct HeatMaterial {
 /// `PartHeat`, temperatures are rises above the start's.
 struct HeatState {
     static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no motion
+    static constexpr std::size_t kModes = 16;
 
     double time = 0.0;                  ///< s of process, through all programs
     double heated = 0.0;                ///< s, when heat came last
     std::uint32_t motion = kNever;      ///< that brought it
     Frame place = Frame::Identity();    ///< where, mm: the middle and axes of a box
     Vec3 half = Vec3::Zero();           ///< mm, half the box's sides
+    double flowed = 0.0;                ///< K mm3: what is stored, as by what has flowed in
+    std::array<double, kModes> most{};  ///< K, by mode: no node has more
+    double bound = 0.0;                 ///< K: no rise was ever greater
     std::vector<float> modes;           ///< K, (nodes, modes): its sum is the surface's temperature
     std::vector<double> last;           ///< s, (nodes): when heat came near last; long ago: never
     std::vector<std::uint8_t> warm;     ///< (nodes): may be other than 0
@@ -81,13 +87,16 @@ class PartHeat {
     /// Bytes held.
     std::size_t bytes() const;
     /// Writes the greatest rise of every sample, and the motion then, to `field.heat`. Between
-    /// nodes it is interpolated, never beyond theirs.
+    /// nodes it is interpolated, never beyond theirs. Throws InputError for a field that is not
+    /// sound or another one.
     void keep(HeightField& field) const;
 
     /// For the room's own use.
     const ThermalNodes& nodes() const { return *nodes_; }
     /// The same: levels of fewer nodes, made when they are first asked for.
     const std::vector<ThermalLevel>& levels() const;
+    /// Of the level of the fewest nodes.
+    const HeatSpectrum& spectrum() const;
 
   private:
     struct Levels;

@@ -30,16 +30,22 @@ class CoarseHeat {
         float rise;  // K
     };
 
-    /// The part must outlive it.
-    explicit CoarseHeat(const PartHeat& part);
+    /// The part must outlive it. `decays`: whether modes do.
+    explicit CoarseHeat(const PartHeat& part, bool decays = true);
 
     bool empty() const;
     /// s: the least age of what may come.
     double ripe() const;
     /// Whether its time has come.
     bool due(double now) const;
-    /// The levels that are due are brought to `now`, and hand up. Heat came in last at `heated` s.
-    void step(double now, double heated, const Way& way);
+    /// The levels that are due, or `all`, are brought to `now`, and hand up. Heat came in last at
+    /// `heated` s.
+    void step(double now, double heated, const Way& way, bool all = false);
+    /// Nothing is left, as of `now`.
+    void clear(double now);
+    /// Adds a `share` of what another one of the part has; both have stepped with all levels, this
+    /// one at `now`. What is not shared is taken off the other one.
+    void add(CoarseHeat& other, const DepthModes::Row& share, double now);
     /// Heat begins to come in at another place.
     void move(double now, const Way& way);
     /// Of a row that has been brought to a `step`: what it keeps of it, 0 to 1; the rest is to be
@@ -53,6 +59,8 @@ class CoarseHeat {
     void take(const Visit& visit) { take(0, visit); }
     /// After all that: rises are those of what is there now.
     void read() { read(false); }
+    /// The same of all levels, wherever they are.
+    void read_all() { read(true); }
     /// At a node, `now` or soon after the last step.
     Rise rise(std::uint32_t node, double now) const;
     /// After a step: nodes whose rise may be above `peak`, and their rises.
@@ -82,7 +90,7 @@ class CoarseHeat {
   private:
     using Row = DepthModes::Row;
     struct Level {
-        Level(const ThermalLevel& place, double diffusivity, double now);
+        Level(const ThermalLevel& place, double diffusivity, double now, const PartHeat* even);
 
         const ThermalLevel& place;
         std::vector<float> rows;

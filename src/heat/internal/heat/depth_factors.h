@@ -16,13 +16,17 @@ class DepthFactors {
         Row decay{}, gain{};     // the latter: K of a flux of 1 N/(mm s) and a weight of 1 / mm
     };
 
-    explicit DepthFactors(const HeatMaterial& material) : material_(material) {}
+    /// `longer`: the ways of `DepthModes`. `decays`: whether the modes do.
+    DepthFactors(const HeatMaterial& material, double longer, bool decays)
+        : material_(material), longer_(longer), decays_(decays) {}
 
     /// Of `duration` s. Holds until it is asked for another one.
     const Factors& operator()(double duration);
 
   private:
     HeatMaterial material_;
+    double longer_;
+    bool decays_;
     std::array<Factors, 64> known_;  // by their duration
 };
 

@@ -13,13 +13,18 @@ namespace beltgrinding {
 /// trapezoidal rule in ln z; of a plate with an insulated back, (1 + 2 sum of exp(-n^2 pi^2 tau /
 /// d^2)) / d, by a fit to the same rates, whatever the thickness, so that neighbours of other
 /// thicknesses can exchange. D stands for what is faster than all rates. The temperature after a
-/// time of constant flux is within 0.5 % for tau from 0.01 to 1000 mm2 (tests/core/heat).
+/// time of constant flux is within 0.5 % for tau from 0.01 to 1000 mm2 (tests/core/heat). These are
+/// the lengths of heat in steel; of what conducts better or worse by far, all lengths are `longer`.
 class DepthModes {
   public:
     static constexpr int kModes = 16;
     using Row = std::array<float, kModes>;
 
-    /// s_j, 1/mm2; the first is 0.
+    /// How much longer ways are than those of steel: 1 for 1 to 20 mm2/s, else by the root; but
+    /// contacts are no larger for it, which are some `spacing` mm.
+    static double longer(double diffusivity, double spacing);
+    /// s_j, 1/mm2; the first is 0. Of ways that are not longer: those of others are less by the
+    /// square.
     static const std::array<double, kModes>& rates();
     /// What a heat flux does.
     struct Weights {
@@ -28,12 +33,14 @@ class DepthModes {
     };
     /// At the surface where it enters, of a plate of `thickness` mm; NaN or above `kThick`: of a
     /// half-space.
-    static Weights own(double thickness);
+    static Weights own(double thickness, double longer = 1.0);
     /// At a plate's other surface.
-    static Weights opposite(double thickness);
+    static Weights opposite(double thickness, double longer = 1.0);
 
-    static constexpr double kThick = 150.0;  ///< mm: a half-space, in the times of grinding
-    static constexpr double kThin = 0.05;    ///< mm: thinner is taken as this
+    /// mm, of ways that are not longer: a half-space, in the times of grinding; and what is as hot
+    /// on both sides at once, but for a difference in proportion to the flux.
+    static constexpr double kThick = 150.0;
+    static constexpr double kThin = 0.05;
 };
 
 }  // namespace beltgrinding

@@ -33,6 +33,7 @@ struct ThermalLevel {
     std::vector<std::uint32_t> first;         ///< (nodes + 1), of `neighbour` and `conductance`
     std::vector<std::uint32_t> neighbour;     ///< ascending for each
     std::vector<float> conductance;           ///< as of `ThermalNodes`
+    std::vector<float> sectional;             ///< mm: the same times the section's depth
     std::vector<Shares> shares;               ///< by node of the level below
     std::vector<std::uint32_t> first_part;    ///< (nodes + 1), of `part`
     std::vector<std::uint32_t> part;          ///< of the level below: those that have a share in it

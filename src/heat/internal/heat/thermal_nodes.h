@@ -27,19 +27,27 @@ struct ThermalNodes {
     std::vector<std::uint32_t> neighbour;    ///< ascending for each
     std::vector<float> conductance;          ///< length of the common border over the distance
     double dispersion = 0.0;                 ///< mm2: see `make_thermal_nodes`
+    double longer = 1.0;                     ///< ways of heat, as of `DepthModes`
     std::vector<float> thickness;            ///< mm, of the section; infinite: a half-space
     std::vector<std::uint32_t> opposite;     ///< node on the section's other side, or kNone
     std::vector<DepthModes::Weights> own;    ///< of each thickness
     std::vector<DepthModes::Weights> other;  ///< the same, of heat from the other side
 
     std::size_t size() const { return sample.size(); }
+    /// mm, (nodes): of each one's section, as far as heat gets.
+    std::vector<float> depth() const;
     std::size_t bytes() const;
 };
 
 /// Chooses the nodes in the order of the samples; all are half-spaces. Waves of the wave number k
 /// are conducted by 1 - k^2 `dispersion` of what they should be, in the mean over directions and
 /// nodes.
-ThermalNodes make_thermal_nodes(const HeightField& field, double spacing);
+ThermalNodes make_thermal_nodes(const HeightField& field, double spacing, double longer = 1.0);
+
+/// mm, for each of `conductance`: times what the section is deep (`depth` mm, by node) on the way,
+/// two halves in a row.
+std::vector<float> sectional_conductances(const ThermalNodes& nodes,
+                                          const std::vector<float>& depth);
 
 /// Gives the sections their thickness (mm, by node; NaN: a half-space), and finds the other sides.
 void set_thickness(ThermalNodes& nodes, const std::vector<float>& thickness);

@@ -135,12 +135,17 @@ struct HeightField {
     Vec3 bottom(std::size_t i) const { return point[i] - depth * ray(i).cast<double>(); }
     /// Makes room for n samples: heights, flags and areas 0.
     void resize(std::size_t n);
+    /// Throws InputError that names the first array that is wrong: of another length than `point`,
+    /// with a value that is not finite, a normal that is not of length 1, a triangle without its
+    /// sample. Every function of the library that takes a field calls it.
+    void validate() const;
     /// Bytes held by all arrays.
     std::size_t bytes() const;
 };
 
 /// Writes all arrays and `attributes` (a JSON text, may be empty) to an HDF5 file, atomically: a
-/// failed write leaves an older file of that name as it was. Throws InputError naming the path.
+/// failed write leaves an older file of that name as it was. Throws InputError naming the path, and
+/// std::logic_error for a field that `validate` refuses, as do the next two.
 void write_hdf5(const HeightField& field, const std::string& path, const std::string& attributes);
 
 /// The same bytes to an open, empty file, by its descriptor: as they are made, so that they take no

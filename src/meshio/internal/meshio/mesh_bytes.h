@@ -16,6 +16,7 @@ struct MeshBytes {
     std::vector<Vec3f> vertices;         ///< in the file's unit and frame
     std::vector<Triangle> triangles;     ///< indices of vertices
     std::vector<std::uint32_t> colours;  ///< 0xRRGGBBAA
+    double unit = 0.0;                   ///< mm of 1, as the file says; 0: it does not
 };
 
 /// The mesh as bytes for another process of the same build.

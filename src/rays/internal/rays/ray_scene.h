@@ -35,11 +35,6 @@ class RayScene {
     };
     /// The first triangle between `near` and `far` mm along the ray. Safe from many threads.
     Hit first(const Vec3f& origin, const Vec3f& direction, float near, float far) const;
-    static constexpr std::size_t kTogether = 16;
-    /// The same for up to kTogether parallel rays that begin beside each other, as a picture's do:
-    /// several times as fast. `hits`: as many as `origins`.
-    void first_together(std::span<const Vec3f> origins, const Vec3f& direction, float near,
-                        float far, std::span<Hit> hits) const;
 
   private:
     struct Impl;

@@ -101,8 +101,4 @@ class HammannLaw final : public RemovalLaw {
 std::unique_ptr<RemovalLaw> make_removal_law(const std::string& name,
                                              const LocalLawParameters& parameters);
 
-/// r of Hammann's law, mm: K (mm2/N), V_b and V_w (mm/s), F_A (N), l_w (mm).
-double hammann_depth(double coefficient, double wear, double belt_speed, double force, double feed,
-                     double contact_width);
-
 }  // namespace beltgrinding

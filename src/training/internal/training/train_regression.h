@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/regression.h"
+#include "surrogate/regression.h"
 
 namespace beltgrinding {
 
